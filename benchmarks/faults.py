@@ -99,7 +99,7 @@ def _runs(seed: int) -> Iterator[Run]:
         for fault, break_it in _faults(kind).items():
             with tempfile.TemporaryDirectory(prefix="fleet-faults-") as folder:
                 findings = _broken(kind, Path(folder), seed, fault, break_it)
-            print(f"--- {kind}, {fault}\n{findings.told()}", file=sys.stderr, flush=True)
+            print(f"--- {kind}, {fault}\n{findings.lines()}", file=sys.stderr, flush=True)
             yield Run(kind, fault, findings)
 
 

@@ -58,6 +58,7 @@ BENCH = [
     "assignment",
     "desk",
     "field_page",
+    "appliance",
     "endurance",
 ]
 """What ``make bench`` measures: modules of benchmarks; each has ``measure(data)``."""

@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from .core.errors import BridgeError
+from .core.errors import BridgeError, RobotMapError, SiteError
 from .core.logs import set_up_log
 
 COMMANDS = {
@@ -97,7 +97,6 @@ def _only_named() -> None:
 
 def _foreseen() -> tuple[type[Exception], ...]:
     """Return the families of errors whose text is for people."""
-    from .core.errors import RobotMapError, SiteError
     from .core.messages.validation import MessageError
     from .reference_robot.localisation.settings import ReferenceRobotError
 

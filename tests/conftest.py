@@ -87,7 +87,7 @@ NOT_CORE = (
     "robot_bridge/core/assignment",
     "robot_bridge/core/robotmap/exporters/test_any_map.py",
     "robot_bridge/core/robotmap/test_hostile_maps.py",
-    "robot_bridge/core/robotmap/test_watch.py",
+    "robot_bridge/core/robotmap/test_progress_monitor.py",
     "robot_bridge/core/sites/test_cache_writing.py",
     "robot_bridge/faults",
     "robot_bridge/gateway/auth",

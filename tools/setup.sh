@@ -57,6 +57,7 @@ missing_servers() {
     has chromium || has google-chrome || echo chromium
     has debootstrap || [ -x /usr/sbin/debootstrap ] || echo debootstrap
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
+    ls /usr/lib/*/faketime/libfaketime.so.1 >/dev/null 2>&1 || echo libfaketime
 }
 
 as_root() {

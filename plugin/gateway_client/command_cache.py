@@ -17,7 +17,6 @@ from ...robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd
 from ..ui.language import tr
 from .robot_states import COMMAND_STATES
 
-UNDER_WAY = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
 MOST_COMMANDS = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
 """Operations that lead a robot somewhere; the others are done where it stands."""
@@ -157,7 +156,7 @@ class CommandCache:
         too_many = len(self._reports) - MOST_COMMANDS
         if too_many <= 0:
             return
-        ended = [key for key, report in self._reports.items() if report.state not in UNDER_WAY]
+        ended = [key for key, report in self._reports.items() if not report.state.is_open]
         for command in ended[:too_many]:
             del self._reports[command]
         for command in list(self._reports)[: max(0, len(self._reports) - 2 * MOST_COMMANDS)]:
@@ -168,7 +167,7 @@ class CommandCache:
         self._reached.clear()
         for report in self._reports.values():
             if report.op != Abort.__name__:
-                if report.state in UNDER_WAY:
+                if report.state.is_open:
                     self._under_way[report.robot] = report
                 elif report.state is CommandState.REACHED:
                     self._reached[report.robot] = report

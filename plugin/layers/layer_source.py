@@ -1,4 +1,4 @@
-"""Source of a layer in its role: features, attributes, geometries, points, and warnings about them."""
+"""Source of a layer in its role: features, attributes, geometries, and warnings about them."""
 
 from __future__ import annotations
 
@@ -6,11 +6,10 @@ import math
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from datetime import datetime, timezone
+from typing import NamedTuple
 
-import numpy as np
 from qgis.core import (
-    NULL,
     QgsAbstractFeatureSource,
     QgsCoordinateReferenceSystem,
     QgsDataSourceUri,
@@ -28,14 +27,14 @@ from qgis.core import (
     QgsWkbTypes,
 )
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QObject, pyqtSignal
+from qgis.PyQt.QtCore import QDateTime, QObject, Qt, pyqtSignal
 
-from ..ui.errors import LayerReadingError, LayerTypeError
+from ..ui.errors import LayerTypeError
 from ..ui.language import tr
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
-from .site_transform import LayerToSiteTransform, SiteTransformError
+from .site_transform import LayerToSiteTransform
 
 # --- A layer as it is read: everything that must be taken from it while the main thread holds it ---
 
@@ -279,6 +278,24 @@ def each_feature(
         yield feature
 
 
+def parse_seconds(value: object) -> float | None:
+    """Return a time in seconds since 1970, of a date and time, seconds, or ISO 8601 (UTC unless it says)."""
+    if isinstance(value, QDateTime):
+        if value.timeSpec() == Qt.TimeSpec.LocalTime:
+            # Without an offset, or read by QGIS 3.22, which drops it: a gateway exports UTC.
+            value = QDateTime(value.date(), value.time(), Qt.TimeSpec.UTC)
+        return value.toMSecsSinceEpoch() / 1000.0 if value.isValid() else None
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value) if math.isfinite(value) else None
+    if not isinstance(value, str):
+        return None
+    try:
+        at = datetime.fromisoformat(value.strip().replace("Z", "+00:00"))
+    except ValueError:
+        return None
+    return (at if at.tzinfo else at.replace(tzinfo=timezone.utc)).timestamp()
+
+
 class FeatureRow(NamedTuple):
     """One feature, whether the filter ``counts`` it, and its geometry in metres; None where it has none.
 
@@ -415,89 +432,3 @@ class FeatureWarnings:
             tr("Layer {layer}: warnings of more kinds about {features}", layer=layer, features=features)
             for layer, features in self._others.items()
         ]
-
-
-# --- Points of a layer with the values of their fields, as cones, robots and stores are read ---
-
-
-@dataclass(frozen=True)
-class PointRow:
-    """One feature: what it is called in errors, its name, its place (metres, site frame), its values."""
-
-    where: str
-    name: str
-    x: float
-    y: float
-    values: dict[str, Any]
-
-    def number(self, field: str, otherwise: float) -> float:
-        """Return the number in ``field``; ``otherwise`` where the layer has no such field, or no value.
-
-        :raises LayerReadingError: when it holds something else.
-        """
-        value = self.values.get(field)
-        if value is None or value == "":
-            return otherwise
-        try:
-            number = float(value)
-        except (TypeError, ValueError):
-            number = math.nan
-        if not math.isfinite(number):
-            raise LayerReadingError(
-                tr(
-                    "{layer}: {field} is {value!r}, which is no number; correct it.",
-                    layer=self.where,
-                    field=field,
-                    value=value,
-                )
-            )
-        return number
-
-    def whole(self, field: str, otherwise: float) -> int:
-        """Return the whole number in ``field``; raises as :meth:`number`."""
-        number = self.number(field, otherwise)
-        if number != int(number):
-            raise LayerReadingError(
-                tr(
-                    "{layer}: {field} is {value:g}; give a whole number.",
-                    layer=self.where,
-                    field=field,
-                    value=number,
-                )
-            )
-        return int(number)
-
-
-def point_rows(
-    layer: str, features: Iterable[QgsFeature], placing: LayerToSiteTransform, names: Sequence[str]
-) -> Iterator[PointRow]:
-    """Yield the features of the layer called ``layer``; the first of the fields ``names`` names each.
-
-    One that none of them names is called by its number in the layer.
-
-    :raises LayerReadingError: at a feature that is not one point with a place on the site.
-    """
-    for feature in features:
-        where = tr("{layer}, feature {id}", layer=layer, id=feature.id())
-        x, y = _place(feature, placing, where)
-        values = {
-            field: None if value == NULL else value
-            for field, value in zip(feature.fields().names(), feature.attributes(), strict=True)
-        }
-        named = (str(values[field]) for field in names if values.get(field) not in (None, ""))
-        yield PointRow(where, next(named, str(feature.id())), x, y, values)
-
-
-def _place(feature: QgsFeature, placing: LayerToSiteTransform, where: str) -> tuple[float, float]:
-    try:
-        # Named, since its vertices do not keep it alive.
-        geometry = placing.to_metres(feature.geometry())
-        vertices = [(vertex.x(), vertex.y()) for vertex in geometry.vertices()]
-    except SiteTransformError:
-        vertices = []
-    if len(vertices) != 1 or not np.isfinite(vertices).all():
-        raise LayerReadingError(
-            tr("{where} is not one point with a place on the site: correct or delete it.", where=where)
-        )
-    ((x, y),) = placing.to_site(np.array(vertices)).tolist()
-    return x, y

@@ -13,7 +13,7 @@ from qgis.PyQt.QtGui import QFont
 
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from ...robot_bridge.core.messages.robots import Abort
-from ..gateway_client.command_cache import UNDER_WAY, command_in_words, place_of, requested_at, state_word
+from ..gateway_client.command_cache import command_in_words, place_of, requested_at, state_word
 from ..gateway_client.robot_states import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
 from ..ui.language import date_and_time, short_time, tr
@@ -57,7 +57,7 @@ class CommandFilter:
         if self.robots is not None and report.robot not in self.robots:
             return False
         if self.which is CommandChoice.OPEN:
-            return report.state in UNDER_WAY
+            return report.state.is_open
         return self.which is CommandChoice.ALL or report.state in FAILED
 
 
@@ -81,10 +81,10 @@ def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str,
 
 def summary(reports: Iterable[CommandReport]) -> str:
     """Return how many commands are open, as in ``3 open: 1 queued, 2 acknowledged``."""
-    states = [report.state for report in reports if report.state in UNDER_WAY]
+    states = [report.state for report in reports if report.state.is_open]
     if not states:
         return tr("None open")
-    counts = [f"{states.count(state)} {COMMAND_STATES[state]}" for state in UNDER_WAY if state in states]
+    counts = [f"{states.count(state)} {COMMAND_STATES[state]}" for state in CommandState if state in states]
     return tr("{number} open: {counts}", number=len(states), counts=", ".join(counts))
 
 

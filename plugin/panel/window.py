@@ -19,8 +19,7 @@ from ..map.overlay.scene import FollowMode
 from ..map.overlay.task_painter import QueueMarks
 from ..map.reported_layers import RoadLayers, StandingCones
 from ..map.site_project import ProjectMatch
-from ..map.tools.click_tools import ConeTool, SelectTool, StartTool
-from ..map.tools.closure_tool import ClosureTool
+from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
 from ..map.tools.road_route_tool import RoadRouteTool
 from ..map.tools.route_tool import RouteTool
 from ..ui.actions import Actions

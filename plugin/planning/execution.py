@@ -36,8 +36,7 @@ from ..gateway_client.report_caches import KnownPlan
 from ..ui.errors import NotSentError
 from ..ui.language import first_of, tr
 from .plan_editor import PlanEditor, PlanningError
-from .plan_views import after_sending
-from .progress import problem_in_words
+from .plan_texts import after_sending, problem_in_words
 from .proposal import PlanProposal
 
 REPLANNING_S = 2.0

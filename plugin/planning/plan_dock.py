@@ -38,8 +38,16 @@ from .execution import PlanExecution, no_plans_here
 from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
-from .plan_views import PlanLayers, PlanTree, before_sending, method_text, plan_summary, plan_title, stop_rows
-from .progress import ReportedProgress, problem_in_words
+from .plan_texts import (
+    ReportedProgress,
+    before_sending,
+    method_text,
+    plan_summary,
+    plan_title,
+    problem_in_words,
+    stop_rows,
+)
+from .plan_views import PlanLayers, PlanTree
 from .proposal import closed_in_words, meeting_in_words
 
 # --- What the operator does with a plan: send it, and agree to a new one for what is left ---

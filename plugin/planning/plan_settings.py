@@ -22,8 +22,8 @@ from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES
 from ..layers.crs import stated_crs
-from ..layers.layer_source import PointRow, point_rows
 from ..layers.site_transform import SiteGeoreference
+from ..processing.common.cone_layers import PointRow, point_rows
 from ..ui.errors import FleetError
 from ..ui.language import tr
 

@@ -1,11 +1,8 @@
-"""Cone plans as shown: texts, rows, layer."""
+"""Cone plans as shown: the table of robots with their stops, and the layers on the map."""
 
 from __future__ import annotations
 
-import math
-import time
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,264 +21,19 @@ from qgis.PyQt.QtCore import QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QDropEvent, QIcon, QKeyEvent, QPixmap
 from qgis.PyQt.QtWidgets import QAbstractItemView, QMenu, QTreeWidget, QTreeWidgetItem, QWidget
 
-from ...robot_bridge.core.assignment.job import STRAIGHT, PlanRobot
-from ...robot_bridge.core.assignment.plan import ConePlan, PlanStop, RobotPlan
+from ...robot_bridge.core.assignment.plan import ConePlan
 from ...robot_bridge.core.assignment.plan_changes import trips_of
-from ...robot_bridge.core.messages.plans import PlanReport
-from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskState
+from ...robot_bridge.core.messages.queues import TaskState
 from ...robot_bridge.core.messages.records import PlacementReport
-from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import ROBOT_STATES
 from ..layers.live_layers import Row, RowLayer, label
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import WRONG, for_letters
-from ..ui.language import first_of, time_of_day, tr, tr_count
+from ..ui.language import tr, tr_count
 from ..ui.tables import fit_headers
 from .as_placed import PLACED, utc_in_words
-from .progress import ReportedProgress
-from .proposal import PlanProposal, closed_in_words, meeting_in_words
-
-# --- A plan in words and numbers: what table, map and message say of it ---
-
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C510A", "#6A3D9A")
-"""Of Okabe and Ito's palette and two more; with more robots they repeat, and the numbers tell them apart."""
-
-_WORDS = {
-    TaskState.WAITING: tr("in the queue"),
-    TaskState.CURRENT: tr("under way"),
-    TaskState.FAILED: tr("FAILED"),
-    TaskState.DONE: tr("done"),
-    TaskState.SKIPPED: tr("skipped"),
-    TaskState.REMOVED: tr("taken out"),
-}
-NOT_DONE = (TaskState.FAILED, TaskState.SKIPPED)
-
-
-@dataclass(frozen=True)
-class PlanStopRow:
-    """One stop as it is shown. ``number`` counts the stops of its robot, from 1, those behind it first.
-
-    ``state`` is what became of a cone that was sent, ``why`` what is said of it; ``deviation`` is metres.
-    """
-
-    robot: str
-    number: int
-    trip: int
-    stop: PlanStop
-    arrives: str
-    state: TaskState | None = None
-    why: str = ""
-    deviation: float | None = None
-
-    def in_words(self) -> str:
-        """Return state and reason for the operator, nothing for what was not sent."""
-        words = "" if self.state is None else _WORDS[self.state]
-        return f"{words}: {self.why}" if self.why else words
-
-
-def colour_of(plan: ConePlan, robot: str) -> str:
-    """Return a robot's colour in the plan, as ``#rrggbb``."""
-    names = [one.robot.id for one in plan.robots]
-    return COLOURS[names.index(robot) % len(COLOURS)]
-
-
-def stop_rows(plan: ConePlan, progress: ReportedProgress | None) -> dict[str, list[PlanStopRow]]:
-    """Return the stops of each robot, those behind it first."""
-    began = None if progress is None else progress.began_at
-    rows: dict[str, list[PlanStopRow]] = {}
-    for one in plan.robots:
-        behind = [(0, stop) for stop in one.done]
-        to_come = [(trip.number, stop) for trip in one.trips for stop in trip.stops]
-        rows[one.robot.id] = [
-            _row(one.robot.id, number, trip, stop, began, progress)
-            for number, (trip, stop) in enumerate([*behind, *to_come], 1)
-        ]
-    return rows
-
-
-def plan_title(report: PlanReport) -> str:
-    """Return by whom and when a plan was submitted, and for which robots."""
-    return tr(
-        "{by}, {time}: {robots}",
-        by=report.submitted_by,
-        time=time_of_day(report.submitted_at),
-        robots=", ".join(first_of(report.robots)),
-    )
-
-
-def plan_summary(plan: ConePlan) -> str:
-    """Return how good a plan is and what it leaves out."""
-    cones = sum(stop.is_target for _, stop in plan.all_stops())
-    robots = sum(bool(one.stops) for one in plan.robots)
-    text = tr(
-        "{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})",
-        cones=tr_count(cones, "1 cone", "%n cones"),
-        robots=tr_count(robots, "1 robot", "%n robots"),
-        metres=plan.metres,
-        span=_span(plan.end_s),
-        method=RESULT_QUALITY.get(plan.method, plan.method),
-        travel=tr("straight lines") if plan.travel == STRAIGHT else tr("the roads"),
-    )
-    out = plan.left_out
-    return (
-        tr(
-            "{text}. Left out: {names}",
-            text=text,
-            names=", ".join(first_of([f"{one.target.id} ({one.reason})" for one in out])),
-        )
-        if out
-        else text
-    )
-
-
-def method_text(plan: ConePlan) -> str:
-    """Return by which parts a plan was made, for those who want to know."""
-    return tr("Found by: {method}. Ways along: {travel}.", method=plan.method, travel=plan.travel)
-
-
-def time_text(seconds: float, began_at: float | None) -> str:
-    """Return when that is: the time of day once the plan was begun, before as time after its begin."""
-    if began_at is None:
-        return f"+{_span(seconds)}"
-    return time.strftime("%H:%M:%S", time.localtime(began_at + seconds))
-
-
-def position_beside(plan: ConePlan, target: str, onto: str, *, after: bool) -> tuple[str, int, int] | None:
-    """Return robot, trip and place of ``target`` when it is dropped before or ``after`` cone ``onto``.
-
-    Trip and place are as :func:`~.editing.moved` takes them. None when ``onto`` is nobody's.
-    """
-    names = [one.robot.id for one in plan.robots if not one.lost]
-    for robot, day in zip(names, trips_of(plan), strict=True):
-        for trip, cones in enumerate(day):
-            left = [cone for cone in cones if cone != target]
-            if onto in left:
-                return robot, trip, left.index(onto) + after
-    return None
-
-
-def position_at_end(plan: ConePlan, target: str, robot: str) -> tuple[str, int, int] | None:
-    """Return robot, trip and place of ``target`` when it is given to ``robot`` as its last cone."""
-    names = [one.robot.id for one in plan.robots if not one.lost]
-    if robot not in names:
-        return None
-    day = trips_of(plan)[names.index(robot)]
-    trip = max((k for k, cones in enumerate(day) if any(cone != target for cone in cones)), default=0)
-    room = plan.robot(robot)
-    kept = len([cone for cone in day[trip] if cone != target])
-    full = room is not None and kept >= (room.robot.aboard if trip == 0 else room.robot.capacity)
-    if full and plan.stores:
-        return robot, len(day), 0
-    return robot, trip, kept
-
-
-def _row(
-    robot: str, number: int, trip: int, stop: PlanStop, began: float | None, progress: ReportedProgress | None
-) -> PlanStopRow:
-    row = PlanStopRow(robot, number, trip, stop, time_text(stop.arrival_s, began))
-    if progress is None or not stop.is_target:
-        return row
-    return replace(
-        row,
-        state=progress.state_of(stop.id),
-        why=progress.remark_on(stop.id),
-        deviation=progress.deviation_of(stop.id),
-    )
-
-
-def _span(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
-
-
-# --- What the operator is told before a plan is sent, and after ---
-
-MOVED = 1.0
-"""Metres that a robot may have moved since the plan was made."""
-
-LISTED = 5
-"""Robots, doubts, closed ways and meetings that the question names: it has to fit on a screen."""
-
-
-def before_sending(desk: FleetController, draft: PlanProposal) -> str:
-    """Return what sending will do, and what speaks against it."""
-    driving = [one for one in draft.plan.robots if one.stops and not one.lost]
-    lines = [plan_summary(draft.plan) + ".", ""]
-    lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
-    doubts = [doubt for one in driving for doubt in _doubts(desk, one.robot)]
-    closed = [closed_in_words(one) for one in draft.closed]
-    meetings = [meeting_in_words(meeting) for meeting in draft.meetings]
-    minded = [text for texts in (doubts, closed, meetings) for text in first_of(texts, LISTED)]
-    if minded:
-        lines += ["", tr("Mind:"), *(f"• {text}" for text in minded)]
-    return "\n".join([*lines, "", tr("The robots set off at once.")])
-
-
-def after_sending(desk: FleetController, robots: Sequence[str]) -> list[str]:
-    """Return which of a plan's robots do not set off, since somebody holds them."""
-    texts = []
-    for robot in robots:
-        report = desk.state.queues.get(robot)
-        if report is not None and report.tasks and report.state is QueueState.PAUSED:
-            texts.append(
-                tr(
-                    "The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.",
-                    robot=report.robot,
-                    reason=report.reason or "",
-                )
-            )
-    return texts
-
-
-def _cones(one: RobotPlan) -> str:
-    return tr_count(sum(stop.is_target for stop in one.stops), "1 cone", "%n cones")
-
-
-def _doubts(desk: FleetController, robot: PlanRobot) -> list[str]:
-    queue = desk.state.queues.get(robot.id)
-    return [*_doubts_of_place(desk, robot), *(_doubts_of_queue(queue) if queue is not None else ())]
-
-
-def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
-    """Yield whether the robot is elsewhere than where the plan begins, or away."""
-    view = desk.state.robots.view(robot.id, desk.clock.steady())
-    if view is None or not view.has_pose:
-        yield tr("it is not known where {id} is", id=robot.id)
-        return
-    away = math.hypot(view.report.x - robot.x, view.report.y - robot.y)
-    if away > MOVED:
-        yield tr("{id} is {away:.1f} m from where the plan begins: better plan anew", id=robot.id, away=away)
-    if view.state not in (RobotState.FRESH, RobotState.STALE):
-        yield tr(
-            "{id} is {state}: it gets its queue when it is heard of again",
-            id=robot.id,
-            state=ROBOT_STATES[view.state],
-        )
-
-
-def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
-    """Yield what becomes of the tasks that are in the robot's queue already."""
-    waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
-    if waiting:
-        yield tr_count(
-            waiting,
-            "1 task that waits in the queue of {id} is replaced",
-            "%n tasks that wait in the queue of {id} are replaced",
-            id=queue.robot,
-        )
-    if waiting < len(queue.tasks):
-        yield tr("{id} finishes first what it is doing", id=queue.robot)
-    if queue.state is QueueState.PAUSED:
-        yield tr(
-            "the queue of {id} is paused ({reason}): it is resumed",
-            id=queue.robot,
-            reason=queue.reason or tr("no reason"),
-        )
-
+from .plan_texts import NOT_DONE, PlanStopRow, colour_of, time_text
 
 # --- The plan as a table of robots with their stops: dragged, moved by keys, taken out ---
 
@@ -431,6 +183,35 @@ class PlanTree(QTreeWidget):
                 if chosen and row.stop.id == chosen:
                     self.setCurrentItem(child)
             top.setExpanded(True)
+
+
+def position_beside(plan: ConePlan, target: str, onto: str, *, after: bool) -> tuple[str, int, int] | None:
+    """Return robot, trip and place of ``target`` when it is dropped before or ``after`` cone ``onto``.
+
+    Trip and place are as :func:`~.editing.moved` takes them. None when ``onto`` is nobody's.
+    """
+    names = [one.robot.id for one in plan.robots if not one.lost]
+    for robot, day in zip(names, trips_of(plan), strict=True):
+        for trip, cones in enumerate(day):
+            left = [cone for cone in cones if cone != target]
+            if onto in left:
+                return robot, trip, left.index(onto) + after
+    return None
+
+
+def position_at_end(plan: ConePlan, target: str, robot: str) -> tuple[str, int, int] | None:
+    """Return robot, trip and place of ``target`` when it is given to ``robot`` as its last cone."""
+    names = [one.robot.id for one in plan.robots if not one.lost]
+    if robot not in names:
+        return None
+    day = trips_of(plan)[names.index(robot)]
+    trip = max((k for k, cones in enumerate(day) if any(cone != target for cone in cones)), default=0)
+    room = plan.robot(robot)
+    kept = len([cone for cone in day[trip] if cone != target])
+    full = room is not None and kept >= (room.robot.aboard if trip == 0 else room.robot.capacity)
+    if full and plan.stores:
+        return robot, len(day), 0
+    return robot, trip, kept
 
 
 def _fill(item: QTreeWidgetItem, row: PlanStopRow) -> None:

@@ -1,7 +1,5 @@
 """The Processing provider ``fleet``."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from qgis.core import QgsProcessingProvider

@@ -16,7 +16,7 @@ from ...robot_bridge.core.messages.records import GetTrajectory
 from ...robot_bridge.core.messages.robots import Abort
 from ...robot_bridge.core.messages.safety import RobotState
 from ..control.request_tracker import RequestTracker
-from ..gateway_client.command_cache import UNDER_WAY, CommandCache, command_in_words, requested_at, state_word
+from ..gateway_client.command_cache import CommandCache, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import RobotArrays
 from ..gateway_client.robot_table import STATES as HISTORY_STATES
@@ -153,7 +153,7 @@ def sort_commands(reports: Sequence[CommandReport]) -> Steps[PastCommands]:
         begin.append(report.steps[0].at)
         end.append(_ended_at(report))
         for place, step in enumerate(report.steps):
-            if step.state not in UNDER_WAY or step.state is CommandState.QUEUED:
+            if not step.state.is_open or step.state is CommandState.QUEUED:
                 marks.append((step.at, number, place, _CODES[step.state]))
     return PastCommands(reports, begin, end, _columns(reports, marks))
 
@@ -170,7 +170,7 @@ def _ended_at(report: CommandReport) -> float:
     """Return until when a robot had something to do by a command: an abort leaves it nothing."""
     if report.op == Abort.__name__:
         return -np.inf
-    return next((step.at for step in report.steps if step.state not in UNDER_WAY), np.inf)
+    return next((step.at for step in report.steps if not step.state.is_open), np.inf)
 
 
 class CommandSorter(QObject):

@@ -2472,26 +2472,6 @@
             <source>points</source>
             <translation>punts</translation>
         </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, entitat {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} és {value:g}; doneu un nombre enter.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} no és un sol punt amb lloc al recinte: corregiu-lo o esborreu-lo.</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/obstacle_layers.py" />
             <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
@@ -3417,68 +3397,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Tanca via</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Closed</source>
             <translation>Tancada</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open it again for every robot?</source>
             <translation>Voleu tornar a obrir-la a tots els robots?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open road</source>
             <translation>Obre la via</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Reason</source>
             <translation>Motiu</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>La via es tanca a tots els robots des d'aquesta cruïlla fins a la següent. Els que hi havien de passar reben un altre recorregut; el que no en té cap altre s'atura, si la configuració del recinte no diu una altra cosa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 1 hour</source>
             <translation>durant 1 hora</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 15 minutes</source>
             <translation>durant 15 minuts</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 4 hours</source>
             <translation>durant 4 hores</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>such as: tree on the road</source>
             <translation>com ara: arbre a la via</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>until it is opened</source>
             <translation>fins que s'obri</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{by} closed this road at {time}{because}</source>
             <translation>{by} va tancar aquesta via a les {time}{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tool.py" />
@@ -3888,56 +3868,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins after standing with a task for</source>
-            <translation>comença després d'estar aturat amb una tasca durant</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins below</source>
-            <translation>comença per sota de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far beside the road</source>
-            <translation>comença tant al costat de la via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far outside</source>
-            <translation>comença tant fora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so long before</source>
-            <translation>comença aquest temps abans</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when less exact than</source>
-            <translation>comença quan és menys exacta que</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when two are nearer than</source>
-            <translation>comença quan dos són més a prop de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much above that</source>
-            <translation>acaba tant per sobre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much below that</source>
-            <translation>acaba tant per sota</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much further apart</source>
-            <translation>acaba tant més lluny</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>ha començat {times} vegades</translation>
         </message>
@@ -3973,16 +3903,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>; last{where}</source>
-            <translation>; l'últim cop{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>at an obstacle</source>
-            <translation>en un obstacle</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>began</source>
             <translation>començada</translation>
         </message>
@@ -3990,11 +3910,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>ended</source>
             <translation>acabada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>in a keepout</source>
-            <translation>en una zona prohibida</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4013,38 +3928,13 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>low battery</source>
-            <translation>bateria baixa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>near a robot</source>
-            <translation>a prop d’un robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>new</source>
             <translation>nova</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>off the road</source>
-            <translation>fora de la via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>outside the site</source>
-            <translation>fora del recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>seen</source>
             <translation>vista</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>stopped unasked</source>
-            <translation>aturat sense demanar-ho</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4063,48 +3953,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>too close</source>
-            <translation>massa a prop</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>unsure of its place</source>
-            <translation>insegur del seu lloc</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will come near a robot</source>
-            <translation>s’acostarà a un robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will pass too near</source>
-            <translation>passarà massa a prop</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} i {other}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
-            <translation>{robot} i {other} són a {apart:.1f} m l'un de l'altre{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
-            <translation>{robot} no sap on és: ± {accuracy:.1f} m{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has a task and stands{where}</source>
-            <translation>{robot} té una tasca i està aturat{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has {part:.0%} of its battery left</source>
-            <translation>a {robot} li queda el {part:.0%} de la bateria</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4115,21 +3965,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} is in the keepout {name}</source>
             <translation>{robot} és a la zona prohibida {name}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is lost: nothing is heard of it{last}</source>
-            <translation>{robot} és perdut: no se'n sap res{last}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is off the road{where}</source>
-            <translation>{robot} és fora de la via{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is outside the site{where}</source>
-            <translation>{robot} és fora del recinte{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4155,6 +3990,151 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (ara no se'l sent)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>; last{where}</source>
+            <translation>; l'últim cop{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>at an obstacle</source>
+            <translation>en un obstacle</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins after standing with a task for</source>
+            <translation>comença després d'estar aturat amb una tasca durant</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins below</source>
+            <translation>comença per sota de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far beside the road</source>
+            <translation>comença tant al costat de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far outside</source>
+            <translation>comença tant fora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so long before</source>
+            <translation>comença aquest temps abans</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when less exact than</source>
+            <translation>comença quan és menys exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when two are nearer than</source>
+            <translation>comença quan dos són més a prop de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much above that</source>
+            <translation>acaba tant per sobre</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much below that</source>
+            <translation>acaba tant per sota</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much further apart</source>
+            <translation>acaba tant més lluny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>in a keepout</source>
+            <translation>en una zona prohibida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>low battery</source>
+            <translation>bateria baixa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>near a robot</source>
+            <translation>a prop d’un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>off the road</source>
+            <translation>fora de la via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>outside the site</source>
+            <translation>fora del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>stopped unasked</source>
+            <translation>aturat sense demanar-ho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>too close</source>
+            <translation>massa a prop</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>unsure of its place</source>
+            <translation>insegur del seu lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will come near a robot</source>
+            <translation>s’acostarà a un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will pass too near</source>
+            <translation>passarà massa a prop</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} i {other} són a {apart:.1f} m l'un de l'altre{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} no sap on és: ± {accuracy:.1f} m{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} té una tasca i està aturat{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>a {robot} li queda el {part:.0%} de la bateria</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} és perdut: no se'n sap res{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} és fora de la via{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} és fora del recinte{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6053,7 +6033,7 @@
             <translation>cap entitat seleccionada</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n robots</source>
             <translation>
                 <numerusform>%n robot</numerusform>
@@ -6061,12 +6041,122 @@
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n tasks that wait in the queue of {id} are replaced</source>
             <translation>
                 <numerusform>se substitueix %n tasca que espera a la cua de {id}</numerusform>
                 <numerusform>se substitueixen %n tasques que esperen a la cua de {id}</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>FAILED</source>
+            <translation>HA FALLAT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Mètode: {method}. Els camins segueixen: {travel}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Mind:</source>
+            <translation>Atenció:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>La cua de {robot} segueix en pausa ({reason}): els seus cons esperen que es reprengui.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The robots set off at once.</source>
+            <translation>Els robots arrenquen de seguida.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>el con {cone} ha fallat{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>in the queue</source>
+            <translation>a la cua</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>it is not known where {id} is</source>
+            <translation>no se sap on és {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>no reason</source>
+            <translation>cap motiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>straight lines</source>
+            <translation>línies rectes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>taken out</source>
+            <translation>tret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>la cua de {id} és en pausa ({reason}): es reprèn</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the roads</source>
+            <translation>les vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camí de {robot} a {stop} passa per una via tancada{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>under way</source>
+            <translation>en curs</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} acaba abans el que fa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} és a {away:.1f} m d'on comença el pla: millor tornar a planificar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} és {state}: rep la cua quan se'n torni a saber</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} és perdut o fora de línia</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Fora: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6095,16 +6185,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>FAILED</source>
-            <translation>HA FALLAT</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Found by: {method}. Ways along: {travel}.</source>
-            <translation>Mètode: {method}. Els camins segueixen: {travel}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>Give to {name}</source>
             <translation>Dona a {name}</translation>
         </message>
@@ -6112,11 +6192,6 @@
             <location filename="../../plugin/planning/plan_views.py" />
             <source>LOST, {text}</source>
             <translation>PERDUT, {text}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Mind:</source>
-            <translation>Atenció:</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6130,16 +6205,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
-            <translation>La cua de {robot} segueix en pausa ({reason}): els seus cons esperen que es reprengui.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>The robots set off at once.</source>
-            <translation>Els robots arrenquen de seguida.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>collect </source>
             <translation>recollir </translation>
         </message>
@@ -6150,58 +6215,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>in the queue</source>
-            <translation>a la cua</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>it is not known where {id} is</source>
-            <translation>no se sap on és {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>no reason</source>
-            <translation>cap motiu</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>store </source>
             <translation>magatzem </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>straight lines</source>
-            <translation>línies rectes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>taken out</source>
-            <translation>tret</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the queue of {id} is paused ({reason}): it is resumed</source>
-            <translation>la cua de {id} és en pausa ({reason}): es reprèn</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the roads</source>
-            <translation>les vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>under way</source>
-            <translation>en curs</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{by}, {time}: {robots}</source>
-            <translation>{by}, {time}: {robots}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones}, {robots}, {metres:.0f} m, fet en {span} ({method}, per {travel})</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6210,41 +6225,6 @@
                 <numerusform>{done} de %n con</numerusform>
                 <numerusform>{done} de %n cons</numerusform>
             </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} finishes first what it is doing</source>
-            <translation>{id} acaba abans el que fa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
-            <translation>{id} és a {away:.1f} m d'on comença el pla: millor tornar a planificar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {state}: it gets its queue when it is heard of again</source>
-            <translation>{id} és {state}: rep la cua quan se'n torni a saber</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{text}. Left out: {names}</source>
-            <translation>{text}. Fora: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>cone {cone} failed{why}</source>
-            <translation>el con {cone} ha fallat{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
-            <translation>el camí de {robot} a {stop} passa per una via tancada{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>{robot} is lost or offline</source>
-            <translation>{robot} és perdut o fora de línia</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
@@ -7739,53 +7719,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is lost without a message for [s]</source>
-            <translation>Un robot és perdut sense missatge durant [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is stale without a message for [s]</source>
-            <translation>Desactualitzat sense missatge durant [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A target is reached within [m]</source>
-            <translation>Un objectiu s'assoleix a menys de [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Database of the published site (PostGIS)</source>
-            <translation>Base de dades del recinte publicat (PostGIS)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Folder of the published site</source>
-            <translation>Carpeta del recinte publicat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Height where none is known [m]</source>
-            <translation>Alçada on no se'n coneix cap [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>Id del recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
-            <translation>No s'ha dit on publicar: doneu FOLDER, una carpeta, o DATABASE, una connexió PostgreSQL del QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Keepout layers (default: the project's with that role)</source>
-            <translation>Capes de zones prohibides (per defecte: les del projecte amb aquest paper)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
-            <translation>Capes d'obstacles, escales, rampes i mobiliari (per defecte: les del projecte amb aquest paper)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7799,38 +7734,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Replace the publication of another site</source>
-            <translation>Substitueix la publicació d'un altre recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road centreline layers (default: the project's with that role)</source>
-            <translation>Capes d'eixos de via (per defecte: les del projecte amb aquest paper)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road surface layers (default: the project's with that role)</source>
-            <translation>Capes de superfícies de via (per defecte: les del projecte amb aquest paper)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
-            <translation>SITE_ID és buit i el projecte no té la variable {site_variable}: doneu al recinte un id de lletres, dígits, '_', '.' i '-', com ara north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Schema of the site's views in the database</source>
             <translation>Esquema de les vistes del recinte a la base de dades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site id (default: the project's)</source>
-            <translation>Id del recinte (per defecte: el del projecte)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site name (default: the project's title)</source>
-            <translation>Nom del recinte (per defecte: el títol del projecte)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7844,23 +7749,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS is not known, and</source>
-            <translation>El SRC del recinte no es coneix, i</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS, {crs_name},</source>
-            <translation>El SRC del recinte, {crs_name},</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
             <translation>Les taules d'una versió anterior a l'esquema {schema} són en ús: s'hi queden fins a la publicació següent.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
-            <translation>No hi ha res a publicar: no s'ha donat cap capa i cap capa del projecte té un paper. Doneu papers (Fleet Supervisor &gt; Papers de les capes), un PROFILE, o capes.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7874,16 +7764,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Where robots may be sent (default: all that is published)</source>
-            <translation>On es poden enviar robots (per defecte: tot el que es publica)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Width of a road where none is known [m]</source>
-            <translation>Amplada d'una via on no se'n coneix cap [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>Escriu les capes d'un recinte, segons els seus papers, a la carpeta que serveix una passarel·la.</translation>
         </message>
@@ -7891,26 +7771,6 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>the database, schema {schema}</source>
             <translation>la base de dades, esquema {schema}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
-            <translation>{named} no té cap codi pel qual el conegui una passarel·la: trieu SITE_CRS, com ara EPSG:32633. Les capes en metres locals es poden publicar amb ORIGIN i LOCAL=true.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{name} is {value}: give a number of metres above 0.</source>
-            <translation>{name} és {value}: doneu un nombre de metres superior a 0.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{place} = {text} is no number: correct it there.</source>
-            <translation>{place} = {text} no és un nombre: corregiu-lo allà.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{title} (default: as published, at first {default:g})</source>
-            <translation>{title} (per defecte: com es va publicar, al principi {default:g})</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
@@ -8051,8 +7911,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>Les posicions no tenen el camp {name} per a: {what}; tenen {names}. Doneu la capa 'positions' de 'robot-bridge trajectories export', o digueu quin camp és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
             <source>Trajectories</source>
             <translation>Trajectòries</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>time</source>
+            <translation>temps</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
@@ -8166,8 +8041,28 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} és {value!r}, que no és un nombre; corregiu-lo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} és {value:g}; doneu un nombre enter.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, entitat {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no és un sol punt amb lloc al recinte: corregiu-lo o esborreu-lo.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8620,19 +8515,124 @@
             <translation>tolerància {cm:.4g} cm</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
-            <translation>Les posicions no tenen el camp {name} per a: {what}; tenen {names}. Doneu la capa 'positions' de 'robot-bridge trajectories export', o digueu quin camp és.</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>Un robot és perdut sense missatge durant [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>robot</source>
-            <translation>robot</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>Desactualitzat sense missatge durant [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>time</source>
-            <translation>temps</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A target is reached within [m]</source>
+            <translation>Un objectiu s'assoleix a menys de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>Base de dades del recinte publicat (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Folder of the published site</source>
+            <translation>Carpeta del recinte publicat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Alçada on no se'n coneix cap [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>No s'ha dit on publicar: doneu FOLDER, una carpeta, o DATABASE, una connexió PostgreSQL del QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Capes de zones prohibides (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Capes d'obstacles, escales, rampes i mobiliari (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Substitueix la publicació d'un altre recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Capes d'eixos de via (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Capes de superfícies de via (per defecte: les del projecte amb aquest paper)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID és buit i el projecte no té la variable {site_variable}: doneu al recinte un id de lletres, dígits, '_', '.' i '-', com ara north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>Id del recinte (per defecte: el del projecte)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>Nom del recinte (per defecte: el títol del projecte)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>El SRC del recinte no es coneix, i</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>El SRC del recinte, {crs_name},</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>No hi ha res a publicar: no s'ha donat cap capa i cap capa del projecte té un paper. Doneu papers (Fleet Supervisor &gt; Papers de les capes), un PROFILE, o capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>On es poden enviar robots (per defecte: tot el que es publica)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Amplada d'una via on no se'n coneix cap [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} no té cap codi pel qual el conegui una passarel·la: trieu SITE_CRS, com ara EPSG:32633. Les capes en metres locals es poden publicar amb ORIGIN i LOCAL=true.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} és {value}: doneu un nombre de metres superior a 0.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} no és un nombre: corregiu-lo allà.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (per defecte: com es va publicar, al principi {default:g})</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/report_layout.py" />

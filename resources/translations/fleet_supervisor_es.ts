@@ -2472,26 +2472,6 @@
             <source>points</source>
             <translation>puntos</translation>
         </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, objeto {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} es {value!r}, que no es un número; corríjalo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} es {value:g}; dé un número entero.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} no es un solo punto con lugar en el recinto: corríjalo o bórrelo.</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/obstacle_layers.py" />
             <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
@@ -3417,68 +3397,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Cerrar vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Closed</source>
             <translation>Cerrada</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open it again for every robot?</source>
             <translation>¿Volver a abrirla a todos los robots?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open road</source>
             <translation>Abrir la vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Reason</source>
             <translation>Motivo</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>La vía se cierra a todos los robots desde este cruce hasta el siguiente. Los que debían pasar por ella reciben otro recorrido; el que no tiene otro se detiene, si la configuración del recinto no dice otra cosa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 1 hour</source>
             <translation>durante 1 hora</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 15 minutes</source>
             <translation>durante 15 minutos</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 4 hours</source>
             <translation>durante 4 horas</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>such as: tree on the road</source>
             <translation>como: árbol en la vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>until it is opened</source>
             <translation>hasta que se abra</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{by} closed this road at {time}{because}</source>
             <translation>{by} cerró esta vía a las {time}{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tool.py" />
@@ -3888,56 +3868,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins after standing with a task for</source>
-            <translation>empieza después de estar parado con una tarea durante</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins below</source>
-            <translation>empieza por debajo de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far beside the road</source>
-            <translation>empieza tanto al lado de la vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far outside</source>
-            <translation>empieza tanto fuera</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so long before</source>
-            <translation>empieza este tiempo antes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when less exact than</source>
-            <translation>empieza cuando es menos exacta que</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when two are nearer than</source>
-            <translation>empieza cuando dos están más cerca de</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much above that</source>
-            <translation>termina tanto por encima</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much below that</source>
-            <translation>termina tanto por debajo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much further apart</source>
-            <translation>termina tanto más lejos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>ha empezado {times} veces</translation>
         </message>
@@ -3973,16 +3903,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>; last{where}</source>
-            <translation>; la última vez{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>at an obstacle</source>
-            <translation>en un obstáculo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>began</source>
             <translation>empezada</translation>
         </message>
@@ -3990,11 +3910,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>ended</source>
             <translation>terminada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>in a keepout</source>
-            <translation>en una zona prohibida</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4013,38 +3928,13 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>low battery</source>
-            <translation>batería baja</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>near a robot</source>
-            <translation>cerca de un robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>new</source>
             <translation>nueva</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>off the road</source>
-            <translation>fuera de la vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>outside the site</source>
-            <translation>fuera del recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>seen</source>
             <translation>vista</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>stopped unasked</source>
-            <translation>parado sin pedirlo</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4063,48 +3953,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>too close</source>
-            <translation>demasiado cerca</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>unsure of its place</source>
-            <translation>inseguro de su lugar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will come near a robot</source>
-            <translation>se acercará a un robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will pass too near</source>
-            <translation>pasará demasiado cerca</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} y {other}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
-            <translation>{robot} y {other} están a {apart:.1f} m uno de otro{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
-            <translation>{robot} no sabe dónde está: ± {accuracy:.1f} m{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has a task and stands{where}</source>
-            <translation>{robot} tiene una tarea y está parado{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has {part:.0%} of its battery left</source>
-            <translation>a {robot} le queda el {part:.0%} de la batería</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4115,21 +3965,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} is in the keepout {name}</source>
             <translation>{robot} está en la zona prohibida {name}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is lost: nothing is heard of it{last}</source>
-            <translation>{robot} está perdido: no se sabe nada de él{last}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is off the road{where}</source>
-            <translation>{robot} está fuera de la vía{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is outside the site{where}</source>
-            <translation>{robot} está fuera del recinto{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4155,6 +3990,151 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (ahora no se le oye)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>; last{where}</source>
+            <translation>; la última vez{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>at an obstacle</source>
+            <translation>en un obstáculo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins after standing with a task for</source>
+            <translation>empieza después de estar parado con una tarea durante</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins below</source>
+            <translation>empieza por debajo de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far beside the road</source>
+            <translation>empieza tanto al lado de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far outside</source>
+            <translation>empieza tanto fuera</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so long before</source>
+            <translation>empieza este tiempo antes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when less exact than</source>
+            <translation>empieza cuando es menos exacta que</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when two are nearer than</source>
+            <translation>empieza cuando dos están más cerca de</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much above that</source>
+            <translation>termina tanto por encima</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much below that</source>
+            <translation>termina tanto por debajo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much further apart</source>
+            <translation>termina tanto más lejos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>in a keepout</source>
+            <translation>en una zona prohibida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>low battery</source>
+            <translation>batería baja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>near a robot</source>
+            <translation>cerca de un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>off the road</source>
+            <translation>fuera de la vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>outside the site</source>
+            <translation>fuera del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>stopped unasked</source>
+            <translation>parado sin pedirlo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>too close</source>
+            <translation>demasiado cerca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>unsure of its place</source>
+            <translation>inseguro de su lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will come near a robot</source>
+            <translation>se acercará a un robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will pass too near</source>
+            <translation>pasará demasiado cerca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} y {other} están a {apart:.1f} m uno de otro{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} no sabe dónde está: ± {accuracy:.1f} m{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} tiene una tarea y está parado{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>a {robot} le queda el {part:.0%} de la batería</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} está perdido: no se sabe nada de él{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} está fuera de la vía{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} está fuera del recinto{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6053,7 +6033,7 @@
             <translation>ningún objeto seleccionado</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n robots</source>
             <translation>
                 <numerusform>%n robot</numerusform>
@@ -6061,12 +6041,122 @@
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n tasks that wait in the queue of {id} are replaced</source>
             <translation>
                 <numerusform>se sustituye %n tarea que espera en la cola de {id}</numerusform>
                 <numerusform>se sustituyen %n tareas que esperan en la cola de {id}</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>FAILED</source>
+            <translation>FALLÓ</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Método: {method}. Los caminos siguen: {travel}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Mind:</source>
+            <translation>Atención:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>La cola de {robot} sigue en pausa ({reason}): sus conos esperan a que se reanude.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The robots set off at once.</source>
+            <translation>Los robots arrancan al instante.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>el cono {cone} falló{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>in the queue</source>
+            <translation>en la cola</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>it is not known where {id} is</source>
+            <translation>no se sabe dónde está {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>no reason</source>
+            <translation>ningún motivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>straight lines</source>
+            <translation>líneas rectas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>taken out</source>
+            <translation>quitado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>la cola de {id} está en pausa ({reason}): se reanuda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the roads</source>
+            <translation>las vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>el camino de {robot} a {stop} pasa por una vía cerrada{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>under way</source>
+            <translation>en curso</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} acaba antes lo que hace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} está a {away:.1f} m de donde empieza el plan: mejor planificar de nuevo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} está {state}: recibe su cola cuando se vuelva a saber de él</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} está perdido o sin conexión</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Fuera: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6095,16 +6185,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>FAILED</source>
-            <translation>FALLÓ</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Found by: {method}. Ways along: {travel}.</source>
-            <translation>Método: {method}. Los caminos siguen: {travel}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>Give to {name}</source>
             <translation>Dar a {name}</translation>
         </message>
@@ -6112,11 +6192,6 @@
             <location filename="../../plugin/planning/plan_views.py" />
             <source>LOST, {text}</source>
             <translation>PERDIDO, {text}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Mind:</source>
-            <translation>Atención:</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6130,16 +6205,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
-            <translation>La cola de {robot} sigue en pausa ({reason}): sus conos esperan a que se reanude.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>The robots set off at once.</source>
-            <translation>Los robots arrancan al instante.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>collect </source>
             <translation>recoger </translation>
         </message>
@@ -6150,58 +6215,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>in the queue</source>
-            <translation>en la cola</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>it is not known where {id} is</source>
-            <translation>no se sabe dónde está {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>no reason</source>
-            <translation>ningún motivo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>store </source>
             <translation>almacén </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>straight lines</source>
-            <translation>líneas rectas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>taken out</source>
-            <translation>quitado</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the queue of {id} is paused ({reason}): it is resumed</source>
-            <translation>la cola de {id} está en pausa ({reason}): se reanuda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the roads</source>
-            <translation>las vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>under way</source>
-            <translation>en curso</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{by}, {time}: {robots}</source>
-            <translation>{by}, {time}: {robots}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones}, {robots}, {metres:.0f} m, hecho en {span} ({method}, por {travel})</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6210,41 +6225,6 @@
                 <numerusform>{done} de %n cono</numerusform>
                 <numerusform>{done} de %n conos</numerusform>
             </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} finishes first what it is doing</source>
-            <translation>{id} acaba antes lo que hace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
-            <translation>{id} está a {away:.1f} m de donde empieza el plan: mejor planificar de nuevo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {state}: it gets its queue when it is heard of again</source>
-            <translation>{id} está {state}: recibe su cola cuando se vuelva a saber de él</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{text}. Left out: {names}</source>
-            <translation>{text}. Fuera: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>cone {cone} failed{why}</source>
-            <translation>el cono {cone} falló{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
-            <translation>el camino de {robot} a {stop} pasa por una vía cerrada{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>{robot} is lost or offline</source>
-            <translation>{robot} está perdido o sin conexión</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
@@ -7739,53 +7719,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is lost without a message for [s]</source>
-            <translation>Un robot está perdido sin mensaje durante [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is stale without a message for [s]</source>
-            <translation>Desactualizado sin mensaje durante [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A target is reached within [m]</source>
-            <translation>Un objetivo se alcanza a menos de [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Database of the published site (PostGIS)</source>
-            <translation>Base de datos del recinto publicado (PostGIS)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Folder of the published site</source>
-            <translation>Carpeta del recinto publicado</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Height where none is known [m]</source>
-            <translation>Altura donde no se conoce [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>Id del recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
-            <translation>No se ha dicho dónde publicar: dé FOLDER, una carpeta, o DATABASE, una conexión PostgreSQL de QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Keepout layers (default: the project's with that role)</source>
-            <translation>Capas de zonas prohibidas (por defecto: las del proyecto con ese papel)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
-            <translation>Capas de obstáculos, escaleras, rampas y mobiliario (por defecto: las del proyecto con ese papel)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7799,38 +7734,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Replace the publication of another site</source>
-            <translation>Sustituir la publicación de otro recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road centreline layers (default: the project's with that role)</source>
-            <translation>Capas de ejes de vía (por defecto: las del proyecto con ese papel)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road surface layers (default: the project's with that role)</source>
-            <translation>Capas de superficies de vía (por defecto: las del proyecto con ese papel)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
-            <translation>SITE_ID está vacío y el proyecto no tiene la variable {site_variable}: dé al recinto un id de letras, dígitos, '_', '.' y '-', como north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Schema of the site's views in the database</source>
             <translation>Esquema de las vistas del recinto en la base de datos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site id (default: the project's)</source>
-            <translation>Id del recinto (por defecto: el del proyecto)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site name (default: the project's title)</source>
-            <translation>Nombre del recinto (por defecto: el título del proyecto)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7844,23 +7749,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS is not known, and</source>
-            <translation>El SRC del recinto no se conoce, y</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS, {crs_name},</source>
-            <translation>El SRC del recinto, {crs_name},</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
             <translation>Las tablas de una versión anterior en el esquema {schema} están en uso: se quedan hasta la publicación siguiente.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
-            <translation>No hay nada que publicar: no se da ninguna capa y ninguna capa del proyecto tiene papel. Dé papeles (Fleet Supervisor &gt; Papeles de las capas), un PROFILE, o capas.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7874,16 +7764,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Where robots may be sent (default: all that is published)</source>
-            <translation>Adónde se pueden enviar robots (por defecto: todo lo publicado)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Width of a road where none is known [m]</source>
-            <translation>Anchura de una vía donde no se conoce [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>Escribe las capas de un recinto, según sus papeles, en la carpeta que sirve una pasarela.</translation>
         </message>
@@ -7891,26 +7771,6 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>the database, schema {schema}</source>
             <translation>la base de datos, esquema {schema}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
-            <translation>{named} no tiene código por el que lo conozca una pasarela: elija SITE_CRS, como EPSG:32633. Las capas en metros locales se pueden publicar con ORIGIN y LOCAL=true.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{name} is {value}: give a number of metres above 0.</source>
-            <translation>{name} es {value}: dé un número de metros superior a 0.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{place} = {text} is no number: correct it there.</source>
-            <translation>{place} = {text} no es un número: corríjalo allí.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{title} (default: as published, at first {default:g})</source>
-            <translation>{title} (por defecto: como se publicó, al principio {default:g})</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
@@ -8051,8 +7911,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>Las posiciones no tienen el campo {name} para: {what}; tienen {names}. Dé la capa 'positions' de 'robot-bridge trajectories export', o diga qué campo es.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
             <source>Trajectories</source>
             <translation>Trayectorias</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>time</source>
+            <translation>tiempo</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
@@ -8166,8 +8041,28 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, objeto {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} es {value!r}, que no es un número; corríjalo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} es {value:g}; dé un número entero.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, objeto espacial {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} no es un solo punto con lugar en el recinto: corríjalo o bórrelo.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8620,19 +8515,124 @@
             <translation>tolerancia {cm:.4g} cm</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
-            <translation>Las posiciones no tienen el campo {name} para: {what}; tienen {names}. Dé la capa 'positions' de 'robot-bridge trajectories export', o diga qué campo es.</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>Un robot está perdido sin mensaje durante [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>robot</source>
-            <translation>robot</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>Desactualizado sin mensaje durante [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>time</source>
-            <translation>tiempo</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A target is reached within [m]</source>
+            <translation>Un objetivo se alcanza a menos de [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>Base de datos del recinto publicado (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Folder of the published site</source>
+            <translation>Carpeta del recinto publicado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Altura donde no se conoce [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>No se ha dicho dónde publicar: dé FOLDER, una carpeta, o DATABASE, una conexión PostgreSQL de QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Capas de zonas prohibidas (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Capas de obstáculos, escaleras, rampas y mobiliario (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Sustituir la publicación de otro recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Capas de ejes de vía (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Capas de superficies de vía (por defecto: las del proyecto con ese papel)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID está vacío y el proyecto no tiene la variable {site_variable}: dé al recinto un id de letras, dígitos, '_', '.' y '-', como north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>Id del recinto (por defecto: el del proyecto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>Nombre del recinto (por defecto: el título del proyecto)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>El SRC del recinto no se conoce, y</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>El SRC del recinto, {crs_name},</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>No hay nada que publicar: no se da ninguna capa y ninguna capa del proyecto tiene papel. Dé papeles (Fleet Supervisor &gt; Papeles de las capas), un PROFILE, o capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>Adónde se pueden enviar robots (por defecto: todo lo publicado)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Anchura de una vía donde no se conoce [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} no tiene código por el que lo conozca una pasarela: elija SITE_CRS, como EPSG:32633. Las capas en metros locales se pueden publicar con ORIGIN y LOCAL=true.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} es {value}: dé un número de metros superior a 0.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} no es un número: corríjalo allí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (por defecto: como se publicó, al principio {default:g})</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/report_layout.py" />

@@ -2462,26 +2462,6 @@
             <source>points</source>
             <translation>pontok</translation>
         </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}, feature {id}</source>
-            <translation>{layer}, {id}. elem</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
-            <translation>{layer}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{layer}: {field} is {value:g}; give a whole number.</source>
-            <translation>{layer}: {field} értéke {value:g}; adjon meg egész számot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
-            <source>{where} is not one point with a place on the site: correct or delete it.</source>
-            <translation>{where} nem egyetlen pont, amelynek helye van a telephelyen: javítsa ki vagy törölje.</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/obstacle_layers.py" />
             <source>Layer {name}: %n heights are not known and estimated as {height:g} m ({features})</source>
@@ -3396,68 +3376,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
             <source>Close road</source>
             <translation>Út lezárása</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Closed</source>
             <translation>Lezárva</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open it again for every robot?</source>
             <translation>Megnyitja újra minden robotnak?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Open road</source>
             <translation>Út megnyitása</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Reason</source>
             <translation>Ok</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>The road is closed for every robot from this junction to the next. Robots whose way leads along it get another way; one that has no other way is stopped, unless the site's settings say otherwise.</source>
             <translation>Az út minden robot elől le lesz zárva ettől a kereszteződéstől a következőig. Azok a robotok, amelyek útja erre vezet, más utat kapnak; amelyiknek nincs más, megáll, hacsak a telephely beállításai mást nem mondanak.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 1 hour</source>
             <translation>1 órára</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 15 minutes</source>
             <translation>15 percre</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>for 4 hours</source>
             <translation>4 órára</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>such as: tree on the road</source>
             <translation>például: fa az úton</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>until it is opened</source>
             <translation>amíg meg nem nyitják</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/closure_tool.py" />
+            <location filename="../../plugin/map/tools/click_tools.py" />
             <source>{by} closed this road at {time}{because}</source>
             <translation>{by} zárta le ezt az utat {time}-kor{because}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/click_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tool.py" />
@@ -3865,56 +3845,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins after standing with a task for</source>
-            <translation>ennyi feladattal állás után kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins below</source>
-            <translation>ez alatt kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far beside the road</source>
-            <translation>ennyivel az út mellett kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so far outside</source>
-            <translation>ennyivel kint kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins so long before</source>
-            <translation>ennyivel előbb kezdődik</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when less exact than</source>
-            <translation>kezdődik, ha ennél pontatlanabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>begins when two are nearer than</source>
-            <translation>kezdődik, ha kettő közelebb van, mint</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much above that</source>
-            <translation>ennyivel felette ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much below that</source>
-            <translation>ennyivel alatta ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
-            <source>ends so much further apart</source>
-            <translation>ennyivel távolabb ér véget</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/alarm_panel.py" />
             <source>it began {times} times</source>
             <translation>{times} alkalommal kezdődött</translation>
         </message>
@@ -3950,16 +3880,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>; last{where}</source>
-            <translation>; utoljára{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>at an obstacle</source>
-            <translation>akadálynál</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>began</source>
             <translation>kezdődött</translation>
         </message>
@@ -3967,11 +3887,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>ended</source>
             <translation>véget ért</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>in a keepout</source>
-            <translation>tiltott területen</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -3990,38 +3905,13 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>low battery</source>
-            <translation>merülő akkumulátor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>near a robot</source>
-            <translation>robot közelében</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>new</source>
             <translation>új</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>off the road</source>
-            <translation>az úton kívül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>outside the site</source>
-            <translation>a telephelyen kívül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>seen</source>
             <translation>látta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>stopped unasked</source>
-            <translation>kérés nélkül megállt</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4040,48 +3930,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
-            <source>too close</source>
-            <translation>túl közel</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>unsure of its place</source>
-            <translation>bizonytalan a helyében</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will come near a robot</source>
-            <translation>robot közelébe fog érni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>will pass too near</source>
-            <translation>túl közel fog elhaladni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} and {other}</source>
             <translation>{robot} és {other}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
-            <translation>{robot} és {other} {apart:.1f} m-re vannak egymástól{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
-            <translation>{robot} nem tudja, hol van: ± {accuracy:.1f} m{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has a task and stands{where}</source>
-            <translation>{robot} feladattal áll{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} has {part:.0%} of its battery left</source>
-            <translation>{robot} akkumulátora: {part:.0%} maradt</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4092,21 +3942,6 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{robot} is in the keepout {name}</source>
             <translation>{robot} a(z) {name} tiltott területen van</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is lost: nothing is heard of it{last}</source>
-            <translation>{robot} elveszett: semmi hír róla{last}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is off the road{where}</source>
-            <translation>{robot} letért az útról{where}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/board.py" />
-            <source>{robot} is outside the site{where}</source>
-            <translation>{robot} a telephelyen kívül van{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/board.py" />
@@ -4132,6 +3967,151 @@
             <location filename="../../plugin/panel/alarms/board.py" />
             <source>{text} (it is not heard now)</source>
             <translation>{text} (most nem hallani felőle)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>; last{where}</source>
+            <translation>; utoljára{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>at an obstacle</source>
+            <translation>akadálynál</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins after standing with a task for</source>
+            <translation>ennyi feladattal állás után kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins below</source>
+            <translation>ez alatt kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far beside the road</source>
+            <translation>ennyivel az út mellett kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so far outside</source>
+            <translation>ennyivel kint kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins so long before</source>
+            <translation>ennyivel előbb kezdődik</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when less exact than</source>
+            <translation>kezdődik, ha ennél pontatlanabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>begins when two are nearer than</source>
+            <translation>kezdődik, ha kettő közelebb van, mint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much above that</source>
+            <translation>ennyivel felette ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much below that</source>
+            <translation>ennyivel alatta ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>ends so much further apart</source>
+            <translation>ennyivel távolabb ér véget</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>in a keepout</source>
+            <translation>tiltott területen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>low battery</source>
+            <translation>merülő akkumulátor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>near a robot</source>
+            <translation>robot közelében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>off the road</source>
+            <translation>az úton kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>outside the site</source>
+            <translation>a telephelyen kívül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>stopped unasked</source>
+            <translation>kérés nélkül megállt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>too close</source>
+            <translation>túl közel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>unsure of its place</source>
+            <translation>bizonytalan a helyében</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will come near a robot</source>
+            <translation>robot közelébe fog érni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>will pass too near</source>
+            <translation>túl közel fog elhaladni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} and {other} are {apart:.1f} m apart{where}</source>
+            <translation>{robot} és {other} {apart:.1f} m-re vannak egymástól{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} does not know its place: ± {accuracy:.1f} m{where}</source>
+            <translation>{robot} nem tudja, hol van: ± {accuracy:.1f} m{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has a task and stands{where}</source>
+            <translation>{robot} feladattal áll{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} has {part:.0%} of its battery left</source>
+            <translation>{robot} akkumulátora: {part:.0%} maradt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is lost: nothing is heard of it{last}</source>
+            <translation>{robot} elveszett: semmi hír róla{last}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is off the road{where}</source>
+            <translation>{robot} letért az útról{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} is outside the site{where}</source>
+            <translation>{robot} a telephelyen kívül van{where}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -6016,18 +5996,128 @@
             <translation>nincs kijelölt eleme</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n robots</source>
             <translation>
                 <numerusform>%n robot</numerusform>
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/planning/plan_views.py" />
+            <location filename="../../plugin/planning/plan_texts.py" />
             <source>%n tasks that wait in the queue of {id} are replaced</source>
             <translation>
                 <numerusform>{id} várólistáján %n várakozó feladat lesz lecserélve</numerusform>
             </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>FAILED</source>
+            <translation>SIKERTELEN</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Found by: {method}. Ways along: {travel}.</source>
+            <translation>Módszer: {method}. Az utak ezek mentén vezetnek: {travel}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>Mind:</source>
+            <translation>Figyelem:</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
+            <translation>{robot} várólistája szünetel ({reason}): bójái várnak, amíg nem folytatódik.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>The robots set off at once.</source>
+            <translation>A robotok azonnal elindulnak.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>cone {cone} failed{why}</source>
+            <translation>{cone} bója sikertelen{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>in the queue</source>
+            <translation>a várólistán</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>it is not known where {id} is</source>
+            <translation>nem ismert, hol van {id}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>no reason</source>
+            <translation>nincs ok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>straight lines</source>
+            <translation>egyenes vonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>taken out</source>
+            <translation>kivéve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the queue of {id} is paused ({reason}): it is resumed</source>
+            <translation>{id} várólistája szünetel ({reason}): folytatódni fog</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the roads</source>
+            <translation>az utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
+            <translation>{robot} útja ide: {stop}, lezárt úton vezet{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>under way</source>
+            <translation>folyamatban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{by}, {time}: {robots}</source>
+            <translation>{by}, {time}: {robots}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
+            <translation>{cones}, {robots}, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} finishes first what it is doing</source>
+            <translation>{id} előbb befejezi, amit csinál</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
+            <translation>{id} {away:.1f} m-re van onnan, ahol a terv kezdődik: jobb újratervezni</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{id} is {state}: it gets its queue when it is heard of again</source>
+            <translation>{id} állapota {state}: a várólistáját akkor kapja meg, ha újra hallani róla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{robot} is lost or offline</source>
+            <translation>{robot} elveszett vagy offline</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_texts.py" />
+            <source>{text}. Left out: {names}</source>
+            <translation>{text}. Kimaradt: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6056,16 +6146,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>FAILED</source>
-            <translation>SIKERTELEN</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Found by: {method}. Ways along: {travel}.</source>
-            <translation>Módszer: {method}. Az utak ezek mentén vezetnek: {travel}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>Give to {name}</source>
             <translation>Átadás ennek: {name}</translation>
         </message>
@@ -6073,11 +6153,6 @@
             <location filename="../../plugin/planning/plan_views.py" />
             <source>LOST, {text}</source>
             <translation>ELVESZETT, {text}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>Mind:</source>
-            <translation>Figyelem:</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6091,16 +6166,6 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>The queue of {robot} stays paused ({reason}): its cones wait until it is resumed.</source>
-            <translation>{robot} várólistája szünetel ({reason}): bójái várnak, amíg nem folytatódik.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>The robots set off at once.</source>
-            <translation>A robotok azonnal elindulnak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>collect </source>
             <translation>begyűjtés: </translation>
         </message>
@@ -6111,58 +6176,8 @@
         </message>
         <message>
             <location filename="../../plugin/planning/plan_views.py" />
-            <source>in the queue</source>
-            <translation>a várólistán</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>it is not known where {id} is</source>
-            <translation>nem ismert, hol van {id}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>no reason</source>
-            <translation>nincs ok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
             <source>store </source>
             <translation>tároló: </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>straight lines</source>
-            <translation>egyenes vonalak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>taken out</source>
-            <translation>kivéve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the queue of {id} is paused ({reason}): it is resumed</source>
-            <translation>{id} várólistája szünetel ({reason}): folytatódni fog</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>the roads</source>
-            <translation>az utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>under way</source>
-            <translation>folyamatban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{by}, {time}: {robots}</source>
-            <translation>{by}, {time}: {robots}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{cones}, {robots}, {metres:.0f} m, done after {span} ({method}, along {travel})</source>
-            <translation>{cones}, {robots}, {metres:.0f} m, kész {span} után ({method}, {travel} mentén)</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/plan_views.py" />
@@ -6170,41 +6185,6 @@
             <translation>
                 <numerusform>%n bójából {done}</numerusform>
             </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} finishes first what it is doing</source>
-            <translation>{id} előbb befejezi, amit csinál</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {away:.1f} m from where the plan begins: better plan anew</source>
-            <translation>{id} {away:.1f} m-re van onnan, ahol a terv kezdődik: jobb újratervezni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{id} is {state}: it gets its queue when it is heard of again</source>
-            <translation>{id} állapota {state}: a várólistáját akkor kapja meg, ha újra hallani róla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/plan_views.py" />
-            <source>{text}. Left out: {names}</source>
-            <translation>{text}. Kimaradt: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>cone {cone} failed{why}</source>
-            <translation>{cone} bója sikertelen{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>the way of {robot} to {stop} leads along a closed road{why}</source>
-            <translation>{robot} útja ide: {stop}, lezárt úton vezet{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/planning/progress.py" />
-            <source>{robot} is lost or offline</source>
-            <translation>{robot} elveszett vagy offline</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/proposal.py" />
@@ -7686,53 +7666,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is lost without a message for [s]</source>
-            <translation>A robot elveszett, ha ennyi ideje nincs üzenete [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A robot is stale without a message for [s]</source>
-            <translation>A robot elavult, ha ennyi ideje nincs üzenete [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>A target is reached within [m]</source>
-            <translation>A cél elérve ezen belül [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Database of the published site (PostGIS)</source>
-            <translation>A telephely adatbázisa (PostGIS)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Folder of the published site</source>
-            <translation>A közzétett telephely mappája</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Height where none is known [m]</source>
-            <translation>Magasság, ahol nem ismert [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Id of the site</source>
             <translation>A telephely azonosítója</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
-            <translation>Nincs megmondva, hová tegyük közzé: adja meg a FOLDER mappát, vagy a DATABASE-t, a QGIS egy PostgreSQL-kapcsolatát.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Keepout layers (default: the project's with that role)</source>
-            <translation>Tiltott területek rétegei (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
-            <translation>Akadály-, lépcső-, rámpa- és berendezésrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7746,38 +7681,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Replace the publication of another site</source>
-            <translation>Másik telephely közzétételének felülírása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road centreline layers (default: the project's with that role)</source>
-            <translation>Úttengelyrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Road surface layers (default: the project's with that role)</source>
-            <translation>Útfelület-rétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
-            <translation>SITE_ID üres, és a projektnek nincs {site_variable} változója: adjon a telephelynek betűkből, számjegyekből és '_', '.', '-' jelekből álló azonosítót, például north_yard.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Schema of the site's views in the database</source>
             <translation>A telephely nézeteinek sémája az adatbázisban</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site id (default: the project's)</source>
-            <translation>A telephely azonosítója (alapértelmezés: a projekté)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Site name (default: the project's title)</source>
-            <translation>A telephely neve (alapértelmezés: a projekt címe)</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7791,23 +7696,8 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS is not known, and</source>
-            <translation>A telephely vetülete nem ismert, és</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>The site's CRS, {crs_name},</source>
-            <translation>A telephely vetületének ({crs_name})</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>The tables in the schema {schema} of an earlier version are in use: they stay until the next publication.</source>
             <translation>Egy korábbi verzió táblái a(z) {schema} sémában használatban vannak: a következő közzétételig maradnak.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
-            <translation>Nincs mit közzétenni: nincs megadva réteg, és a projekt egyik rétegének sincs szerepe. Adjon szerepeket (Fleet Supervisor &gt; Rétegszerepek), egy PROFILE-t, vagy rétegeket.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7821,16 +7711,6 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Where robots may be sent (default: all that is published)</source>
-            <translation>Hová küldhetők robotok (alapértelmezés: minden, ami közzé van téve)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>Width of a road where none is known [m]</source>
-            <translation>Az út szélessége, ahol nem ismert [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>Writes the layers of a site, by their roles, into the folder that a gateway serves.</source>
             <translation>A telephely rétegeit szerepeik szerint abba a mappába írja, amelyet egy átjáró szolgáltat.</translation>
         </message>
@@ -7838,26 +7718,6 @@
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
             <source>the database, schema {schema}</source>
             <translation>adatbázis, {schema} séma</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
-            <translation>{named} nincs kódja, amelyről egy átjáró felismerné: válasszon SITE_CRS-t, például EPSG:32633. Helyi méterben lévő rétegek az ORIGIN értékével és LOCAL=true-val tehetők közzé.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{name} is {value}: give a number of metres above 0.</source>
-            <translation>{name} értéke {value}: adjon meg 0-nál több métert.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{place} = {text} is no number: correct it there.</source>
-            <translation>{place} = {text} nem szám: javítsa ki ott.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/publish_site.py" />
-            <source>{title} (default: as published, at first {default:g})</source>
-            <translation>{title} (alapértelmezés: ahogy közzétették, először {default:g})</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
@@ -7994,8 +7854,23 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
+            <translation>A helyzeteknek nincs {name} mezőjük ehhez: {what}; ezek vannak: {names}. Adja meg a 'robot-bridge trajectories export' 'positions' rétegét, vagy mondja meg, melyik mező az.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
             <source>Trajectories</source>
             <translation>Trajektóriák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>robot</source>
+            <translation>robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/trajectories.py" />
+            <source>time</source>
+            <translation>idő</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/trajectories.py" />
@@ -8109,8 +7984,28 @@
         </message>
         <message>
             <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}, feature {id}</source>
+            <translation>{layer}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value!r}, which is no number; correct it.</source>
+            <translation>{layer}: {field} értéke {value!r}, ami nem szám; javítsa ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{layer}: {field} is {value:g}; give a whole number.</source>
+            <translation>{layer}: {field} értéke {value:g}; adjon meg egész számot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
             <source>{name}, feature {id}</source>
             <translation>{name}, {id}. elem</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/cone_layers.py" />
+            <source>{where} is not one point with a place on the site: correct or delete it.</source>
+            <translation>{where} nem egyetlen pont, amelynek helye van a telephelyen: javítsa ki vagy törölje.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />
@@ -8563,19 +8458,124 @@
             <translation>tűrés {cm:.4g} cm</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>The positions have no field {name} for the {what}: they have {names}. Give the layer 'positions' of 'robot-bridge trajectories export', or say which field it is.</source>
-            <translation>A helyzeteknek nincs {name} mezőjük ehhez: {what}; ezek vannak: {names}. Adja meg a 'robot-bridge trajectories export' 'positions' rétegét, vagy mondja meg, melyik mező az.</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is lost without a message for [s]</source>
+            <translation>A robot elveszett, ha ennyi ideje nincs üzenete [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>robot</source>
-            <translation>robot</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A robot is stale without a message for [s]</source>
+            <translation>A robot elavult, ha ennyi ideje nincs üzenete [s]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/common/positions.py" />
-            <source>time</source>
-            <translation>idő</translation>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>A target is reached within [m]</source>
+            <translation>A cél elérve ezen belül [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Database of the published site (PostGIS)</source>
+            <translation>A telephely adatbázisa (PostGIS)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Folder of the published site</source>
+            <translation>A közzétett telephely mappája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Height where none is known [m]</source>
+            <translation>Magasság, ahol nem ismert [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>It is not said where to publish: give FOLDER, a folder, or DATABASE, a PostgreSQL connection of QGIS's.</source>
+            <translation>Nincs megmondva, hová tegyük közzé: adja meg a FOLDER mappát, vagy a DATABASE-t, a QGIS egy PostgreSQL-kapcsolatát.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Keepout layers (default: the project's with that role)</source>
+            <translation>Tiltott területek rétegei (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Obstacle layers, stairs, ramps and furniture (default: the project's with such a role)</source>
+            <translation>Akadály-, lépcső-, rámpa- és berendezésrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Replace the publication of another site</source>
+            <translation>Másik telephely közzétételének felülírása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road centreline layers (default: the project's with that role)</source>
+            <translation>Úttengelyrétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Road surface layers (default: the project's with that role)</source>
+            <translation>Útfelület-rétegek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>SITE_ID is empty and the project has no variable {site_variable}: give the site an id of letters, digits, '_', '.' and '-', such as north_yard.</source>
+            <translation>SITE_ID üres, és a projektnek nincs {site_variable} változója: adjon a telephelynek betűkből, számjegyekből és '_', '.', '-' jelekből álló azonosítót, például north_yard.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site id (default: the project's)</source>
+            <translation>A telephely azonosítója (alapértelmezés: a projekté)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Site name (default: the project's title)</source>
+            <translation>A telephely neve (alapértelmezés: a projekt címe)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS is not known, and</source>
+            <translation>A telephely vetülete nem ismert, és</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>The site's CRS, {crs_name},</source>
+            <translation>A telephely vetületének ({crs_name})</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>There is nothing to publish: no layer is given and no layer of the project has a role. Give roles (Fleet Supervisor &gt; Layer roles), a PROFILE, or layers.</source>
+            <translation>Nincs mit közzétenni: nincs megadva réteg, és a projekt egyik rétegének sincs szerepe. Adjon szerepeket (Fleet Supervisor &gt; Rétegszerepek), egy PROFILE-t, vagy rétegeket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Where robots may be sent (default: all that is published)</source>
+            <translation>Hová küldhetők robotok (alapértelmezés: minden, ami közzé van téve)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>Width of a road where none is known [m]</source>
+            <translation>Az út szélessége, ahol nem ismert [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{named} has no code that a gateway knows it by: choose SITE_CRS such as EPSG:32633. Layers in local metres can be published with ORIGIN and LOCAL=true.</source>
+            <translation>{named} nincs kódja, amelyről egy átjáró felismerné: válasszon SITE_CRS-t, például EPSG:32633. Helyi méterben lévő rétegek az ORIGIN értékével és LOCAL=true-val tehetők közzé.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{name} is {value}: give a number of metres above 0.</source>
+            <translation>{name} értéke {value}: adjon meg 0-nál több métert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{place} = {text} is no number: correct it there.</source>
+            <translation>{place} = {text} nem szám: javítsa ki ott.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/publication_parameters.py" />
+            <source>{title} (default: as published, at first {default:g})</source>
+            <translation>{title} (alapértelmezés: ahogy közzétették, először {default:g})</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/report_layout.py" />

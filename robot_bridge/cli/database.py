@@ -24,7 +24,7 @@ from ..gateway.storage.roles.choice import has_accounts, map_readers_on, role_ma
 from ..gateway.storage.singleton_lock import no_gateway
 from .accounts import NewPasswordOption, new_password
 from .audit import act_audited, audited
-from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address, site_settings
+from .options import DEFAULT, DatabaseOption, PasswordFileOption, SiteOption, database_address, site_settings
 
 # --- ``robot-bridge database backup`` and ``restore`` ---
 
@@ -97,12 +97,8 @@ def account(
 
 
 def views(
-    site: Annotated[
-        str,
-        typer.Option(
-            help="The published site whose CRS and origin places have: a folder, or its address as of serve."
-        ),
-    ] = "",
+    context: typer.Context,
+    site: SiteOption = "",
     remove: Annotated[bool, typer.Option("--remove", help="Remove the views.")] = False,
     vrt: Annotated[
         Path | None, typer.Option(help="SQLite: write the file by which GDAL and QGIS open the views.")
@@ -115,6 +111,9 @@ def views(
     PostgreSQL needs PostGIS; on SQLite, --vrt writes the file that is opened.
     """
     address = _there(database_address(database, database_password_file))
+    source = context.get_parameter_source("site")
+    if remove and source is not None and source.name == "ENVIRONMENT":
+        site = ""
     if remove == bool(site):
         raise StoreError("give --site FOLDER to make the views, or --remove to remove them")
     if vrt is not None and address.drivername != SQLite.name:

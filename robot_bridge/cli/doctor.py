@@ -145,7 +145,7 @@ def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def _check_certificate(settings: GatewaySettings) -> Iterator[Finding]:
-    from ..gateway.auth.tls import WARN_DAYS, ServerTls
+    from ..gateway.auth.port import WARN_DAYS, ServerTls
 
     if settings.tls is None:
         yield Finding(Level.OK, "certificate", "none: ws://, for this computer only")

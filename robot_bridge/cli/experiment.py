@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from .options import database_address
+from ..core.errors import BridgeError
+from .options import SiteOption, database_address, site_folder
 
 if TYPE_CHECKING:
     from ..reference_robot.localisation.experiment import Record
@@ -17,11 +18,12 @@ if TYPE_CHECKING:
 
 
 def experiment(
+    context: typer.Context,
     name: Annotated[
         str,
         typer.Argument(help="a5-loop, open-square, kidnapped, parking, from-nothing, or a file."),
     ],
-    site: Annotated[Path, typer.Option(help="Folder of the published site, as of Publish site.")],
+    site: SiteOption,
     seeds: Annotated[int, typer.Option(help="How many drives, each in another world.", min=1, max=1000)] = 10,
     first_seed: Annotated[int, typer.Option(help="The seed of the first one.", min=0)] = 1,
     output: Annotated[
@@ -69,7 +71,6 @@ def experiment(
     numpy: Annotated[bool, typer.Option("--numpy", help="Cast rays by numpy even where numba is.")] = False,
 ) -> None:
     """Drive a simulated robot that finds itself on its map, and tell how far it is off."""
-    from ..core.errors import BridgeError
     from ..core.sites.site import read_site
     from ..reference_robot.localisation import experiment as drives
     from ..reference_robot.localisation.experiment_plot import svg_of
@@ -82,12 +83,13 @@ def experiment(
         raise BridgeError("--world and --accept need a gateway that robots report to: add --gateway")
     if reporter is not None and not accept:
         raise BridgeError("--reporter is the robot whose observations are accepted: add --accept")
-    robot_map = read_site(world or site).whole_map()
+    folder = context.with_resource(site_folder(site))
+    robot_map = read_site(world or folder).whole_map()
     chosen_seeds = range(first_seed, first_seed + seeds)
     compiled = False if numpy else None
     found: Iterable[Record] = (drives.run(robot_map, settings, seed, compiled) for seed in chosen_seeds)
     if gateway:
-        served = _served(site, file.stem, database, output)
+        served = _served(folder, file.stem, database, output)
         served = replace(served, at_once=at_once, people=people, pace=pace, compiled=compiled)
         other = None if reporter is None else drives.read_settings(_settings_file(reporter))
         served = replace(served, window=window, accept=accept, reporter=other)
@@ -111,7 +113,6 @@ def experiment(
 
 def _settings_file(name: str) -> Path:
     """Return the settings of an experiment; raises BridgeError for a name that is none."""
-    from ..core.errors import BridgeError
     from ..reference_robot.localisation import experiment as drives
 
     file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
@@ -125,7 +126,6 @@ def _settings_file(name: str) -> Path:
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:
     """Return where the drives of an experiment are made and stored."""
-    from ..core.errors import BridgeError
     from .served_experiment import ServedDrives
 
     if database is None and output is None:
@@ -138,7 +138,6 @@ def _served(site: Path, name: str, database: str | None, output: Path | None) ->
 
 
 def _write(folder: Path, name: str, text: str) -> None:
-    from ..core.errors import BridgeError
     from ..core.files import replacement
 
     try:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -77,16 +79,23 @@ def site_copy(site: str, state: Path | None) -> SiteCopy | None:
     return copy
 
 
-def site_settings(site: str) -> SiteSettings:
-    """Return the settings of a site in a folder, or in a database, from where it is fetched for the moment.
+@contextmanager
+def site_folder(site: str) -> Iterator[Path]:
+    """Yield the folder of a site; one that is in a database is fetched for the moment.
 
-    :raises BridgeError: where it cannot be fetched. :raises SiteError: for what is no site.
+    :raises BridgeError: where it cannot be fetched. :raises SiteError: for its address.
     """
-    from ..core.sites.settings import SETTINGS_FILE, read_settings
-
     with TemporaryDirectory(prefix="robot-bridge-") as state:
         copy = site_copy(site, Path(state))
-        return read_settings((Path(site) if copy is None else copy.folder) / SETTINGS_FILE)
+        yield Path(site) if copy is None else copy.folder
+
+
+def site_settings(site: str) -> SiteSettings:
+    """Return the settings of a site; raises as :func:`site_folder`, and SiteError for what is no site."""
+    from ..core.sites.settings import SETTINGS_FILE, read_settings
+
+    with site_folder(site) as folder:
+        return read_settings(folder / SETTINGS_FILE)
 
 
 # --- Times on the command line ---

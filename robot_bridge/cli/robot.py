@@ -10,18 +10,15 @@ from contextlib import contextmanager
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ..core.errors import BridgeError
 from ..core.messages.robots import SetObject
-from ..core.standard_input import call_at_end_of_input
-from ..reference_robot.body import ScriptedObject
+from ..core.parent_process import call_at_end_of_input
+from ..reference_robot.body import BodyLimits, ScriptedObject, SimulatedVehicle
 from .options import PasswordFileOption, UntilStdinCloses, database_address
-
-if TYPE_CHECKING:
-    from ..reference_robot.body import BodyLimits, SimulatedVehicle
 
 
 class Localisation(str, Enum):
@@ -85,7 +82,6 @@ def robot(
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
     from ..protocol.credentials import ClientCredentials
-    from ..reference_robot.body import BodyLimits
     from ..reference_robot.runner import ReferenceRobotSettings, run
 
     if (url is None) == (database is None):

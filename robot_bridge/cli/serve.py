@@ -19,9 +19,8 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
-from ..core.standard_input import call_at_end_of_input
-from ..core.systemd import notify, watchdog_interval
-from ..gateway.monitoring.periodic_tasks import freeze_permanent_objects
+from ..core.parent_process import call_at_end_of_input, notify, watchdog_interval
+from ..gateway.monitoring import freeze_permanent_objects
 from .options import (
     DEFAULT,
     DatabaseOption,
@@ -138,7 +137,7 @@ def gateway_settings(
     from ..core.sites.settings import SETTINGS_FILE, read_settings
     from ..core.sites.settings_tables import GatewayOptions
     from ..gateway.app import GatewaySettings
-    from ..gateway.auth.tls import server_files
+    from ..gateway.auth.port import server_files
 
     copy = site_copy(site, state)
     folder = Path(site) if copy is None else copy.folder

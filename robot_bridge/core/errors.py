@@ -251,6 +251,14 @@ def counted(number: int, thing: str) -> str:
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
+# --- What others say, such as a driver or a server, in a text of ours ---
+
+
+def in_one_line(said: object) -> str:
+    """Return what an error or a program says in one line, with single spaces between the words."""
+    return " ".join(str(said).split())
+
+
 # --- Names in a text, which has no room for thousands ---
 
 MOST_NAMES = 10

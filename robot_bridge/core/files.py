@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import tempfile
@@ -39,6 +40,21 @@ def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool =
     beside.replace(file)
     if synced:
         _sync_folder(file.parent)
+
+
+def write_state_into(room: Path, file: Path, content: bytes) -> None:
+    """Replace ``file`` by ``room``, a file of spaces, with ``content`` at its beginning: on a full disk.
+
+    :raises OSError: where there is no room, or it is too small; ``file`` is as it was.
+    """
+    with room.open("r+b") as stream:
+        if len(content) > os.fstat(stream.fileno()).st_size:
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        stream.write(content)
+        stream.flush()
+        os.fsync(stream.fileno())
+    room.replace(file)
+    _sync_folder(file.parent)
 
 
 @contextmanager

@@ -39,8 +39,6 @@ def packed_frame(
     head: bytes, columns: Iterable[npt.NDArray[np.float64]], value: str = POSITION_VALUE
 ) -> bytes:
     """Return ``head``, a JSON text, and the columns that it names, of type ``value``, as one frame."""
-    import numpy as np
-
     length = -(-(POSITION_HEAD + len(head)) // ALIGNMENT) * ALIGNMENT - POSITION_HEAD
     values = (np.ascontiguousarray(column, dtype=value).tobytes() for column in columns)
     return b"".join([length.to_bytes(POSITION_HEAD, "little"), head.ljust(length), *values])
@@ -48,8 +46,6 @@ def packed_frame(
 
 def split_frame(frame: bytes, bounds: JsonBounds = MESSAGE) -> PositionFrame:
     """Return the parts of a frame; raises DecodingError when it is none, or names something twice."""
-    import numpy as np
-
     begin = POSITION_HEAD + int.from_bytes(frame[:POSITION_HEAD], "little")
     if not POSITION_HEAD <= begin <= len(frame):
         raise DecodingError("its head is longer than the frame")

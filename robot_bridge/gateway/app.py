@@ -35,8 +35,7 @@ from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.client_connection import ClientConnection
 from .auth.gate import PATHS, AuthGate
-from .auth.port import address_here, check_reach, host_fault, is_loopback, listen
-from .auth.tls import ServerFiles, ServerTls
+from .auth.port import ServerFiles, ServerTls, address_here, check_reach, host_fault, is_loopback, listen
 from .cluster.cluster import Cluster, ClusterSettings, join_cluster, lease_database
 from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
@@ -45,8 +44,7 @@ from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
 from .model.request_handlers import Answering, RequestHandlers
-from .monitoring.metrics import Metrics
-from .monitoring.periodic_tasks import GarbageCollection, Work, every, keep_all_going
+from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
@@ -193,6 +191,10 @@ class Gateway:
             "audit log": self._gate.journal.run,
             "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
         }
+        if fleet.database.dialect.partitions_days:
+            works["days of positions"] = lambda: every(
+                PRUNE_INTERVAL, self.retention.make_days, "days of positions", tally
+            )
         if has_accounts(fleet.database.dialect.name):
             works["stuck robots"] = lambda: every(
                 STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
@@ -212,7 +214,7 @@ class Gateway:
         if (step := self._clock_watch.measure_step()) is not None:
             way = "forward" if step.by > 0 else "back"
             log.warning("the clock of this computer was set %s by %.0f s", way, abs(step.by))
-            self._fleet.robots.clock_was_set(step)
+            self._fleet.clock_was_set(step)
         fleet = self._fleet
         fleet.age()
         self.robots.update()
@@ -374,6 +376,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
                 gateway.retention.doubt_clock()
+        # Without them positions are stored all the same; what is wrong is logged when it is tried again.
+        with contextlib.suppress(StoreError):
+            await gateway.retention.make_days()
         server = await gateway.serve(settings.host, settings.port)
         gate.warn()
         stack.push_async_callback(notify_clients, server, fleet)

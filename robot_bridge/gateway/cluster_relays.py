@@ -14,8 +14,7 @@ from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.request_handlers import Answering
-from .monitoring.metrics import Counters
-from .monitoring.periodic_tasks import Work, every
+from .monitoring import Counters, Work, every
 from .storage.database import Database
 
 BEAT_INTERVAL_S = 1.0

@@ -1,4 +1,7 @@
-"""How long things are kept: what is older than the site's settings say is deleted, in small pieces."""
+"""How long things are kept: what is older than the site's settings say is deleted, in small pieces.
+
+Days of positions that are partitions are made ahead here, and dropped as a whole.
+"""
 
 from __future__ import annotations
 
@@ -15,16 +18,18 @@ from .auth import audit
 from .model.clocks import ClockWatch
 from .storage.database import Database
 from .storage.repositories import closures, commands, emergency_stops, queues, records, trajectories
+from .storage.repositories.trajectories import DAY
 
 log = logging.getLogger(__name__)
 
-DAY = 86400.0
 AT_ONCE = 1000
 IMAGES_AT_ONCE = 20
 """in one transaction; an image may be 15 MiB."""
 PAUSE = 0.05
 """seconds between two deletions, in which robots and operators have the database."""
 LARGEST_STEP = 3600.0
+DAYS_AHEAD = 3
+"""days that have a partition in time, today included: a backup may take hours, and none is made meanwhile."""
 DOUBT = DAY
 """seconds without deletions while the clock may be ahead: everything would be too old at once, and nothing
 brings back what is deleted."""
@@ -41,6 +46,7 @@ class RetainedRows(NamedTuple):
 
 def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
     """Yield all that is kept for a time only, with the days for which a site wants it."""
+    yield RetainedRows("whole days of positions", settings.trajectories.keep_days, trajectories.drop_day)
     yield RetainedRows("positions", settings.trajectories.keep_days, trajectories.forget)
     yield RetainedRows("ended commands", settings.commands.keep_days, commands.forget)
     yield RetainedRows("ended tasks", settings.commands.keep_days, queues.forget)
@@ -70,10 +76,27 @@ class Retention:
         self._clock = clock
         self._clock_watch = ClockWatch(clock)
         self._doubtful_until = clock.steady()
+        self._missing = 0
 
     def doubt_clock(self) -> None:
         """Delete nothing for a day: the clock may be ahead."""
         self._doubtful_until = self._clock.steady() + DOUBT
+
+    async def make_days(self) -> None:
+        """Have today's and the next days' positions partitions of their own, where days are partitions.
+
+        Raises StoreError. A partition that is missing keeps no position from being stored.
+        """
+        if not self._database.dialect.partitions_days:
+            return
+        today = int(self._clock.time() // DAY)
+        missing = await self._database.run(trajectories.make_days, range(today, today + DAYS_AHEAD))
+        if missing and not self._missing:
+            log.warning(
+                "days of positions have no partition yet: somebody reads the table at length, or they have "
+                "too many positions already; their positions are stored all the same, and deleted row by row"
+            )
+        self._missing = missing
 
     async def prune(self) -> None:
         """Delete what the settings do not keep any longer; raises StoreError."""

@@ -17,7 +17,7 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ..core.errors import SiteError, StoreError
+from ..core.errors import SiteError, StoreError, in_one_line
 from ..core.files import StagedFiles, write_state
 from ..core.json_decoder import SHORT, DecodingError, decode_json
 from ..core.sites.geopackage import GEOPACKAGE_FILE
@@ -208,7 +208,7 @@ class SiteCopy:
             return None
 
     def _failed(self, error: Exception) -> SiteCopyError:
-        reason = " ".join(str(error).split()) or f"no answer within {PATIENCE:g} s"
+        reason = in_one_line(error) or f"no answer within {PATIENCE:g} s"
         if getattr(error, "sqlstate", None) == "42501":
             return SiteCopyError(
                 f"{self._address.shown}: this account may not read the sites ({reason}); whoever publishes "

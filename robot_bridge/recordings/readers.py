@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core.errors import CrsError
 from ..core.sites.frame import crs_of, projections
-from .bags.reading import read_bag
+from .bags import read_bag
 from .csv_table import TableForm, read_csv
 from .tracks import (
     LATEST,

@@ -4,16 +4,23 @@ from __future__ import annotations
 
 import ast
 import importlib.util
+import os
 import re
+import signal
 import subprocess
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from benchmarks.appliance import Pictures, Setting, Use, subscriptions
+from benchmarks.appliance import Run as SmallRun
+from benchmarks.appliance import report as small_report
 from benchmarks.clock import spread
 from benchmarks.endurance_findings import Run, Sample, Unloaded
 from benchmarks.endurance_page import report
+from benchmarks.limits import LimitError, Throttling, small_computer
 from benchmarks.page import Beginning, Part, goal, with_part
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -164,3 +171,45 @@ def test_a_shift_that_is_too_large_misses_its_goal():
     run = Run(samples, [Unloaded([], 100.0, 16.0, 600_000)] * 2, end, {"reset": 3}, [])
     text = report(run, 30.0, [], robots=10, raster_cache=16, window=(800, 600))
     assert "goal: at most 60 MB more, **missed**" in text and "looked at every 10 s" in " ".join(text.split())
+
+
+def test_a_small_computer_holds_what_runs_on_it():
+    busy = "import time; end = time.monotonic() + 0.4\nwhile time.monotonic() < end: pass"
+    limits = {"cores": 0.2, "megabytes": 200, "cpus": "0"}
+    try:
+        with small_computer(f"fleet-test-{os.getpid()}", ("busy", "idle"), **limits) as (whole, parts):
+            subprocess.run([*parts["busy"].through, sys.executable, "-c", busy], check=True)
+            used = {name: part.cpu_seconds() for name, part in parts.items()}
+            assert whole.throttling().throttled > 5 and whole.throttling().seconds > 0.1
+            assert used["idle"] == 0.0 and used["busy"] <= whole.cpu_seconds() < 0.3
+            assert whole.killed() == 0 and whole.megabytes() < 200
+            too_much = [*parts["idle"].through, sys.executable, "-c", "bytearray(300_000_000)"]
+            assert subprocess.run(too_much).returncode == -signal.SIGKILL
+            assert max(parts["idle"].killed(), whole.killed()) == 1
+    except LimitError as error:
+        pytest.skip(str(error))
+    assert not list(Path("/sys/fs/cgroup").rglob(f"fleet-test-{os.getpid()}"))
+
+
+def test_what_panel_and_page_subscribe_to_is_found_in_their_sources():
+    desk, phone, rates, budget = subscriptions()
+    assert desk["rate"] > phone["rate"] == max(rates) > min(rates) > 0
+    assert phone["form"] == "columns" and budget > 100_000
+
+
+def test_a_stop_that_some_robot_never_heard_of_misses_its_goal():
+    seen = {"positions": 150.0, "late": 3.0, "stops": [20.0, float("nan")], "answers": [9.0]}
+    desk = subscriptions().desk
+    seen |= {
+        who: {"delays": [10.0, 30.0, 20.0], "bytes": 1000.0, "subscription": desk}
+        for who in ("desk", "phone")
+    }
+    use = Use(0.5, 100.0, Throttling(100, 7, 0.1))
+    parts = dict.fromkeys(("gateway", "database", "maps"), use)
+    run = SmallRun(Setting("SQLite", None), seen, Pictures([300.0]), parts, use, 500.0, 0)
+    part = small_report("Small", [run])
+    assert part.failed and "**never**" in part.text and "**missed**" in part.text
+    seen["stops"] = [20.0, 30.0]
+    assert not small_report("Small", [run]).failed
+    run.killed = 1
+    assert small_report("Small", [run]).failed

@@ -97,8 +97,9 @@ def test_database_servers_are_installed_for_the_tests_and_nothing_waits_for_them
     done = machine(there)
     asked = [line.split() for line in calls.read_text().splitlines()]
     assert [line[0] for line in asked] == ["install", "update", "install"]
-    assert asked[0][-4:] == ["postgresql", "postgresql-postgis", "qgis-server", "chromium"]
-    assert f"not installed: {' '.join(asked[0][-4:])}; the tests that need them will be" in done.stdout
+    wanted = ["postgresql", "postgresql-postgis", "qgis-server", "chromium", "libfaketime"]
+    assert asked[0][-5:] == wanted
+    assert f"not installed: {' '.join(wanted)}; the tests that need them will be" in done.stdout
     assert "on to the environment" in done.stderr
 
 

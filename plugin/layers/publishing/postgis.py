@@ -21,6 +21,7 @@ from qgis.core import (
     QgsProviderRegistry,
 )
 
+from ....robot_bridge.core.errors import in_one_line
 from ....robot_bridge.core.sites.geopackage import GEOPACKAGE_FILE, LayerSpec
 from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteSettings
 from ....robot_bridge.core.sites.site_database import (
@@ -115,7 +116,7 @@ def site_database(address: str, site: str) -> Iterator[SiteDatabase]:
             tr(
                 "The database cannot be reached: {error}. Check that it runs, and the host, database, "
                 "account and password of the connection.",
-                error=_in_one_line(error),
+                error=in_one_line(error).rstrip("."),
             )
         ) from error
     with closing(connection):
@@ -475,20 +476,16 @@ def _refused(connection: Any, site: str, error: Exception, psycopg2: Any) -> Pub
             "version: {error}. Remove it, publish, and make it again.",
             site=site,
             database=database,
-            error=_in_one_line(error),
+            error=in_one_line(error).rstrip("."),
         )
     else:
         text = tr(
             "The site cannot be published in database {database}: {error}. What was published there before "
             "is as it was.",
             database=database,
-            error=_in_one_line(error),
+            error=in_one_line(error).rstrip("."),
         )
     return PublicationError(text)
-
-
-def _in_one_line(error: Exception) -> str:
-    return " ".join(str(error).split()).rstrip(".")
 
 
 def _quoted(name: str) -> str:

@@ -1,19 +1,23 @@
-"""Map tools of one click: cone target, start position, and robots selected."""
+"""Map tools of one click: cone target, start position, robots selected, roads closed and opened."""
 
 from __future__ import annotations
 
 import math
 
+import numpy as np
 from qgis.core import QgsPointXY
-from qgis.gui import QgsMapMouseEvent, QgsMapTool
-from qgis.PyQt.QtCore import QPoint, QRect, Qt
+from qgis.gui import QgsMapMouseEvent, QgsMapTool, QgsVertexMarker
+from qgis.PyQt.QtCore import QPoint, QRect, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QKeyEvent
-from qgis.PyQt.QtWidgets import QApplication, QRubberBand
+from qgis.PyQt.QtWidgets import QApplication, QLineEdit, QRubberBand, QWidget
 
+from ....robot_bridge.core.messages.roads import ClosureReport
+from ....robot_bridge.core.roads.network import foot_on
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import CONE, START, PendingCommand, Point
+from ...ui.dialogs import QuestionDialog, confirm
 from ...ui.errors import FleetError
-from ...ui.language import tr
+from ...ui.language import time_of_day, tr
 from ..live_view import LiveView
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
 from .road_route_tool import RoutePreview
@@ -213,3 +217,164 @@ class SelectTool(QgsMapTool):
             self._band.hide()
             self._band.deleteLater()
             self._band = None
+
+
+# --- Roads closed and opened ---
+
+TIMES = (
+    (tr("until it is opened"), None),
+    (tr("for 15 minutes"), 900.0),
+    (tr("for 1 hour"), 3600.0),
+    (tr("for 4 hours"), 14_400.0),
+    (tr("for 1 day"), 86_400.0),
+)
+LONGEST_REASON = 200
+REACH = 12.0
+"""Pixels by which a click may miss a road."""
+LEAST_REACH = 3.0
+"""Metres by which it may miss one in any case: a road is wider than its middle."""
+
+
+class ClosureTool(QgsMapTool):
+    """A click on a road asks why and for how long it is closed; a click on a closed one asks to open it.
+
+    Enter does what a click would: at the mouse, or in the middle of the map, which the arrow keys move.
+    """
+
+    def __init__(self, desk: FleetController, window: QWidget):
+        super().__init__(desk.canvas)
+        self._desk = desk
+        self._window = window
+        self._mouse: QPoint | None = None
+        self._middle: QgsVertexMarker | None = None
+        self.setCursor(Qt.CursorShape.CrossCursor)
+
+    def activate(self) -> None:
+        super().activate()
+        self.canvas().extentsChanged.connect(self._show_middle)
+        self.canvas().setFocus()
+        self._aim_at(None)
+
+    def deactivate(self) -> None:
+        self.canvas().extentsChanged.disconnect(self._show_middle)
+        self._clear_middle()
+        super().deactivate()
+
+    def canvasMoveEvent(self, event: QgsMapMouseEvent) -> None:
+        self._aim_at(event.pos())
+
+    def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
+        if event.button() == Qt.MouseButton.LeftButton:
+            self._ask_at(event.pos())
+
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self._ask_at(self.canvas().viewport().rect().center() if self._mouse is None else self._mouse)
+        elif event.key() == Qt.Key.Key_Escape:
+            self.canvas().unsetMapTool(self)
+        else:
+            self._aim_at(None)
+            super().keyPressEvent(event)
+            return
+        event.accept()
+
+    def _aim_at(self, mouse: QPoint | None) -> None:
+        self._mouse = mouse
+        self._show_middle()
+
+    def _show_middle(self) -> None:
+        """Show where Enter would click, unless that is where the mouse is."""
+        self._clear_middle()
+        if self._mouse is None:
+            self._middle = QgsVertexMarker(self.canvas())
+            self._middle.setIconType(QgsVertexMarker.IconType.ICON_CROSS)
+            self._middle.setIconSize(round(2 * REACH))
+            self._middle.setPenWidth(2)
+            self._middle.setCenter(self.canvas().center())
+
+    def _clear_middle(self) -> None:
+        if self._middle is not None:
+            self.canvas().scene().removeItem(self._middle)
+            self._middle = None
+
+    def _ask_at(self, pixel: QPoint) -> None:
+        try:
+            place, reach = self._place(pixel)
+        except FleetError as error:
+            self._desk.complained.emit(str(error))
+            return
+        closed = self._closed_at(place, reach)
+        if closed is None:
+            self._ask_to_close(place, reach)
+        else:
+            self._ask_to_open(closed)
+
+    def _place(self, pixel: QPoint) -> tuple[Point, float]:
+        """Return the place of a click in the site frame, and the metres by which it may miss a road."""
+        placement = self._desk.site_to_canvas.transform()
+        place = placement.to_site(self.toMapCoordinates(pixel))
+        beside = self.toMapCoordinates(pixel + QPoint(round(REACH), 0))
+        return place, max(math.dist(place, placement.to_site(QgsPointXY(beside))), LEAST_REACH)
+
+    def _closed_at(self, place: Point, reach: float) -> ClosureReport | None:
+        found, least = None, reach
+        for closure in self._desk.state.closures:
+            line = np.array(closure.line)
+            off = float(foot_on(line[:-1], line[1:], np.array(place))[1].min())
+            if off <= least:
+                found, least = closure, off
+        return found
+
+    def _ask_to_close(self, place: Point, reach: float) -> None:
+        dialog = ClosureDialog(self._window)
+        dialog.confirmed.connect(lambda why, seconds: self._desk.close_road(place, reach, why, seconds))
+        dialog.open()
+
+    def _ask_to_open(self, closure: ClosureReport) -> None:
+        because = f": {closure.reason}" if closure.reason else ""
+        text = tr(
+            "{by} closed this road at {time}{because}",
+            by=closure.closed_by,
+            time=time_of_day(closure.closed_at),
+            because=because,
+        )
+        opening = "fleet_open_road_confirm", tr("Open road")
+        box = confirm(
+            self._window, "fleet_open_road", text, opening, tr("Cancel"),
+            lambda: self._desk.open_road(closure.closure),
+        )  # fmt: skip
+        box.setWindowTitle(tr("Open road"))
+        box.setInformativeText(tr("Open it again for every robot?"))
+        box.open()
+
+
+class ClosureDialog(QuestionDialog):
+    """Asks why a road is closed and for how long.
+
+    ``confirmed`` carries the reason and the seconds, None for no end.
+    """
+
+    confirmed = pyqtSignal(str, object)
+
+    def __init__(self, parent: QWidget):
+        super().__init__(
+            "fleet_closure_dialog",
+            tr("Close road"),
+            ("fleet_closure_confirm", tr("Close road")),
+            is_safe=False,
+            parent=parent,
+        )
+        self.add_text(
+            tr(
+                "The road is closed for every robot from this junction to the next. Robots whose way leads "
+                "along it get another way; one that has no other way is stopped, unless the site's settings "
+                "say otherwise."
+            )
+        )
+        reason = QLineEdit()
+        reason.setMaxLength(LONGEST_REASON)
+        reason.setPlaceholderText(tr("such as: tree on the road"))
+        self.add_field(tr("Reason"), reason, "fleet_closure_reason")
+        time = self.add_choice(tr("Closed"), TIMES, "fleet_closure_time")
+        self.lay_out()
+        self.accepted.connect(lambda: self.confirmed.emit(reason.text().strip(), time.currentData()))

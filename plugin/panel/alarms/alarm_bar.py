@@ -20,7 +20,6 @@ from qgis.PyQt.QtWidgets import (
 
 from ...control.messages import MessageLabel
 from ...ui.language import first_of, tr, tr_count
-from .board import URGENT_KINDS
 from .rules import Alarm, AlarmChange
 from .watch import AlarmWatch
 
@@ -108,7 +107,7 @@ class AlarmBar(QObject):
         if not new:
             self._take_down()
             return
-        pressing = any(alarm.kind in URGENT_KINDS and alarm.ended is None for alarm in new)
+        pressing = any(alarm.kind.is_urgent and alarm.ended is None for alarm in new)
         level = Qgis.MessageLevel.Critical if pressing else Qgis.MessageLevel.Warning
         if has_begun:
             self._bring_to_front(level)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from qgis.PyQt.QtCore import QItemSelection, QItemSelectionModel, QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QFont
 from qgis.PyQt.QtWidgets import (
@@ -29,37 +27,13 @@ from ...ui.errors import FleetError
 from ...ui.language import date_and_time, short_time, time_of_day, tr, tr_count
 from ...ui.steady_widgets import ElidedText
 from ...ui.tables import RowModel, TextModel, TimeColumn, ZoomMenu, iso_time, shrink_view, write_csv
-from .board import ALARM_KINDS, CHANGES, alarm_state_in_words, colour_of, robots_of
-from .rules import RANGES, Alarm, AlarmEvent, AlarmKind, Thresholds
+from .board import CHANGES, alarm_state_in_words, colour_of, robots_of
+from .rules import THRESHOLDS, Alarm, AlarmEvent, AlarmKind, Threshold, Thresholds
 from .watch import AlarmWatch
 
 # --- Thresholds ---
 
 
-@dataclass(frozen=True)
-class Field:
-    """One number of the settings: how it is shown."""
-
-    kind: AlarmKind
-    name: str
-    label: str
-    unit: str
-    scale: float = 1.0
-    decimals: int = 1
-
-
-FIELDS = (
-    Field(AlarmKind.LOW_BATTERY, "low_battery", tr("begins below"), " %", 100.0, 0),
-    Field(AlarmKind.LOW_BATTERY, "battery_margin", tr("ends so much above that"), " %", 100.0, 0),
-    Field(AlarmKind.UNSURE, "unsure", tr("begins when less exact than"), " m"),
-    Field(AlarmKind.UNSURE, "unsure_margin", tr("ends so much below that"), " m"),
-    Field(AlarmKind.TOO_CLOSE, "too_close", tr("begins when two are nearer than"), " m"),
-    Field(AlarmKind.TOO_CLOSE, "close_margin", tr("ends so much further apart"), " m"),
-    Field(AlarmKind.WILL_PASS, "pass_within", tr("begins so long before"), " s", 1.0, 0),
-    Field(AlarmKind.OUTSIDE_SITE, "outside_margin", tr("begins so far outside"), " m"),
-    Field(AlarmKind.OFF_ROAD, "road_margin", tr("begins so far beside the road"), " m"),
-    Field(AlarmKind.STOPPED, "stopped_after", tr("begins after standing with a task for"), " s", 1.0, 0),
-)
 SITE_SETS = tr("the site's settings say after how long (see the robots' state)")
 GATEWAY_JUDGES = tr("the gateway judges it by the published site, and says what it does")
 
@@ -83,39 +57,38 @@ class ThresholdsForm(QWidget):
         """Show these settings."""
         for kind, box in self._boxes.items():
             box.setChecked(kind in limits.kinds)
-        for field in FIELDS:
-            self._numbers[field.name].setValue(getattr(limits, field.name) * field.scale)
+        for name, threshold in THRESHOLDS.items():
+            self._numbers[name].setValue(getattr(limits, name) * threshold.scale)
 
     def limits(self) -> Thresholds:
         """Return what stands in the fields."""
         return Thresholds(
-            **{field.name: self._numbers[field.name].value() / field.scale for field in FIELDS},
+            **{name: self._numbers[name].value() / one.scale for name, one in THRESHOLDS.items()},
             kinds=frozenset(kind for kind, box in self._boxes.items() if box.isChecked()),
         )
 
     def _add(self, grid: QGridLayout, kind: AlarmKind) -> None:
         row = grid.rowCount()
-        box = QCheckBox(ALARM_KINDS[kind][0].upper() + ALARM_KINDS[kind][1:])
+        box = QCheckBox(kind.words[0].upper() + kind.words[1:])
         box.setObjectName(f"fleet_watch_{kind.name.lower()}")
         self._boxes[kind] = box
         grid.addWidget(box, row, 0)
-        fields = [field for field in FIELDS if field.kind is kind]
-        if not fields:
+        numbers = [(name, one) for name, one in THRESHOLDS.items() if one.kind is kind]
+        if not numbers:
             explanation = ElidedText("", SITE_SETS if kind is AlarmKind.LOST else GATEWAY_JUDGES)
             grid.addWidget(explanation, row, 1, 1, 2)
-        for number, field in enumerate(fields):
-            grid.addWidget(QLabel(field.label), row + number, 1)
-            grid.addWidget(self._spin_box(field, box), row + number, 2)
+        for below, (name, threshold) in enumerate(numbers):
+            grid.addWidget(QLabel(threshold.label), row + below, 1)
+            grid.addWidget(self._spin_box(name, threshold, box), row + below, 2)
 
-    def _spin_box(self, field: Field, box: QCheckBox) -> QDoubleSpinBox:
-        least, most = RANGES[field.name]
+    def _spin_box(self, name: str, threshold: Threshold, box: QCheckBox) -> QDoubleSpinBox:
         spin = QDoubleSpinBox()
-        spin.setObjectName(f"fleet_{field.name}")
-        spin.setDecimals(field.decimals)
-        spin.setRange(least * field.scale, most * field.scale)
-        spin.setSuffix(field.unit)
+        spin.setObjectName(f"fleet_{name}")
+        spin.setDecimals(threshold.decimals)
+        spin.setRange(threshold.least * threshold.scale, threshold.most * threshold.scale)
+        spin.setSuffix(threshold.unit)
         box.toggled.connect(spin.setEnabled)
-        self._numbers[field.name] = spin
+        self._numbers[name] = spin
         return spin
 
 
@@ -190,7 +163,7 @@ class AlarmModel(RowModel):
 
 def tip(alarm: Alarm) -> str:
     """Return all that is known of an alarm."""
-    lines = [f"{ALARM_KINDS[alarm.kind]}: {alarm.text}", tr("since {time}", time=time_of_day(alarm.began))]
+    lines = [f"{alarm.kind.words}: {alarm.text}", tr("since {time}", time=time_of_day(alarm.began))]
     if alarm.times > 1:
         lines.append(tr("it began {times} times", times=alarm.times))
     if alarm.ended is not None:
@@ -220,7 +193,8 @@ class AlarmLogDialog(QDialog):
         view.setShowGrid(False)
         view.setWordWrap(False)
         view.verticalHeader().hide()
-        change, kind = (max(known.values(), key=len) for known in (CHANGES, ALARM_KINDS))
+        change = max(CHANGES.values(), key=len)
+        kind = max((one.words for one in AlarmKind), key=len)
         widths = (date_and_time(0.0), change, kind, "robot-00", "", "operator")
         for column, widest in enumerate(widths):
             view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 16)
@@ -275,7 +249,7 @@ class EventModel(TextModel):
 
 def _cells(event: AlarmEvent) -> tuple[str, ...]:
     alarm = event.alarm
-    what = CHANGES[event.change], ALARM_KINDS[alarm.kind], robots_of(alarm), alarm.text
+    what = CHANGES[event.change], alarm.kind.words, robots_of(alarm), alarm.text
     return (date_and_time(event.at), *what, event.by)
 
 

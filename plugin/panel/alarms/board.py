@@ -1,4 +1,4 @@
-"""Board of alarms, of the plugin's rules and of the gateway's reports, their texts and colours, the log."""
+"""Board of alarms, of the plugin's rules and of the gateway's reports, their colours, the log."""
 
 from __future__ import annotations
 
@@ -26,62 +26,15 @@ from .rules import (
     PairHysteresis,
     RowHysteresis,
     Thresholds,
+    alarm_text,
     too_close,
 )
 
-ALARM_KINDS = {
-    AlarmKind.LOST: tr("lost"),
-    AlarmKind.UNSURE: tr("unsure of its place"),
-    AlarmKind.IN_KEEPOUT: tr("in a keepout"),
-    AlarmKind.AT_OBSTACLE: tr("at an obstacle"),
-    AlarmKind.NEAR_ROBOT: tr("near a robot"),
-    AlarmKind.COMES_NEAR: tr("will come near a robot"),
-    AlarmKind.TOO_CLOSE: tr("too close"),
-    AlarmKind.WILL_PASS: tr("will pass too near"),
-    AlarmKind.OUTSIDE_SITE: tr("outside the site"),
-    AlarmKind.OFF_ROAD: tr("off the road"),
-    AlarmKind.STOPPED: tr("stopped unasked"),
-    AlarmKind.LOW_BATTERY: tr("low battery"),
-}
 CHANGES = {
     AlarmChange.BEGAN: tr("began"),
     AlarmChange.ENDED: tr("ended"),
     AlarmChange.ACKNOWLEDGED: tr("acknowledged"),
 }
-
-
-def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None = None) -> str:
-    """Return what is the matter with the robot in ``row``, or with two."""
-    name = now.names[row]
-    x, y = now.xy[row].tolist()
-    where = tr(" at {x:.1f}, {y:.1f} m", x=x, y=y) if np.isfinite(x) and np.isfinite(y) else ""
-    if kind is AlarmKind.TOO_CLOSE and other is not None:
-        apart = float(np.hypot(*(now.xy[row] - now.xy[other])))
-        return tr(
-            "{robot} and {other} are {apart:.1f} m apart{where}",
-            robot=name,
-            other=now.names[other],
-            apart=apart,
-            where=where,
-        )
-    if kind is AlarmKind.LOST:
-        last = tr("; last{where}", where=where) if where else ""
-        return tr("{robot} is lost: nothing is heard of it{last}", robot=name, last=last)
-    if kind is AlarmKind.UNSURE:
-        accuracy = now.accuracy[row]
-        return tr(
-            "{robot} does not know its place: ± {accuracy:.1f} m{where}",
-            robot=name,
-            accuracy=accuracy,
-            where=where,
-        )
-    if kind is AlarmKind.LOW_BATTERY:
-        return tr("{robot} has {part:.0%} of its battery left", robot=name, part=now.battery[row])
-    if kind is AlarmKind.STOPPED:
-        return tr("{robot} has a task and stands{where}", robot=name, where=where)
-    if kind is AlarmKind.OUTSIDE_SITE:
-        return tr("{robot} is outside the site{where}", robot=name, where=where)
-    return tr("{robot} is off the road{where}", robot=name, where=where)
 
 
 def robots_of(alarm: Alarm) -> str:
@@ -99,27 +52,11 @@ def alarm_state_in_words(alarm: Alarm) -> str:
     return f"{state} ×{alarm.times}" if alarm.times > 1 else state
 
 
-URGENT_KINDS = frozenset(
-    {
-        AlarmKind.LOST,
-        AlarmKind.UNSURE,
-        AlarmKind.IN_KEEPOUT,
-        AlarmKind.AT_OBSTACLE,
-        AlarmKind.NEAR_ROBOT,
-        AlarmKind.COMES_NEAR,
-        AlarmKind.TOO_CLOSE,
-        AlarmKind.WILL_PASS,
-        AlarmKind.OUTSIDE_SITE,
-    }
-)
-"""Kinds for which somebody has to act at once."""
-
-
 def colour_of(alarm: Alarm) -> QColor:
     """Return the colour of an alarm's letters; pale where it is over."""
     if alarm.ended is not None:
         return QApplication.palette().color(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text)
-    return alarm_colour(alarm.kind in URGENT_KINDS)
+    return alarm_colour(alarm.kind.is_urgent)
 
 
 def alarm_colour(pressing: bool) -> QColor:

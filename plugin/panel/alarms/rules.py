@@ -1,11 +1,11 @@
-"""Rules of alarms on columns, their kinds, thresholds and hysteresis."""
+"""Kinds of alarms with their thresholds, rules on columns, texts and hysteresis."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from enum import Enum
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -14,23 +14,53 @@ from qgis.core import QgsSettings
 from ....robot_bridge.core.messages.safety import RobotState
 from ...control.robot_checks import Ints, close_pairs
 from ...gateway_client.robot_table import STATES
+from ...ui.language import tr
 
 
 class AlarmKind(str, Enum):
-    """What an alarm is about; the most pressing first."""
+    """What an alarm is about, the most pressing first: the value that it is kept under, and ``words`` for it.
 
-    LOST = "lost"
-    UNSURE = "unsure of its place"
-    IN_KEEPOUT = "in a keepout"
-    AT_OBSTACLE = "at an obstacle"
-    NEAR_ROBOT = "near a robot"
-    COMES_NEAR = "will come near a robot"
-    TOO_CLOSE = "too close"
-    WILL_PASS = "will pass too near"  # nosec B105 # no password
-    OUTSIDE_SITE = "outside the site"
-    OFF_ROAD = "off the road"
-    STOPPED = "stopped unasked"
-    LOW_BATTERY = "low battery"
+    One that ``is_urgent`` has to be dealt with at once.
+    """
+
+    LOST = "lost", tr("lost")
+    UNSURE = "unsure of its place", tr("unsure of its place")
+    IN_KEEPOUT = "in a keepout", tr("in a keepout")
+    AT_OBSTACLE = "at an obstacle", tr("at an obstacle")
+    NEAR_ROBOT = "near a robot", tr("near a robot")
+    COMES_NEAR = "will come near a robot", tr("will come near a robot")
+    TOO_CLOSE = "too close", tr("too close")
+    WILL_PASS = "will pass too near", tr("will pass too near")  # nosec B105 # no password
+    OUTSIDE_SITE = "outside the site", tr("outside the site")
+    OFF_ROAD = "off the road", tr("off the road"), False
+    STOPPED = "stopped unasked", tr("stopped unasked"), False
+    LOW_BATTERY = "low battery", tr("low battery"), False
+
+    words: str
+    is_urgent: bool
+
+    def __new__(cls, value: str, words: str, is_urgent: bool = True) -> AlarmKind:
+        kind = str.__new__(cls, value)
+        kind._value_, kind.words, kind.is_urgent = value, words, is_urgent
+        return kind
+
+
+@dataclass(frozen=True)
+class Threshold:
+    """One number of the settings: the alarm that it is of, what it may be, and how it is shown."""
+
+    kind: AlarmKind
+    least: float
+    most: float
+    label: str
+    unit: str
+    scale: float = 1.0
+    decimals: int = 1
+
+
+def _threshold(default: float, *of: Any) -> Any:
+    """Return a field of :class:`Thresholds` with what :class:`Threshold` says of it."""
+    return field(default=default, metadata={Threshold: Threshold(*of)})
 
 
 @dataclass(frozen=True)
@@ -46,39 +76,42 @@ class Thresholds:
     ``kinds`` are the alarms that are watched for.
     """
 
-    low_battery: float = 0.20
-    battery_margin: float = 0.05
-    too_close: float = 1.0
-    close_margin: float = 0.3
-    unsure: float = 2.0
-    unsure_margin: float = 0.5
-    outside_margin: float = 0.5
-    road_margin: float = 0.5
-    stopped_after: float = 10.0
-    pass_within: float = 30.0
+    low_battery: float = _threshold(0.20, AlarmKind.LOW_BATTERY, 0.0, 1.0, tr("begins below"), " %", 100.0, 0)
+    battery_margin: float = _threshold(
+        0.05, AlarmKind.LOW_BATTERY, 0.0, 0.5, tr("ends so much above that"), " %", 100.0, 0
+    )
+    too_close: float = _threshold(
+        1.0, AlarmKind.TOO_CLOSE, 0.0, 1000.0, tr("begins when two are nearer than"), " m"
+    )
+    close_margin: float = _threshold(
+        0.3, AlarmKind.TOO_CLOSE, 0.0, 1000.0, tr("ends so much further apart"), " m"
+    )
+    unsure: float = _threshold(2.0, AlarmKind.UNSURE, 0.1, 1000.0, tr("begins when less exact than"), " m")
+    unsure_margin: float = _threshold(0.5, AlarmKind.UNSURE, 0.0, 1000.0, tr("ends so much below that"), " m")
+    outside_margin: float = _threshold(
+        0.5, AlarmKind.OUTSIDE_SITE, 0.0, 1000.0, tr("begins so far outside"), " m"
+    )
+    road_margin: float = _threshold(
+        0.5, AlarmKind.OFF_ROAD, 0.0, 100.0, tr("begins so far beside the road"), " m"
+    )
+    stopped_after: float = _threshold(
+        10.0, AlarmKind.STOPPED, 1.0, 3600.0, tr("begins after standing with a task for"), " s", 1.0, 0
+    )
+    pass_within: float = _threshold(
+        30.0, AlarmKind.WILL_PASS, 1.0, 3600.0, tr("begins so long before"), " s", 1.0, 0
+    )
     kinds: frozenset[AlarmKind] = frozenset(AlarmKind)
 
     def __post_init__(self) -> None:
-        for name, (least, most) in RANGES.items():
+        for name, of in THRESHOLDS.items():
             value = getattr(self, name)
-            if not least <= value <= most:
-                raise ValueError(f"{name} is {value:g}; give {least:g} to {most:g}")
+            if not of.least <= value <= of.most:
+                raise ValueError(f"{name} is {value:g}; give {of.least:g} to {of.most:g}")
 
 
-RANGES = {
-    "low_battery": (0.0, 1.0),
-    "battery_margin": (0.0, 0.5),
-    "too_close": (0.0, 1000.0),
-    "close_margin": (0.0, 1000.0),
-    "unsure": (0.1, 1000.0),
-    "unsure_margin": (0.0, 1000.0),
-    "outside_margin": (0.0, 1000.0),
-    "road_margin": (0.0, 100.0),
-    "stopped_after": (1.0, 3600.0),
-    "pass_within": (1.0, 3600.0),
+THRESHOLDS: dict[str, Threshold] = {
+    one.name: one.metadata[Threshold] for one in fields(Thresholds) if Threshold in one.metadata
 }
-"""What each number may be."""
-NUMBERS = tuple(field.name for field in fields(Thresholds) if field.name != "kinds")
 
 
 GROUP = "fleet_supervisor/alarms"
@@ -87,7 +120,7 @@ GROUP = "fleet_supervisor/alarms"
 def read_thresholds() -> Thresholds:
     """Return what the operator set; a value that is none, or out of its range, counts as never set."""
     settings = QgsSettings()
-    numbers = {name: _number(settings.value(f"{GROUP}/{name}"), name) for name in NUMBERS}
+    numbers = {name: _number(settings.value(f"{GROUP}/{name}"), name) for name in THRESHOLDS}
     off = str(settings.value(f"{GROUP}/off") or "").split(",")
     return Thresholds(
         **{name: value for name, value in numbers.items() if value is not None},
@@ -98,7 +131,7 @@ def read_thresholds() -> Thresholds:
 def write_thresholds(limits: Thresholds) -> None:
     """Keep the settings."""
     settings = QgsSettings()
-    for name in NUMBERS:
+    for name in THRESHOLDS:
         settings.setValue(f"{GROUP}/{name}", getattr(limits, name))
     off = [kind.value for kind in AlarmKind if kind not in limits.kinds]
     settings.setValue(f"{GROUP}/off", ",".join(off))
@@ -109,8 +142,8 @@ def _number(value: object, name: str) -> float | None:
         number = float(str(value))
     except ValueError:
         return None
-    least, most = RANGES[name]
-    return number if least <= number <= most else None
+    of = THRESHOLDS[name]
+    return number if of.least <= number <= of.most else None
 
 
 Key = tuple[AlarmKind, str, str]
@@ -277,6 +310,40 @@ def too_close(now: AlarmSnapshot, limits: Thresholds) -> tuple[Ints, Ints, Float
     one, other = placed[one], placed[other]
     counts = (now.state[one] != OFFLINE) | (now.state[other] != OFFLINE)
     return one[counts], other[counts], apart[counts]
+
+
+def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None = None) -> str:
+    """Return what is the matter with the robot in ``row``, or with two."""
+    name = now.names[row]
+    x, y = now.xy[row].tolist()
+    where = tr(" at {x:.1f}, {y:.1f} m", x=x, y=y) if np.isfinite(x) and np.isfinite(y) else ""
+    if kind is AlarmKind.TOO_CLOSE and other is not None:
+        apart = float(np.hypot(*(now.xy[row] - now.xy[other])))
+        return tr(
+            "{robot} and {other} are {apart:.1f} m apart{where}",
+            robot=name,
+            other=now.names[other],
+            apart=apart,
+            where=where,
+        )
+    if kind is AlarmKind.LOST:
+        last = tr("; last{where}", where=where) if where else ""
+        return tr("{robot} is lost: nothing is heard of it{last}", robot=name, last=last)
+    if kind is AlarmKind.UNSURE:
+        accuracy = now.accuracy[row]
+        return tr(
+            "{robot} does not know its place: ± {accuracy:.1f} m{where}",
+            robot=name,
+            accuracy=accuracy,
+            where=where,
+        )
+    if kind is AlarmKind.LOW_BATTERY:
+        return tr("{robot} has {part:.0%} of its battery left", robot=name, part=now.battery[row])
+    if kind is AlarmKind.STOPPED:
+        return tr("{robot} has a task and stands{where}", robot=name, where=where)
+    if kind is AlarmKind.OUTSIDE_SITE:
+        return tr("{robot} is outside the site{where}", robot=name, where=where)
+    return tr("{robot} is off the road{where}", robot=name, where=where)
 
 
 PAIR_SHIFT = np.int64(32)

@@ -23,7 +23,7 @@ from ...layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr, tr_count
 from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps, UpdateScheduler
-from .board import ALARM_KINDS, AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
+from .board import AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
 from .rules import (
     Alarm,
     AlarmChange,
@@ -300,7 +300,7 @@ class AlarmWatch(QObject):
         """Return what is not watched and why, empty when everything is."""
         if self._state.link.phase is not ConnectionPhase.CONNECTED:
             return tr("Nothing is watched: the desk is not connected.")
-        off = [ALARM_KINDS[kind] for kind in AlarmKind if kind not in self.board.limits.kinds]
+        off = [kind.words for kind in AlarmKind if kind not in self.board.limits.kinds]
         texts = [tr("Switched off: {kinds}.", kinds=", ".join(off))] if off else []
         if (unfenced := self._state.geofence.why_not()) and FENCED & self.board.limits.kinds:
             texts.append(unfenced)

@@ -55,7 +55,6 @@ from ....robot_bridge.core.geometry import theta_of
 from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.roads.routes import Router
 from ...cone_texts import FINISHES, METHODS, OBJECTIVES, TASKS
-from ...layers.layer_source import PointRow, point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_count, tr_page
 from ..common.algorithm import (
@@ -66,6 +65,7 @@ from ..common.algorithm import (
     fields_of,
     shown_by_processing,
 )
+from ..common.cone_layers import PointRow, point_rows
 from ..common.outputs import check_target, fill_sink, line, write_whole
 from ..common.parameters import chosen_crs
 from ..common.road_sources import (

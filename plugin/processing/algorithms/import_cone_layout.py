@@ -34,11 +34,17 @@ from ....robot_bridge.core.layouts.cone_files import (
 )
 from ....robot_bridge.core.layouts.layout import Cone, cones_at_pose
 from ...layers.crs import stated_crs
-from ...layers.layer_source import point_rows
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, shown_by_processing
-from ..common.cone_layers import STYLES, ConeSetup, add_layers, cone_crs_parameter, ground_parameters
+from ..common.cone_layers import (
+    STYLES,
+    ConeSetup,
+    add_layers,
+    cone_crs_parameter,
+    ground_parameters,
+    point_rows,
+)
 from ..common.parameters import point_in
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"

@@ -27,10 +27,9 @@ from qgis.core import (
     QgsVectorLayerSimpleLabeling,
 )
 
-from ...layers.layer_source import each_feature
+from ...layers.layer_source import each_feature, parse_seconds
 from ...ui.language import tr
 from .algorithm import ParameterError
-from .positions import parse_seconds
 
 # --- Placed cones, read from what ``robot-bridge placements export`` wrote, and what they come to ---
 

@@ -9,9 +9,10 @@ Positions are metres in the site frame, angles radians counter-clockwise from it
 
 from __future__ import annotations
 
+from types import ModuleType
 from typing import Any
 
-from . import (
+from . import (  # noqa: F401 # found among the names of this module
     administration,
     commands,
     json_values,
@@ -27,10 +28,7 @@ from . import (
     validation,
 )
 
-_MODULES = (
-    *(administration, commands, json_values, links, operator_requests, plans, positions, queues),
-    *(records, roads, robots, safety, validation),
-)
+_MODULES = [value for value in list(globals().values()) if isinstance(value, ModuleType)]
 
 
 def __getattr__(name: str) -> Any:

@@ -30,6 +30,11 @@ class CommandState(str, Enum):
     EXPIRED = "expired"
     SUPERSEDED = "superseded"
 
+    @property
+    def is_open(self) -> bool:
+        """Whether a command in this state still has a step to come."""
+        return self in (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED)
+
 
 @dataclass(frozen=True)
 class CommandStep:

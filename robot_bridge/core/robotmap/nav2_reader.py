@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import NavigationMapError, installation
+from ..errors import NavigationMapError, in_one_line, installation
 
 LARGEST_MAP = 64_000_000
 """cells that a map may have, as those have that are written."""
@@ -132,7 +132,7 @@ def _values(text: str) -> dict[str, Any]:
         # Not libyaml's loader: brackets that are nested deep enough end its process.
         values = yaml.load(text, yaml.SafeLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
-        raise NavigationMapError(f"it is no YAML: {' '.join(str(error).split())[:200]}") from None
+        raise NavigationMapError(f"it is no YAML: {in_one_line(error)[:200]}") from None
     if not isinstance(values, dict):
         raise NavigationMapError("it holds no keys such as image, resolution and origin")
     return values

@@ -20,7 +20,7 @@ from websockets.http11 import Response
 from ...core.errors import BridgeError
 from ...core.messages.safety import RobotState
 from ..fleet.service import Fleet
-from ..monitoring.metrics import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
+from ..monitoring import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
 from ..storage.schema import rr, sa
 
 log = logging.getLogger(__name__)

@@ -13,7 +13,7 @@ from sqlalchemy import Connection
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import BridgeError, FatalError, StoreError
-from ..monitoring.metrics import gateway_version
+from ..monitoring import gateway_version
 from ..storage.database import Database
 from ..storage.repositories import gateways
 from ..storage.repositories.gateways import Member

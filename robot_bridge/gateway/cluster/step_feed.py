@@ -7,7 +7,6 @@ import contextlib
 
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
-from ..model.command_states import is_open
 from ..model.events import CommandChanged, EventBus, Listeners
 from ..model.robots import Robots
 from ..storage.database import Database
@@ -72,7 +71,7 @@ class StepFeed:
         if self._robots.gateway_of(report.robot) is None:
             return
         doing = self._robots.get(report.robot).command
-        if is_open(report.state):
+        if report.state.is_open:
             self._robots.assign(report.robot, report.command)
         elif doing == report.command:
             self._robots.assign(report.robot, None)

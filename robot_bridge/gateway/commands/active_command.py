@@ -12,7 +12,55 @@ from ...core.messages.commands import CommandReport, CommandState, CommandStep
 from ...core.messages.json_values import to_json
 from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import Arrival, PathArrival, arrival_judge
-from ..model.command_states import advance, may_become, note
+
+# --- The life of a command as reported: queued → delivered → acknowledged → reached, or another end ---
+
+_FORWARD = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED, CommandState.REACHED)
+
+
+class CommandLifeError(Exception):
+    """A step that the life of a command does not have."""
+
+
+def may_become(now: CommandState, then: CommandState) -> bool:
+    """Tell whether a command may step from ``now`` to ``then``.
+
+    Steps may be skipped forward (an acknowledgement proves the delivery) and never go back.
+    """
+    if not now.is_open:
+        return False
+    if then in _FORWARD:
+        return _FORWARD.index(then) > _FORWARD.index(now)
+    return True
+
+
+def advance(
+    command: CommandReport,
+    state: CommandState,
+    at: float,
+    by: str,
+    reason: str | None = None,
+    deviation: float | None = None,
+    stood: tuple[float, float, float] | None = None,
+) -> CommandReport:
+    """Return ``command`` one step further; raises CommandLifeError for a step it may not take."""
+    if not may_become(command.state, state):
+        raise CommandLifeError(
+            f"command {command.command} is {command.state.value} and cannot become {state.value}"
+        )
+    return dataclasses.replace(
+        command,
+        state=state,
+        steps=[*command.steps, CommandStep(state, at, by, reason)],
+        deviation=command.deviation if deviation is None else deviation,
+        stood=command.stood if stood is None else stood,
+    )
+
+
+def note(command: CommandReport, at: float, by: str, reason: str) -> CommandReport:
+    """Return ``command`` in the same state with one more line in its history."""
+    return dataclasses.replace(command, steps=[*command.steps, CommandStep(command.state, at, by, reason)])
+
 
 # --- A command with a step to come, and how the commands of one robot bear on each other; no I/O ---
 

@@ -14,14 +14,13 @@ from ...core.errors import RefusedError, UncertainError
 from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SetPosIni
 from ...protocol.codec import decode_answer
-from ..model.command_states import is_open, note
 from ..storage.database import Database
 from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import closures, commands, queues
 from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.queues import QueueHold
-from .active_command import ActiveCommand, CommandOrder, Recall, because
+from .active_command import ActiveCommand, CommandOrder, Recall, because, note
 
 # --- How commands and their messages in SA are written, in one transaction; called in the database's thread
 # Nothing here changes anything but the database, so that a transaction can be done again.
@@ -89,7 +88,7 @@ def insert_commands(
 def write_steps(connection: Connection, steps: Sequence[ActiveCommand]) -> None:
     """Write the newest step of commands; what ended takes its message out of SA."""
     commands.save_all(connection, [_stored(command) for command in steps])
-    answers.remove_answers(connection, [c.sa_id for c in steps if not is_open(c.report.state)])
+    answers.remove_answers(connection, [c.sa_id for c in steps if not c.report.state.is_open])
 
 
 def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[ActiveCommand]:
@@ -128,7 +127,7 @@ def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> Com
     """
     answers.remove_own(connection, robot, sa_id)
     stored = commands.find_message(connection, robot, sa_id)
-    if stored is None or is_open(stored.report.state) or any(s.by == robot for s in stored.report.steps):
+    if stored is None or stored.report.state.is_open or any(s.by == robot for s in stored.report.steps):
         return None
     report = note(stored.report, at, robot, "the robot had read it by then, and acknowledged it")
     commands.save_all(connection, [stored._replace(report=report)])

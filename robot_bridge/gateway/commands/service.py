@@ -16,7 +16,6 @@ from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.robots import Answer, OpAck, SendPos, SetPath
 from ..model.arrival import PathArrival, arrival_judge
-from ..model.command_states import is_open
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
@@ -439,7 +438,7 @@ class CommandService(CommandReader):
                 self._apply(command)
 
     def _apply(self, command: ActiveCommand) -> None:
-        if is_open(command.report.state):
+        if command.report.state.is_open:
             self._open.add(command)
         else:
             self._open.remove(command.report.command)

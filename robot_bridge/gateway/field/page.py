@@ -25,7 +25,7 @@ from ...core.sites.frame import Points, SiteFrame
 from ...core.sites.settings import SiteBounds
 from ...core.sites.site import Site
 from ...core.sites.transforms import lonlat_of
-from ..monitoring.metrics import gateway_version
+from ..monitoring import gateway_version
 from ..site.site_maps import SiteMaps
 
 PAGE, SITE = "/field", "/field/site.json"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
+import errno
 import hashlib
 import json
 import logging
@@ -19,7 +21,7 @@ from sqlalchemy import URL, Connection
 from sqlalchemy.exc import ProgrammingError
 
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
-from ...core.files import write_state
+from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ...core.messages.validation import MessageError, check_command_id
@@ -52,16 +54,22 @@ def journal_file(database: URL, folder: Path, gateway: str | None = None) -> Pat
     return folder / f"emergency-stop-{hashlib.sha256(of.encode()).hexdigest()[:12]}{name}.json"
 
 
+FULL = (errno.ENOSPC, errno.EDQUOT)
+ROOM = 16_384
+"""bytes that are set aside for stops on a disk that is full by then."""
+
+
 class StopJournal:
     """The stops that are not stored yet, as they were written down last; no file where there are none."""
 
     def __init__(self, file: Path) -> None:
         self._file = file
+        self._room = file.with_name(f".{file.name}.room")
         # One thread: what is written last is what stands there in the end.
         self._thread = ThreadPoolExecutor(1, "emergency stops")
 
     def check(self) -> None:
-        """Raise BridgeError when stops could not be written down."""
+        """Raise BridgeError when stops could not be written down; set room aside for them."""
         folder = self._file.parent
         if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
             raise BridgeError(
@@ -69,6 +77,7 @@ class StopJournal:
                 "one that is made while the database is away would be forgotten with this gateway; make the "
                 "folder, or give another one with --state or ROBOT_BRIDGE_STATE"
             )
+        self._set_room_aside()
 
     def write(self, stops: Sequence[StopRow]) -> asyncio.Future[None]:
         """Write down ``stops``, and no others; done when they are on the disk.
@@ -116,13 +125,27 @@ class StopJournal:
     def _write(self, stops: list[StopRow]) -> None:
         try:
             if stops:
-                text = json.dumps([_plain(stop) for stop in stops])
-                write_state(self._file, text.encode(), mode=0o600)
+                self._write_text(json.dumps([_plain(stop) for stop in stops]).encode())
             else:
                 self._file.unlink(missing_ok=True)
+                self._set_room_aside()
         except Exception as error:
             why = (error.strerror if isinstance(error, OSError) else None) or error
             log.error("emergency stops cannot be noted in %s: %s; they go out all the same", self._file, why)
+
+    def _write_text(self, text: bytes) -> None:
+        try:
+            write_state(self._file, text, mode=0o600)
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            write_state_into(self._room, self._file, text)
+
+    def _set_room_aside(self) -> None:
+        # On a disk that is full already there is none; what cannot be noted then is told to the log.
+        with contextlib.suppress(OSError):
+            if not self._room.is_file():
+                write_state(self._room, b" " * ROOM, mode=0o600)
 
 
 def _plain(stop: StopRow) -> dict[str, object]:

@@ -29,7 +29,6 @@ from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
 from ..model.arrival import Planner, remaining_path
-from ..model.command_states import is_open
 from ..model.request_handlers import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite
@@ -139,7 +138,7 @@ class RobotAnswers:
             raise RefusedError(
                 f"{question}: robot {robot!r} was given no {' or '.join(ops)} yet; wait for one"
             )
-        if not (is_open(found.state) or found.state is CommandState.REACHED):
+        if not (found.state.is_open or found.state is CommandState.REACHED):
             raise RefusedError(
                 f"{question}: the last {found.op} of robot {robot!r} is {found.state.value}; "
                 "wait for a new one"

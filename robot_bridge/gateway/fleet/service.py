@@ -36,6 +36,7 @@ from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
 from ..model.arrival import Planner, StraightPlanner
+from ..model.clocks import ClockStep
 from ..model.events import (
     CommandChanged,
     EventBus,
@@ -47,8 +48,7 @@ from ..model.events import (
 )
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
-from ..monitoring.metrics import Counters
-from ..monitoring.periodic_tasks import Steps
+from ..monitoring import Counters, Steps
 from ..queues.registry import QueueContext, QueueRegistry
 from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
@@ -341,6 +341,11 @@ class Fleet:
     async def watch_roads(self) -> None:
         """See to closed roads, and to robots in each other's way."""
         await self.roads.watch(listened_to=bool(self.listeners))
+
+    def clock_was_set(self, step: ClockStep) -> None:
+        """Keep the times for which robots are not heard, or wait."""
+        self.robots.clock_was_set(step)
+        self.roads.waiting.clock_was_set(step)
 
     def age(self) -> None:
         """Bring the liveness of every robot up to now."""

@@ -129,6 +129,9 @@ LEAST_BEHIND = 5.0
 """seconds; less is what a clock is corrected by."""
 LONG_IDLE = 7 * 86400.0
 """seconds without anything stored after which it may be the clock that is ahead."""
+UNKNOWN_AGE = 30 * 86400.0
+"""seconds ago that something counts as being that is yet to come by a clock that is behind: long ago, since
+nobody knows."""
 RELEASED = 1_767_225_600.0
 """2026-01-01 UTC: no computer with this version has an earlier time."""
 _SET_IT = "set it ('timedatectl' shows it, 'timedatectl set-ntp true' has the network set it)"

@@ -12,7 +12,7 @@ from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from ...core.messages.validation import check_robot_name
 from .arrival import standing
-from .clocks import ClockStep, PoseOrder
+from .clocks import LEAST_BEHIND, UNKNOWN_AGE, ClockStep, PoseOrder
 from .events import EventBus, RobotReturned
 
 # --- How far the knowledge of a robot can be trusted, from the age of its last message ---
@@ -220,8 +220,17 @@ class Robots:
         return not robot.located or now - robot.pose_at >= self._stale_after
 
     def restore(self, robot: Robot, now: float) -> None:
-        """Take in a robot that an earlier gateway knew."""
+        """Take in a robot that an earlier gateway knew.
+
+        One that was heard later than ``now``, as on a computer whose clock stands still without power, counts
+        as not heard for long.
+        """
         self._robots[robot.name] = robot
+        if robot.received_at > now:
+            is_behind = robot.received_at - now >= LEAST_BEHIND
+            robot.received_at = now - UNKNOWN_AGE if is_behind else now
+        if robot.pose_at is not None:
+            robot.pose_at = min(robot.pose_at, robot.received_at)
         if robot.pose is not None:
             robot.order = PoseOrder(robot.pose.fix_t, robot.pose.t, robot.link)
         robot.state = self._judge(robot, now)

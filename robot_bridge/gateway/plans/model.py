@@ -1,19 +1,12 @@
-"""A cone plan as the gateway drives it: its state, tasks, problems and report, and its replanning."""
+"""A cone plan as the gateway drives it: its state, tasks, problems and report; no I/O."""
 
 from __future__ import annotations
 
-import threading
-import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-import numpy as np
-
-from ...core.assignment.clearance import ClearTravel, Floats, NearOrByRoad, meetings
-from ...core.assignment.job import AssignmentJob, CancellableTravel, RoadTravel, StraightTravel, Travel
-from ...core.assignment.plan import ConePlan, PlanSituation, document_of
-from ...core.assignment.plan_changes import replan
+from ...core.assignment.plan import ConePlan, check_plan, document_of, plan_of_document
 from ...core.assignment.progress import (
     ClosedWay,
     ConeFacts,
@@ -23,9 +16,9 @@ from ...core.assignment.progress import (
     current_cones,
     sent_stops,
 )
-from ...core.assignment.solver import Objective
-from ...core.errors import AssignmentCancelledError, RefusedError
+from ...core.errors import PlanFileError, RefusedError
 from ...core.messages.plans import (
+    MOST_CONES,
     PlanProblemKind,
     PlanProblemReport,
     PlanReport,
@@ -35,7 +28,6 @@ from ...core.messages.plans import (
 )
 from ...core.messages.queues import QueueTask, TaskState
 from ...core.messages.roads import ClosureReport
-from ..traffic.road_planning import RoadPlanner
 from ..traffic.site_roads import ClosedRoads
 
 ENDS = (PlanState.FINISHED, PlanState.CLEARED)
@@ -71,6 +63,28 @@ class PlanTerms:
     def off_standing_m(self) -> float:
         """How far to keep from a robot that stands: half of what two keep that drive, for only one errs."""
         return max(self.clearance_m, self.apart_m / 2)
+
+
+def plan_in(request: SubmitPlan) -> ConePlan:
+    """Return the plan of a request; raises RefusedError for what is none, or cannot be driven."""
+    try:
+        plan = plan_of_document(request.document)
+    except PlanFileError as error:
+        raise RefusedError(f"submit_plan: {error}") from error
+    if sum(1 for _ in plan.all_stops()) > MOST_CONES or len(plan.targets) > MOST_CONES:
+        raise RefusedError(f"submit_plan: a plan holds {MOST_CONES} cones and as many stops at most")
+    if plan.crs:
+        raise RefusedError(f"submit_plan: the plan is in {plan.crs}; give it in metres of the site frame")
+    # A desk leads ways round cones and standing robots, and counts them without these few decimetres.
+    faults = check_plan(plan, led_round=True)
+    if faults:
+        more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
+        raise RefusedError(f"submit_plan: the plan cannot be driven: {faults[0]}{more}")
+    known = {one.id for one in request.cones}
+    unnamed = [stop.id for _, stop in plan.all_stops() if stop.is_target and stop.id not in known]
+    if unnamed:
+        raise RefusedError(f"submit_plan: cones does not name cone {unnamed[0]!r} of the plan")
+    return plan
 
 
 @dataclass(frozen=True)
@@ -221,69 +235,34 @@ def _problem_reports(problem: PlanProblem) -> list[PlanProblemReport]:
     ]
 
 
-# --- What is left of a plan, planned again, in a worker thread ---
+@dataclass
+class FollowedPlan:
+    """A plan that is driven, and what is known of it."""
 
-Place = tuple[float, float]
-PATIENCE = 5.0
-"""times the seconds asked for that planning may take in all: ways and the search are timed apart."""
+    plan: DrivenPlan
+    progress: PlanProgress
+    problem: PlanProblem = field(default_factory=PlanProblem)
+    seen_to: PlanProblem = field(default_factory=PlanProblem)
+    """the problem that a new plan was made for, or was tried to be."""
+    seen: Any = None
+    ended: set[str] = field(default_factory=set)
+    """the tasks that are known to be at their ends, from the database."""
+    meetings: int | None = None
+    """how often robots come too near to one another by the proposal."""
+    closed: int | None = None
+    """the ways of the proposal that lead along closed roads."""
 
-
-@dataclass(frozen=True)
-class ReplanGround:
-    """What plans are made on: ``placed`` cones, robots that are ``standing`` by name, roads; metres."""
-
-    terms: PlanTerms
-    placed: list[Place]
-    standing: Mapping[str, Place]
-    planner: RoadPlanner | None
-
-
-class Replanning:
-    """One plan of what is left in the making; :meth:`run` is for a worker thread."""
-
-    def __init__(self, plan: ConePlan, ground: ReplanGround, situation: PlanSituation) -> None:
-        self._plan, self._ground, self._situation = plan, ground, situation
-        self._cancelled = threading.Event()
-        self._until = 0.0
-
-    def cancel(self) -> None:
-        """Have :meth:`run` end soon."""
-        self._cancelled.set()
-
-    def run(self) -> ConePlan:
-        """Return the plan; raises AssignmentError, RoadsError and RefusedError when there is none."""
-        seconds = self._ground.terms.seconds
-        self._until = time.monotonic() + PATIENCE * seconds
-        objective = Objective(self._plan.objective, time_limit_s=seconds)
-        return replan(self._plan, self._travel, self._situation, objective, lambda share: self._goes_on())
-
-    def _travel(self, job: AssignmentJob) -> Travel:
-        terms, planner = self._ground.terms, self._ground.planner
-        travel: Travel = StraightTravel(job)
-        router = planner.router_of_its_own() if planner is not None and terms.on_roads else None
-        if router is not None:
-            roads = RoadTravel(job, router, progress=lambda share: self._check())
-            name = f"{roads.name}, straight within {terms.direct_m:g} m"
-            travel = NearOrByRoad(travel, roads, terms.direct_m, name)
-        cones = np.concatenate(
-            [job.places[job.first_target :], _places(terms.stand), _places(self._ground.placed)]
+    def report(self, *, documents: bool = False) -> PlanReport:
+        """Return the report for operators, with the plan itself and its proposal if ``documents``."""
+        proposed = self.plan.proposal is not None
+        return plan_report(
+            self.plan,
+            self.progress,
+            self.problem,
+            meetings=self.meetings if proposed else None,
+            closed=self.closed if proposed else None,
+            documents=documents,
         )
-        robots = _places(list(self._ground.standing.values()))
-        room = np.repeat([terms.clearance_m, terms.off_standing_m], [len(cones), len(robots)])
-        clear = ClearTravel(travel, job.places, np.concatenate([cones, robots]), room)
-        return CancellableTravel(clear, self._goes_on)
-
-    def _goes_on(self) -> bool:
-        return not self._cancelled.is_set() and time.monotonic() < self._until
-
-    def _check(self) -> None:
-        if not self._goes_on():
-            raise AssignmentCancelledError("The plan of what is left took too long, or was given up.")
-
-
-def count_meetings(plan: ConePlan, ground: ReplanGround) -> int:
-    """Return how often robots come too near to one another by ``plan``; for a worker thread."""
-    return len(meetings(plan, ground.terms.apart_m, ground.standing, ground.terms.off_standing_m))
 
 
 def ways_along_closed_roads(
@@ -298,7 +277,3 @@ def ways_along_closed_roads(
                 closure = closures[along[0]]
                 found.append(ClosedWay(one.robot.id, stop.id, closure.closed_by, closure.reason or "", stop))
     return tuple(found)
-
-
-def _places(places: Sequence[Place]) -> Floats:
-    return np.array(places, dtype=np.float64).reshape(-1, 2)

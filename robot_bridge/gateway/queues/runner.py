@@ -18,7 +18,6 @@ from ...core.messages.robots import SetPath, SetPosEnd, SetPosIni
 from ...core.messages.safety import RobotState
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
-from ..model.command_states import is_open
 from ..model.robots import AWAY
 from ..model.task_queue import Queue, QueuedTask, Whereabouts
 from ..site.places import crossing
@@ -60,7 +59,7 @@ class QueueOutcomes:
                 queue, task_life.mark_failed(queue, reason, self._clock.time(), skips=False).queue
             )
             return
-        if is_open(found.report.state):
+        if found.report.state.is_open:
             return
         skips = self._site.settings.queues.on_failure == "skip"
         outcome = task_life.settle_task(queue, found.report, self._legs_of(current), skips=skips)
@@ -262,7 +261,7 @@ class QueueRunner:
         if head is None:
             return
         if report.command == head.command:
-            if not is_open(report.state):
+            if not report.state.is_open:
                 self.schedule(report.robot)
         elif report.state is CommandState.QUEUED and self._is_beside(queue, report):
             # It has paused the queue in its own transaction.

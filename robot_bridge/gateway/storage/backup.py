@@ -20,7 +20,7 @@ from typing import IO, Any, Protocol
 from sqlalchemy import URL, Connection, create_engine, delete, func, inspect, select
 from sqlalchemy.pool import NullPool
 
-from ...core.errors import BridgeError, StoreError, counted
+from ...core.errors import BridgeError, StoreError, counted, in_one_line
 from ...core.files import replacement
 from ...core.json_decoder import SHORT, decode_json
 from . import revisions
@@ -135,7 +135,7 @@ class ServerBackups:
             errors.seek(0)
             stderr = errors.read(4096).decode(errors="replace")
         if status:
-            reason = " ".join(stderr.split())[:600] or f"status {status}"
+            reason = in_one_line(stderr)[:600] or f"status {status}"
             raise StoreError(f"database {shown(self._url)}: {Path(command[0]).name} failed: {reason}")
 
     def _program(self, name: str) -> str:
@@ -163,6 +163,19 @@ class ServerBackups:
         raise NotImplementedError
 
 
+_PARTITIONS = ("trajectories_" + 8 * "[0-9]", "trajectories_other", "trajectories_before")
+"""The partitions of positions, as patterns that pg_dump holds against what it sees in its snapshot."""
+_BY_DAY = """
+do $$ begin
+    if to_regproc('public.make_trajectory_days') is not null then
+        perform public.make_trajectory_days(array(
+            select distinct floor(received_at / 86400)::integer from only public.trajectories_other
+        ), 1000000000);
+    end if;
+end $$;"""
+"""Partitions for the days of the backup; an older version has none."""
+
+
 class PostgreSqlBackups(ServerBackups):
     """pg_dump and psql. Inserts and not COPY: the rights of rows, where robots have accounts, forbid that."""
 
@@ -176,8 +189,13 @@ class PostgreSqlBackups(ServerBackups):
             "--enable-row-security",
             "--no-owner",
             "--no-privileges",
+            "--load-via-partition-root",
         ]
-        return [*form, *(f"--table=public.{name}" for name in tables), "--exclude-table=*_seq"]
+        return [
+            *form,
+            *(f"--table=public.{name}" for name in (*tables, *_PARTITIONS)),
+            "--exclude-table=*_seq",
+        ]
 
     def _reader_options(self) -> list[str]:
         return ["--no-psqlrc", "--quiet", "--single-transaction", "--set=ON_ERROR_STOP=1", "--file=-"]
@@ -190,7 +208,7 @@ class PostgreSqlBackups(ServerBackups):
             f"select setval(pg_get_serial_sequence('public.{name}', 'id'), {_highest(f'public.{name}')});"
             for name in tables
             if name in NUMBERED
-        ]
+        ] + [_BY_DAY]
 
     def _secrets(self) -> Mapping[str, str]:
         url = self._url

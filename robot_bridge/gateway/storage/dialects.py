@@ -25,6 +25,8 @@ from sqlalchemy.exc import (
 )
 from sqlalchemy.pool import NullPool
 
+from ...core.errors import in_one_line
+
 # --- What the bridge asks of a kind of database; the default is a database that needs nothing special ---
 
 CONNECT_TIMEOUT_S = 5
@@ -56,6 +58,8 @@ class Dialect:
     """Whether it can be asked cheaply if another connection wrote (see :meth:`version`)."""
     listens: ClassVar[bool] = False
     """Whether the database tells its readers of new rows (see :mod:`.wakeups`)."""
+    partitions_days: ClassVar[bool] = False
+    """Whether positions are kept in partitions of a day, which have to be made before it begins."""
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         """Return an engine on ``url``; raises ModuleNotFoundError when its driver is not installed."""
@@ -103,7 +107,7 @@ class Dialect:
 
     def cause(self, error: SQLAlchemyError) -> str:
         """Return in one line what the database said."""
-        return " ".join(str(getattr(error, "orig", None) or error).split())
+        return in_one_line(getattr(error, "orig", None) or error)
 
 
 # --- MariaDB 10.11 or newer, through PyMySQL ---
@@ -155,7 +159,7 @@ class MariaDB(Dialect):
 
     def cause(self, error: SQLAlchemyError) -> str:
         arguments: tuple[Any, ...] = getattr(getattr(error, "orig", None), "args", ())
-        return " ".join(str(arguments[1]).split()) if len(arguments) > 1 else super().cause(error)
+        return in_one_line(arguments[1]) if len(arguments) > 1 else super().cause(error)
 
 
 def _code(error: SQLAlchemyError) -> int | None:
@@ -195,6 +199,7 @@ class PostgreSQL(Dialect):
 
     name = "postgresql"
     listens = True
+    partitions_days = True
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         engine = sqlalchemy.create_engine(

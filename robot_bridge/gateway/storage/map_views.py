@@ -37,6 +37,7 @@ class MapViewError(BridgeError):
 class PlacedRows(NamedTuple):
     """Rows with a place in the site frame, as SQL that all databases read.
 
+    In ``source``, ``{newest}`` joins the newest position ``t`` of robot ``r``, by :attr:`MapViews._NEWEST`.
     ``columns`` are expressions by name; those in ``times`` are seconds since 1970. ``x`` and ``y`` are
     metres; ``theta``, where there is any, is counter-clockwise from the site's x axis, in radians.
     """
@@ -50,8 +51,6 @@ class PlacedRows(NamedTuple):
 
 
 _NUMBERS = ("x", "y", "theta", "v", "deviation", "heading", "easting", "northing")
-_NEWEST = "select max(n.id) from {schema}trajectories n where n.robot = r.name and n.received_at = ({last})"
-_LAST = "select max(m.received_at) from {schema}trajectories m where m.robot = r.name"
 
 
 def _of(table: str, *names: str) -> dict[str, str]:
@@ -60,7 +59,7 @@ def _of(table: str, *names: str) -> dict[str, str]:
 
 _ROWS = {
     "robots": PlacedRows(
-        "{schema}robots r join {schema}trajectories t on t.id = (" + _NEWEST.replace("{last}", _LAST) + ")",
+        "{schema}robots r {newest}",
         {"robot": "r.name", "link": "r.link", **_of("t", "x", "y", "theta", "v")},
         {"seen_at": "t.received_at"},
         "t.x",
@@ -108,6 +107,10 @@ class MapViews(abc.ABC):
 
     _PARAMS: Mapping[str, str]
     """Where the goal of a command stands, by axis."""
+    _SCHEMA: str = ""
+    """What stands before the names of tables."""
+    _NEWEST: str
+    """How the newest position of a robot is joined."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
@@ -138,6 +141,10 @@ class MapViews(abc.ABC):
 
     @abc.abstractmethod
     def _make(self, frame: SiteFrame, srid: int) -> list[str]: ...
+
+    def _source(self, rows: PlacedRows) -> str:
+        """Return where the rows come from."""
+        return rows.source.format(schema=self._SCHEMA, newest=self._NEWEST)
 
     def _axes(self, rows: PlacedRows) -> tuple[str, str]:
         """Return the expressions of x and y in the site frame."""
@@ -177,6 +184,12 @@ class PostGisViews(MapViews):
     """Views in the schema ``fleet_map``; whoever may use that schema may read all of them."""
 
     _PARAMS = _POSTGIS_PARAMS
+    _SCHEMA = "public."
+    # By the index of each partition on robot and time; there is none on the ids.
+    _NEWEST = (
+        "cross join lateral (select * from public.trajectories n where n.robot = r.name "
+        "order by n.received_at desc, n.id desc limit 1) t"
+    )
 
     def remove(self) -> None:
         for name in (*_ROWS, "paths"):
@@ -231,7 +244,7 @@ class PostGisViews(MapViews):
             "geom": f"{place}::{gis}.geometry(Point, {srid})",
             "geom_4326": f"{gis}.st_transform({place}, {WGS84})::{gis}.geometry(Point, {WGS84})",
         }
-        return f"select {_listed(columns)} from {rows.source.format(schema='public.')}"  # nosec B608 # names of ours
+        return f"select {_listed(columns)} from {self._source(rows)}"  # nosec B608 # names of ours
 
     def _gis(self) -> str:
         """Return the schema that PostGIS is in, quoted where it has to be."""
@@ -257,6 +270,10 @@ class SQLiteViews(MapViews):
     """Views with the columns ``easting`` and ``northing``; :func:`virtual_layers` makes points of them."""
 
     _PARAMS = _SQLITE_PARAMS
+    _NEWEST = (
+        "join trajectories t on t.id = (select max(n.id) from trajectories n where n.robot = r.name and "
+        "n.received_at = (select max(m.received_at) from trajectories m where m.robot = r.name))"
+    )
 
     def remove(self) -> None:
         for name in _ROWS:
@@ -273,7 +290,7 @@ class SQLiteViews(MapViews):
                 "easting": east,
                 "northing": north,
             }
-            source = rows.source.format(schema="")
+            source = self._source(rows)
             self._do(f"create view {PREFIX}{name} as select {_listed(columns)} from {source}")  # nosec B608 # names of ours
         return [f"{PREFIX}{name}" for name in _ROWS]
 

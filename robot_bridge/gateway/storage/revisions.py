@@ -47,6 +47,8 @@ class RevisionReport:
 
 
 _version = Table("alembic_version", MetaData(), Column("version_num", String(32), primary_key=True))
+_ON_POSTGRESQL_ONLY = frozenset({"ix_trajectories_id"})
+"""An index in the place of the primary key, which a table of partitions has none of."""
 _MARKS = frozenset({"rr", "sa", "commands", "trajectories"})
 
 
@@ -122,8 +124,6 @@ def _stamp(connection: Connection, revision: str) -> None:
 def _config(connection: Connection) -> Config:
     from alembic.config import Config
 
-    from .migrations import repeatable  # noqa: F401 - defined, it takes the place of Alembic's own
-
     config = Config()
     config.set_main_option("script_location", str(MIGRATIONS).replace("%", "%%"))
     config.attributes["connection"] = connection
@@ -145,7 +145,7 @@ def _advice(found: str | None) -> str:
 
 
 def _ours(name: str | None, kind: str, _parents: Any) -> bool:
-    return kind != "table" or name in metadata.tables
+    return name not in _ON_POSTGRESQL_ONLY and (kind != "table" or name in metadata.tables)
 
 
 def _differs(

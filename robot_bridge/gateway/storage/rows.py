@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 
 from msgspec import ValidationError
 from sqlalchemy import Column, ColumnElement, Connection, Table, delete, select
+from sqlalchemy.exc import DBAPIError
 
 # --- Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are
 
@@ -49,6 +50,30 @@ def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: S
     for some in _pieces(connection, rows):
         text = _insert(table.name, tuple(names), len(some), _mark(connection))
         connection.exec_driver_sql(text, tuple(value for row in some for value in row))
+
+
+_COPY_HEAD = b"PGCOPY\n\xff\r\n\x00" + bytes(8)
+_COPY_END = b"\xff\xff"
+
+
+def copy_rows(connection: Connection, table: Table, names: Sequence[str], rows: Iterable[bytes]) -> None:
+    """Insert ``rows`` on PostgreSQL; each is a row of its binary format of COPY with the columns ``names``.
+
+    The driver is asked itself, whose errors become those that a statement of SQLAlchemy raises.
+    """
+    driver: Any = connection.connection.driver_connection
+    dialect = connection.dialect
+    text = f"COPY {table.name} ({', '.join(names)}) FROM STDIN (FORMAT BINARY)"
+    try:
+        with driver.cursor() as cursor, cursor.copy(text) as copy:
+            copy.write(b"".join((_COPY_HEAD, *rows, _COPY_END)))
+    except dialect.loaded_dbapi.Error as error:
+        lost = dialect.is_disconnect(error, driver, None)
+        if lost:
+            connection.invalidate(error)
+        raise DBAPIError.instance(
+            text, None, error, dialect.loaded_dbapi.Error, True, lost, dialect=dialect
+        ) from error
 
 
 def add_messages(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:

@@ -248,6 +248,7 @@ placements = Table(
     sqlite_autoincrement=True,
 )
 
+# On PostgreSQL in partitions of a day, without the primary key, by migration 0011.
 trajectories = Table(
     "trajectories",
     metadata,

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 
 from sqlalchemy import Engine
 
+from ...core.errors import in_one_line
 from .roles.blocking_sessions import Offences
 
 if TYPE_CHECKING:
@@ -182,8 +183,7 @@ class NotifiedWakeup:
                 self.is_flooded = False
                 continue
             except (psycopg.Error, OSError) as error:
-                reason = " ".join(str(error).split())
-                log.warning("notifications are lost, looking once a second meanwhile: %s", reason)
+                log.warning("notifications are lost, looking once a second meanwhile: %s", in_one_line(error))
             await asyncio.sleep(RETRY_AFTER_S)
 
     def _connect(self) -> Connection[Any]:

@@ -35,7 +35,7 @@ from ..model.arrival import Point
 from ..model.events import Listeners
 from ..model.request_handlers import handles
 from ..model.robots import Robots
-from ..monitoring.periodic_tasks import Steps
+from ..monitoring import Steps
 from ..site.places import ServedSite, route_in_site_frame
 from ..storage.database import Database
 from .closures import ClosureService, DetourQueues, Detours

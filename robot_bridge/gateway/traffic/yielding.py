@@ -26,6 +26,7 @@ from ..commands.persistence import Also, AlsoOf
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Floats, Point
+from ..model.clocks import ClockStep
 from ..storage.database import Database
 from ..storage.repositories import closures as stored
 from ..storage.repositories.closures import HoldRow
@@ -254,6 +255,10 @@ class YieldManager:
         rows = await self._database.run(stored.held)
         self._rows.clear()
         self._rows.update({row.robot: row for row in rows})
+
+    def clock_was_set(self, step: ClockStep) -> None:
+        """Keep the times that robots wait for: one would wait for years, or no more."""
+        self._rows.update({n: row._replace(until=step.moved(row.until)) for n, row in self._rows.items()})
 
     async def catch_up(self) -> None:
         """Take up robots that were stored as waiting without that being known; raises StoreError."""

@@ -23,6 +23,7 @@ from ..storage.database import Database
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories import trajectories
 from ..storage.repositories.trajectories import (
+    DAY,
     Fix,
     PackedFix,
     PageMark,
@@ -222,7 +223,6 @@ log = logging.getLogger(__name__)
 
 BATCH = 5000
 """positions in one transaction: a gateway that runs on the database waits no longer than for these."""
-DAY = 86_400.0
 
 
 @dataclass(frozen=True)
@@ -264,6 +264,8 @@ async def import_drives(
         for drive in drives:
             begun.append(drive)
             for batch in _batches(_thinned(drive.fixes, settings)):
+                if database.dialect.partitions_days:
+                    await database.run(trajectories.make_days, trajectories.days_of(batch))
                 await database.run(trajectories.add, batch)
                 count += len(batch)
     except BaseException:

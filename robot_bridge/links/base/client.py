@@ -24,9 +24,8 @@ from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatu
 from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS, SendPos, Start, Stopped
 from ...core.messages.safety import Ability
 from ...core.messages.validation import MessageError, check_robot_name
+from ...core.parent_process import call_at_end_of_input, notify
 from ...core.sites.frame import SiteFrame
-from ...core.standard_input import call_at_end_of_input
-from ...core.systemd import notify
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from ...protocol.credentials import ClientCredentials

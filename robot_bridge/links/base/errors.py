@@ -1,7 +1,5 @@
 """The exception family of links."""
 
-from __future__ import annotations
-
 from ...core.errors import BridgeError
 
 

@@ -1,7 +1,5 @@
 """What can be wrong with a ROS network, its messages and the settings that name it."""
 
-from __future__ import annotations
-
 
 class RosError(Exception):
     """What an adapter of ROS robots refuses; the text names what was wrong, where, and what to do."""

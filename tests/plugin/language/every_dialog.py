@@ -21,7 +21,7 @@ from fleet_supervisor.plugin.admin.token_dialog import TokenDialog
 from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
 from fleet_supervisor.plugin.help import START, HelpWindow
 from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
-from fleet_supervisor.plugin.map.tools.closure_tool import ClosureDialog
+from fleet_supervisor.plugin.map.tools.click_tools import ClosureDialog
 from fleet_supervisor.plugin.panel.alarms.alarm_panel import AlarmLogDialog, ThresholdsDialog
 from fleet_supervisor.plugin.panel.alarms.rules import Thresholds
 from fleet_supervisor.plugin.panel.command_sources import CoordinatesDialog

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from fleet_supervisor.plugin.panel.alarms.rules import AlarmKind
 
 from tools.syntax import tree_of
 
@@ -76,22 +77,7 @@ TEXTS = {
         "the bridge's word for a choice of a layout's dimension, with the operator's word beside it",
     ),
     **dict.fromkeys(("PyVRP", "RoutingKit", "SciPy", "QGIS", "GeoJSON", "GeoPackage"), "a proper name"),
-    **dict.fromkeys(
-        (
-            "unsure of its place",
-            "in a keepout",
-            "at an obstacle",
-            "near a robot",
-            "will come near a robot",
-            "too close",
-            "will pass too near",
-            "outside the site",
-            "off the road",
-            "stopped unasked",
-            "low battery",
-        ),
-        "the value that a kind of alarm is kept under; plugin/panel/alarms/board.py has its words",
-    ),
+    **{kind.value: "the value that a kind of alarm is kept under, beside its words" for kind in AlarmKind},
 }
 """Texts that nobody reads as they are, or that have to stay as they are, and why."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.planning import plan_views
+from fleet_supervisor.plugin.planning import plan_texts
 from fleet_supervisor.robot_bridge.core.assignment.plan import plan_of_document
 from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from fleet_supervisor.robot_bridge.core.messages.queues import TaskState
@@ -175,7 +175,7 @@ def test_a_site_that_is_published_anew_or_chosen_keeps_the_plan_and_another_does
 
 
 def test_what_is_done_is_counted_and_off_the_map_in_every_language(under_way, plans, wait, monkeypatch):
-    monkeypatch.setattr(plan_views, "_WORDS", {state: f"«{state.value}»" for state in TaskState})
+    monkeypatch.setattr(plan_texts, "_WORDS", {state: f"«{state.value}»" for state in TaskState})
     first, *others = cones_of(under_way.driven.shown_plan)["r1"]
     states = {first: ("done", None), others[0]: ("failed", "a wall"), others[1]: ("waiting", None)}
     plans.tell(steps=0, done=1, states=states)

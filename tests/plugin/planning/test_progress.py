@@ -6,9 +6,7 @@ import itertools
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.planning import progress as desk
-from fleet_supervisor.plugin.planning.plan_views import stop_rows
-from fleet_supervisor.plugin.planning.progress import problem_in_words
+from fleet_supervisor.plugin.planning.plan_texts import ReportedProgress, problem_in_words, stop_rows
 from fleet_supervisor.robot_bridge.core.assignment.job import (
     AssignmentJob,
     ConeTarget,
@@ -251,7 +249,7 @@ def reported(plan, states, placements=()):
         if stop.id in states
     ]
     report = PlanReport("p", 1, PlanState.DRIVEN, "anna", BEGAN, False, 6, 0, ["r1", "r2"], stops)
-    return desk.ReportedProgress(report, placements)
+    return ReportedProgress(report, placements)
 
 
 def test_the_table_says_what_a_cone_waits_for_and_how_far_off_one_stands():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.command_cache import UNDER_WAY, CommandCache
+from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache
 from fleet_supervisor.plugin.replay.history import AT_ONCE, CommandSorter, sort_commands
 from fleet_supervisor.plugin.ui.scheduling import run_to_end
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
@@ -63,7 +63,7 @@ def test_of_hundreds_of_commands_the_same_are_under_way_as_one_by_one():
         newest = {}
         for report in sorted(reports, key=lambda report: report.steps[0].at):
             so_far = [step.state for step in report.steps if step.at <= T0 + seconds]
-            if so_far and so_far[-1] in UNDER_WAY:
+            if so_far and so_far[-1].is_open:
                 newest[report.robot] = report
         told = commands.under_way_at(T0 + seconds)
         assert {report.robot: report for report in told} == newest and len(told) == len(newest)

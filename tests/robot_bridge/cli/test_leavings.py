@@ -11,13 +11,13 @@ from websockets.asyncio.client import connect
 from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
+from robot_bridge.gateway import monitoring as tasks
 from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.model.request_handlers import RequestHandlers
-from robot_bridge.gateway.monitoring import periodic_tasks as tasks
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database
 

@@ -70,7 +70,7 @@ def test_every_setting_is_explained(page):
 def test_every_metric_is_one_that_there_is(page, root):
     source = "".join(
         (root / "robot_bridge" / "gateway" / name).read_text(encoding="utf-8")
-        for name in ("api/status_pages.py", "monitoring/metrics.py")
+        for name in ("api/status_pages.py", "monitoring.py")
     )
     named = set(re.findall(r"`robot_bridge_(\w+?)(?:_total)?[`{ ]", page))
     assert len(named) > 12
@@ -81,6 +81,7 @@ def test_every_metric_is_one_that_there_is(page, root):
 def test_every_option_of_serve_is_explained(page):
     from robot_bridge.cli.serve import serve
 
+    # Whoever runs a gateway has no use for what programs that start one give it.
     for name in serve.__annotations__:
-        if name != "return":
+        if name not in ("return", "until_stdin_closes"):
             assert f"`--{name.replace('_', '-')}`" in page, name

@@ -18,6 +18,7 @@ from robot_bridge.core.sites.settings_tables import (
 )
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app, retention
+from robot_bridge.gateway.api.site_queries import SiteQueries
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
@@ -284,9 +285,9 @@ async def test_the_gateway_does_it_by_the_settings_of_its_site(
         AuthGate(database, LimitSettings(), may_be_open=True),
         LinkProcesses(settings.links, tmp_path),
     )
-    work = app.Gateway(fleet, gate, links, RequestHandlers(), FieldPage(maps)).works("ws://127.0.0.1:1")[
-        "prune"
-    ]
+    queries = SiteQueries(maps, RequestHandlers())
+    gateway = app.Gateway(fleet, gate, links, RequestHandlers(), FieldPage(maps), queries)
+    work = gateway.works("ws://127.0.0.1:1")["prune"]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
         while "prune" not in fleet.tally.beats:

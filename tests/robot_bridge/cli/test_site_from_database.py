@@ -195,6 +195,12 @@ def test_views_of_the_fleet_take_their_frame_from_it(address, new_database):
     assert "made map_robots" in done.stdout
 
 
+def test_an_experiment_is_driven_on_it(address, tmp_path):
+    (tmp_path / "short.toml").write_text("route = [[20, 20], [22, 20]]\n[filter]\nleast = 200\n", "utf-8")
+    done = run_command("experiment", tmp_path / "short.toml", "--site", address, "--seeds", "1")
+    assert done.returncode == 0 and "| 1 | 1.9 |" in done.stdout, done
+
+
 @pytest.mark.parametrize("command", ["trajectories", "placements"])
 def test_what_is_exported_takes_its_frame_from_it(command, address, new_database, tmp_path):
     words = (command, "export", tmp_path / "out.gpkg", "--site", address)

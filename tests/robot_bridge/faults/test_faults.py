@@ -37,7 +37,7 @@ def go_on_until_reached(yard, commands):
 
 def kept_all(findings, reached, **faults):
     """Tell that these faults were there, that enough went on beside them, and that nothing is wrong."""
-    print(findings.told())
+    print(findings.lines())
     assert findings.wrong == []
     counts = findings.counts
     assert {what: counts[what] for what in faults} == faults

@@ -63,7 +63,7 @@ async def line(yard):
     """A yard whose robot r1 stands at (20, 40)."""
     for robot in ("r1", "r2"):
         await yard.ready(robot)
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
         await yard.at(20.0, 40.0, robot=robot)
     return Line(yard)
 
@@ -105,7 +105,7 @@ class RoadYard(Yard):
             await self.ready(robot)
         await self.at(*points[0], v=1.0, robot=robot)
         await self.send(id, "SetPath", robot, points=points)
-        await self.take(robot)
+        await self.acknowledge_all(robot)
 
     async def wait_at_the_crossing(self):
         """Let r1 stand where it waits for r2, the first part of its way driven; return how it waits."""
@@ -113,7 +113,7 @@ class RoadYard(Yard):
         await self.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
         await self.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
         (hold,) = (await self.fleet.roads.traffic.conflicts()).waiting
-        await self.take()
+        await self.acknowledge_all()
         for share in (0.25, 0.5, 0.75, 1.0):
             await self.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
         assert self.fleet.roads.ways.of("r1") is None

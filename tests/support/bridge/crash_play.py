@@ -20,9 +20,9 @@ from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
 from robot_bridge.core.messages.commands import CommandState, Send
 from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue
 from robot_bridge.gateway.api.robot_sql import SqlInterface
+from robot_bridge.gateway.commands.active_command import may_become
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
-from robot_bridge.gateway.model.command_states import is_open, may_become
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.traffic.road_planning import RoadPlanner
 from tests.support.bridge.mortal_database import Killed, MortalDatabase
@@ -236,14 +236,14 @@ class Play:
         (found,) = (await self.ask(lambda fleet: fleet.queues.read(GetQueue(robot, paths=True)))).queues
         return found
 
-    async def give(self, *tasks, robot="r1"):
+    async def set_queue(self, *tasks, robot="r1"):
         """Give a robot a queue."""
 
-        async def give(fleet):
+        async def replace(fleet):
             (seen,) = (await fleet.queues.read(GetQueue(robot))).queues
             return await fleet.queues.set(SetQueue(robot, seen.revision, list(tasks)), "Ada")
 
-        await self.ask(give)
+        await self.ask(replace)
 
     async def resume(self, robot="r1"):
         """Let a robot's queue go on."""
@@ -356,7 +356,7 @@ class Play:
         for steps in lives.values():
             for now, then in itertools.pairwise(steps):
                 assert now is then or may_become(now, then), steps
-            assert not is_open(steps[-1])
+            assert not steps[-1].is_open
 
     def _stage(self):
         """Return how things stand, for whoever reads why a play failed."""

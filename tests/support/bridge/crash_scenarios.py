@@ -61,7 +61,7 @@ def short_course():
 
 async def cones(play, robot=WebSocketRobot):
     await play.begin(robot(play, "r1", BEGIN))
-    await play.give(*course())
+    await play.set_queue(*course())
     await play.until_done()
     play.check({"r1": COURSE})
     play.check_cones(COURSE_CONES)
@@ -75,7 +75,7 @@ async def cones_over_sql(play):
 async def cones_ahead_of_their_robot(play):
     play.ahead(AHEAD)
     await play.begin(WebSocketRobot(play, "r1", BEGIN, offset=(AHEAD, 0.0)))
-    await play.give(*course(theta=0.0))
+    await play.set_queue(*course(theta=0.0))
     await play.until_done()
     play.check({"r1": COURSE})
     play.check_cones(COURSE_CONES)
@@ -83,8 +83,8 @@ async def cones_ahead_of_their_robot(play):
 
 async def one_after_another(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", (56.0, 55.0)))
-    await play.give(task("a", "place", cone="A", after=["task-000c"]), task("b"))
-    await play.give(task("c", "place", cone="C"), task("d", "place", cone="D"), robot="r2")
+    await play.set_queue(task("a", "place", cone="A", after=["task-000c"]), task("b"))
+    await play.set_queue(task("c", "place", cone="C"), task("d", "place", cone="D"), robot="r2")
     await play.until_done()
     play.check({"r1": COURSE[:2], "r2": COURSE[2:]})
     play.check_cones([PLACES["a"], PLACES["c"], PLACES["d"]])
@@ -95,7 +95,7 @@ async def one_after_another(play):
 
 async def paused(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN))
-    await play.give(*short_course())
+    await play.set_queue(*short_course())
     await play.wait(3)
     play.about_to_stop()
     await play.ask(lambda fleet: fleet.queues.pause(PauseQueue("r1"), "Ada"))
@@ -110,8 +110,8 @@ async def paused(play):
 
 async def aborted(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*short_course())
-    await play.give(OTHER, robot="r2")
+    await play.set_queue(*short_course())
+    await play.set_queue(OTHER, robot="r2")
     await play.wait(2)
     play.about_to_stop()
     for name in play.robots:
@@ -127,8 +127,8 @@ async def aborted(play):
 
 async def aborted_too_late(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(task("a", "place"), task("b", "place"))
-    await play.give(OTHER, robot="r2")
+    await play.set_queue(task("a", "place"), task("b", "place"))
+    await play.set_queue(OTHER, robot="r2")
     await play.until(lambda: all(robot.record.began for robot in play.robots.values()))
     for robot in play.robots.values():
         robot.says_late, robot.away_until = True, play.now + OUT_OF_REACH
@@ -176,8 +176,8 @@ async def halted(play):
 async def continued_at_once(play):
     """Robots are paused, and told to go on before they can have stopped: each cone is put down once."""
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*short_course())
-    await play.give(OTHER, robot="r2")
+    await play.set_queue(*short_course())
+    await play.set_queue(OTHER, robot="r2")
     await play.wait(2)
     play.about_to_stop()
     for name in play.robots:
@@ -189,7 +189,7 @@ async def continued_at_once(play):
 
 async def made_current(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN))
-    await play.give(*(task(id, "place") for id in "abc"))
+    await play.set_queue(*(task(id, "place") for id in "abc"))
     await play.wait(2)
 
     async def first(fleet):
@@ -204,8 +204,8 @@ async def made_current(play):
 
 async def taken_over(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", (56.0, 55.0)))
-    await play.give(task("a", "place"), task("b", "place"))
-    await play.give(task("c", "place"), robot="r2")
+    await play.set_queue(task("a", "place"), task("b", "place"))
+    await play.set_queue(task("c", "place"), robot="r2")
     await play.wait(2)
 
     async def take(fleet):
@@ -224,8 +224,8 @@ async def taken_over(play):
 
 async def stopped(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
-    await play.give(*short_course())
-    await play.give(OTHER, robot="r2")
+    await play.set_queue(*short_course())
+    await play.set_queue(OTHER, robot="r2")
     await play.wait(2)
     play.about_to_stop()
     await play.ask(lambda fleet: fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada"))
@@ -249,7 +249,7 @@ async def stopped(play):
 
 async def ordered_beside_its_queue(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN))
-    await play.give(task("b", "place"), task("c", "place"))
+    await play.set_queue(task("b", "place"), task("c", "place"))
     await play.wait(2)
     await play.order("beside", "SetPosEnd", x=45.0, y=45.0)
     await play.until(lambda: (45.0, 45.0) in play.robots["r1"].record.ends)
@@ -290,7 +290,7 @@ async def a_lap_over_sql(play):
 async def started_anew(play):
     await play.begin(WebSocketRobot(play, "r1", BEGIN), SqlRobot(play, "r2", BEFORE_OTHER))
     await play.order("drawn", "SetPath", points=DRAWN)
-    await play.give(OTHER, robot="r2")
+    await play.set_queue(OTHER, robot="r2")
     await play.wait(2)
     for robot in play.robots.values():
         robot.start_anew()
@@ -329,7 +329,7 @@ async def led_round_a_closed_road(play, robot=WebSocketRobot):
     await play.begin(robot(play, "r1", (10.0, 8.0)))
     along = [(10.0, 8.0), (126.0, 8.0)]
     tasks = [QueueTask("task-0001", 126.0, 8.0, path=along), QueueTask("task-0002", 126.0, 12.0)]
-    await play.give(*tasks)
+    await play.set_queue(*tasks)
     await play.until(lambda: play.robots["r1"].record.began)
     await play.ask(lambda fleet: fleet.roads.closures.close(CloseRoad("closure-1", *SOUTH), "Ada"))
     has_passed = play.robots["r1"].x > SOUTH[0]
@@ -352,7 +352,7 @@ async def led_round_a_closed_road_over_sql(play):
 
 async def waited_with_its_queue(play):
     await play.begin(WebSocketRobot(play, "r1", CROSSING[0][0]), WebSocketRobot(play, "r2", CROSSING[1][0]))
-    await play.give(QueueTask("task-0001", *CROSSING[0][-1], path=CROSSING[0]))
+    await play.set_queue(QueueTask("task-0001", *CROSSING[0][-1], path=CROSSING[0]))
     await play.turn()
     await _let_pass(play)
 

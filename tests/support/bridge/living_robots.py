@@ -303,7 +303,7 @@ class SqlRobot(Robot):
         self._unsaid[0].say_at = math.inf
         return self._unsaid[0]
 
-    def taken(self):
+    def acknowledged(self):
         del self._unsaid[:1]
 
     def untold(self, after=0.0):

@@ -30,35 +30,35 @@ class Line:
     def queues(self):
         return self.yard.fleet.queues
 
-    async def go(self):
+    async def advance(self):
         """Let the gateway do what is due."""
         self.yard.fleet.driving.look_at_all()
         for _ in range(4):
             await self.yard.fleet.driving.advance()
 
     async def set(self, *tasks, robot="r1", revision=None):
-        revision = (await self.seen(robot)).revision if revision is None else revision
+        revision = (await self.report(robot)).revision if revision is None else revision
         report = await self.queues.set(SetQueue(robot, revision, list(tasks)), "Ada")
-        await self.go()
+        await self.advance()
         return report
 
-    async def seen(self, robot="r1", **how):
+    async def report(self, robot="r1", **how):
         (report,) = (await self.queues.read(GetQueue(robot, **how))).queues
         return report
 
     async def states(self, robot="r1"):
-        report = await self.seen(robot)
+        report = await self.report(robot)
         return {one.task[-1]: one.state.value for one in [*report.tasks, *report.ended]}
 
     async def resume(self, robot="r1"):
-        await self.queues.resume(ResumeQueue(robot, (await self.seen(robot)).revision), "Ada")
-        await self.go()
+        await self.queues.resume(ResumeQueue(robot, (await self.report(robot)).revision), "Ada")
+        await self.advance()
 
     async def reach(self, x, y, robot="r1"):
         """Let the robot take on what waits for it, and stand at (x, y)."""
-        ops = await self.yard.take(robot)
+        ops = await self.yard.acknowledge_all(robot)
         await self.yard.at(x, y, robot=robot)
-        await self.go()
+        await self.advance()
         return ops
 
     async def sent(self, robot="r1"):
@@ -72,11 +72,11 @@ LANE = [(20.0, 40.0), (40.0, 41.0), (50.0, 40.0)]
 
 async def drive(line, path, end, robot="r1"):
     """Let the robot take its path on, drive along it and stand at its end."""
-    ops = await line.yard.take(robot)
+    ops = await line.yard.acknowledge_all(robot)
     for x, y in path:
         await line.yard.at(x, y, v=1.0, robot=robot)
     await line.yard.at(*end, robot=robot)
-    await line.go()
+    await line.advance()
     return ops
 
 

@@ -28,12 +28,12 @@ class Yard:
 
     @property
     def now(self):
-        """The time that the fleet goes by, which a test sets."""
+        """The time that the fleet goes by, which a test lets pass; ``clock.wall`` is for one that is set."""
         return self.clock.wall
 
     @now.setter
     def now(self, wall):
-        self.clock.wall = wall
+        self.clock.advance(wall - self.clock.wall)
 
     async def start(self):
         self.database = Database(self.url)
@@ -67,7 +67,7 @@ class Yard:
     async def ack(self, id, robot="r1", **how):
         await self.fleet.receive(robot, "websocket", OpAck(id=id, **how), None)
 
-    async def take(self, robot="r1"):
+    async def acknowledge_all(self, robot="r1"):
         """Let the robot take on all that waits for it; return the operation codes."""
         rows = await self.deliver(robot)
         for row in rows:
@@ -117,7 +117,7 @@ async def yard_of_two(site_maps, url):
     await yard.start()
     for robot in ("r1", "r2"):
         await yard.ready(robot)
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
     yield yard
     await yard.database.close()
     yard.client.close()

@@ -54,6 +54,7 @@ class DatabaseServer(abc.ABC):
     """A context in which a server runs; ``kill`` and ``start`` make it die and come back on the same port.
 
     :param durable: wait for the disk at every commit, as in the field; tests of anything else need not.
+    :param through: begins the command of the server.
     """
 
     scheme: str
@@ -64,8 +65,9 @@ class DatabaseServer(abc.ABC):
     programs: Sequence[str]
     ending: signal.Signals = signal.SIGTERM
 
-    def __init__(self, *, durable: bool = False) -> None:
+    def __init__(self, *, durable: bool = False, through: Sequence[str] = ()) -> None:
         self.durable = durable
+        self._through = through
         self.port = 0
         self.admin_password = secrets.token_hex(8)
         self.owner_password = secrets.token_hex(8)
@@ -118,7 +120,7 @@ class DatabaseServer(abc.ABC):
     def _launch(self) -> None:
         with (self.folder / "server.log").open("ab") as log:
             self._process = subprocess.Popen(
-                [*self._as_account("--pdeathsig", "KILL"), *self._command()],
+                [*self._through, *self._as_account("--pdeathsig", "KILL"), *self._command()],
                 cwd=self.folder,
                 stdin=subprocess.DEVNULL,
                 stdout=log,

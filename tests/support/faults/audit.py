@@ -56,7 +56,7 @@ class Findings:
     back_after: list[float] = field(default_factory=list)
     wrong: list[str] = field(default_factory=list)
 
-    def told(self) -> str:
+    def lines(self) -> str:
         """Return all of it as lines."""
         lines = [f"{name}: {count}" for name, count in self.counts.items()]
         lines.append(f"seconds from a fault to the next command reached: {self.back}")

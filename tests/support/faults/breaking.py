@@ -7,12 +7,13 @@ from __future__ import annotations
 
 import time
 
-from tests.support.faults.disk import Disk
+from tests.support.faults.disk import Disk, DiskWithPower
 from tests.support.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED, Yard
 
 SERVER_KILLED = "database server killed"
 STALLED, REFUSED = "network to the database stalled", "network to the database reset"
 DISK_FULL = "disk full"
+POWER_CUT = "power cut"
 SILENT_S = 3.5
 """seconds after which another robot may come under the name of one on SQL."""
 
@@ -79,3 +80,15 @@ def fill_disk(yard: Yard, disk: Disk, seconds: float) -> None:
         disk.fill()
         time.sleep(seconds)
         disk.free()
+
+
+def cut_power(yard: Yard, disk: DiskWithPower) -> None:
+    """End everybody, lose what had not reached the disk, and start everybody again."""
+    with yard.fault(POWER_CUT):
+        yard.kill_gateway()
+        for crew in yard.crews:
+            yard.kill_crew(crew)
+        disk.cut_power()
+        yard.start_gateway()
+        for crew in yard.crews:
+            yard.start_crew(crew, remembers=True)

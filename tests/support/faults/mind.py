@@ -125,7 +125,7 @@ class Mind:
         told.say_at = float("inf")
         return told
 
-    def taken(self) -> None:
+    def acknowledged(self) -> None:
         """Note that the gateway acknowledged what was told."""
         if self._telling is not None:
             image = self._telling.image

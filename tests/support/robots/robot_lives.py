@@ -87,7 +87,7 @@ class MindOverWebSocket:
             self._ready = done
             return bool(done)
         if done:
-            self._mind.taken()
+            self._mind.acknowledged()
         else:
             self._mind.note("refused", op=op, text=str(frame.get("error", frame.get("result"))))
             self._mind.untold(AGAIN_AFTER)
@@ -198,7 +198,7 @@ class MindOverSql:
 
     def _hear_ack(self, params: dict[str, Any]) -> None:
         if params["ok"]:
-            self._mind.taken()
+            self._mind.acknowledged()
         else:
             self._mind.note("refused", text=params.get("reason"))
             self._mind.untold(AGAIN_AFTER)

@@ -10,7 +10,6 @@ from sqlalchemy import Connection, Select, bindparam, delete, insert, select, up
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
-from ...model.command_states import is_open
 from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import command_steps, commands
 
@@ -117,7 +116,7 @@ def newest(connection: Connection, robot: str | None, limit: int) -> list[Comman
 
 def still_open(connection: Connection, robots: Sequence[str] | None = None) -> list[StoredCommand]:
     """Return the commands that have a step to come, oldest first, of some robots or of all."""
-    states = [state.value for state in CommandState if is_open(state)]
+    states = [state.value for state in CommandState if state.is_open]
     query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
     if robots is not None:
         query = query.where(commands.c.robot.in_(robots))
@@ -132,7 +131,7 @@ def of_kind_since(connection: Connection, op: str, since: float) -> list[Command
 
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` ended commands from before a time, with their steps; return how many."""
-    ended = [state.value for state in CommandState if not is_open(state)]
+    ended = [state.value for state in CommandState if not state.is_open]
     has_ended = beside_the_time(commands.c.state).in_(ended)
     gone = delete_oldest(connection, commands.c.id, commands.c.created_at, before, limit, has_ended)
     if gone:

@@ -1,18 +1,22 @@
-"""Where robots have been: written in batches, read in pages by robot, time and area, deleted in pieces."""
+"""Where robots have been: written in batches, read in pages by robot, time and area, deleted in pieces.
+
+On PostgreSQL each day is a partition, which is dropped whole. The functions that make and drop partitions are
+in migration 0011: they act for the owner of the tables, and give up a lock that others hold for long.
+"""
 
 from __future__ import annotations
 
 import math
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
 from typing import NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, and_, delete, or_, select
+from sqlalchemy import ColumnElement, Connection, and_, delete, func, or_, select
 
 from ....core.messages.robots import SendPos
-from ..rows import add_rows, delete_oldest
+from ..rows import add_rows, copy_rows, delete_oldest
 from ..schema import trajectories
 
 
@@ -30,6 +34,20 @@ holds nothing that Python's search for garbage would have to look at: hundreds o
 
 _STORED = struct.Struct("<7d")
 """received_at, x, y, theta, v, device_time and fix_time; not a number for a time that was not told."""
+
+
+_NAMES = ("robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
+# Of each column PostgreSQL's COPY has the length before the value, for null -1 and no value.
+_COPIED_HEAD = struct.Struct(">hi")
+_COPIED = struct.Struct(">" + "id" * 5)
+_COPIED_TIME = struct.Struct(">id")
+_NULL = struct.pack(">i", -1)
+
+DAY = 86_400.0
+"""seconds of a day, which begins at midnight UTC. The number of a day is a time divided by this."""
+MOST_MOVED = 50_000
+"""positions that came before the partition of their day and go over to it; with more of them the day has
+none, for others would wait for it too long."""
 
 
 class StoredPosition(NamedTuple):
@@ -81,8 +99,25 @@ def add(connection: Connection, fixes: Sequence[PackedFix]) -> None:
     written once, which takes half as long with a thousand robots in a table of some hundred thousand rows.
     """
     fixes = sorted(fixes, key=itemgetter(0))
-    names = ("robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
-    add_rows(connection, trajectories, names, [_row(robot, stored) for robot, stored in fixes])
+    if not fixes:
+        return
+    if connection.dialect.name == "postgresql":
+        copy_rows(connection, trajectories, _NAMES, [_copied(robot, stored) for robot, stored in fixes])
+    else:
+        add_rows(connection, trajectories, _NAMES, [_row(robot, stored) for robot, stored in fixes])
+
+
+def _copied(robot: str, stored: bytes) -> bytes:
+    """Return a row in the binary format of PostgreSQL's COPY."""
+    name = robot.encode()
+    at, x, y, theta, v, device_time, fix_time = _STORED.unpack(stored)
+    head = _COPIED_HEAD.pack(len(_NAMES), len(name))
+    numbers = _COPIED.pack(8, at, 8, x, 8, y, 8, theta, 8, v)
+    return b"".join((head, name, numbers, _copied_time(device_time), _copied_time(fix_time)))
+
+
+def _copied_time(time: float) -> bytes:
+    return _NULL if math.isnan(time) else _COPIED_TIME.pack(8, time)
 
 
 def _row(robot: str, stored: bytes) -> tuple[object, ...]:
@@ -99,8 +134,7 @@ def read(
 ) -> list[StoredPosition]:
     """Return at most ``limit`` positions behind ``after``, oldest first."""
     at, id = trajectories.c.received_at, trajectories.c.id
-    names = ("id", "robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
-    query = select(*(trajectories.c[name] for name in names)).where(*_conditions(request))
+    query = select(*(trajectories.c[name] for name in ("id", *_NAMES))).where(*_conditions(request))
     if after is not None:
         # The first half alone lets the database begin at the right place of its index.
         query = query.where(
@@ -119,8 +153,37 @@ def never_seen(connection: Connection, robots: Sequence[str]) -> list[str]:
     ]
 
 
+def days_of(fixes: Iterable[PackedFix]) -> list[int]:
+    """Return the numbers of the days that positions are of."""
+    return sorted({int(_STORED.unpack(stored)[0] // DAY) for _, stored in fixes})
+
+
+def make_days(connection: Connection, days: Collection[int], most: int = MOST_MOVED) -> int:
+    """Make the partitions of ``days`` that are not there; return how many are missing yet.
+
+    What is stored already of such a day goes over to it. A day that is missing, with more than ``most``
+    positions or because somebody reads the table at length, keeps its positions in the default partition.
+    """
+    return connection.scalar(select(func.public.make_trajectory_days(list(days), most))) or 0
+
+
+def drop_day(connection: Connection, before: float, _limit: int) -> int:
+    """Drop the oldest partition that ended before a time; return how many were dropped.
+
+    None is where there are no partitions, and while somebody reads the table at length.
+    """
+    if connection.dialect.name != "postgresql":
+        return 0
+    return connection.scalar(select(func.public.drop_trajectory_day(before))) or 0
+
+
 def forget(connection: Connection, before: float, limit: int) -> int:
-    """Delete at most ``limit`` positions from before a time; return how many."""
+    """Delete at most ``limit`` positions from before a time; return how many.
+
+    Positions in the partition of a day stay until that is dropped.
+    """
+    if connection.dialect.name == "postgresql":
+        return connection.scalar(select(func.public.delete_old_positions(before, limit))) or 0
     return len(delete_oldest(connection, trajectories.c.id, trajectories.c.received_at, before, limit))
 
 
@@ -133,10 +196,11 @@ def is_known_within(connection: Connection, robot: str, since: float, until: flo
 def forget_within(connection: Connection, robot: str, since: float, until: float, limit: int) -> int:
     """Delete at most ``limit`` positions of ``robot`` from ``since`` up to ``until``; return how many."""
     key = trajectories.c.id
-    query = select(key).where(*_conditions(TrajectoryQuery((robot,), since, until))).limit(limit)
-    found = list(connection.scalars(query))
+    # With the ids alone PostgreSQL would look for them in every partition.
+    within = list(_conditions(TrajectoryQuery((robot,), since, until)))
+    found = list(connection.scalars(select(key).where(*within).limit(limit)))
     if found:
-        connection.execute(delete(trajectories).where(key.in_(found)))
+        connection.execute(delete(trajectories).where(*within, key.in_(found)))
     return len(found)
 
 

@@ -37,6 +37,8 @@ _TO_NOBODY = (
     "lo_from_bytea",
     "pg_logical_emit_message",
 )
+_OF_POSITIONS = "(make_trajectory_days|drop_trajectory_day|delete_old_positions)$"
+"""What a gateway calls to make and drop the partitions of positions, whose owner it is not."""
 _TO_GATEWAYS = "pg\\_(try\\_)?advisory\\_"  # hold a lock that a gateway wants
 
 
@@ -198,6 +200,9 @@ class PostgreSqlRoles(RoleManager):
     def _grant_routines(self, role: str) -> None:
         for routine in ("end_stuck(integer)", "blocking_robots(integer)", "suspend_robot(text, boolean)"):
             self._do(f"grant execute on function for_robots.{routine} to {role}")
+        # Tables of an older version have none of these; its upgrade renews the rights.
+        for function in self._functions(_OF_POSITIONS, "public"):
+            self._do(f"grant execute on function {function} to {role}")
 
     def _make_role(self, name: str, password: str, *options: str) -> None:
         self._do(
@@ -213,10 +218,10 @@ class PostgreSqlRoles(RoleManager):
         for function in self._functions(_TO_GATEWAYS):
             self._do(f"grant execute on function {function} to {self._quoted(self._owner())}")
 
-    def _functions(self, pattern: str) -> list[str]:
+    def _functions(self, pattern: str, schema: str = "pg_catalog") -> list[str]:
         return self._names(
-            "select oid::regprocedure::text from pg_proc where pronamespace = 'pg_catalog'::regnamespace "
-            f"and proname ~ '^{pattern}'"  # nosec B608 # a name of ours
+            f"select oid::regprocedure::text from pg_proc where pronamespace = '{schema}'::regnamespace "  # nosec B608 # names of ours
+            f"and proname ~ '^{pattern}'"
         )
 
     def _is_superuser(self) -> bool:

@@ -17,7 +17,7 @@ from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketI
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
 from robot_bridge.gateway.fleet.registration import ConnectionClaims
 from robot_bridge.gateway.model.events import EventBus
-from robot_bridge.gateway.monitoring.metrics import Counters
+from robot_bridge.gateway.monitoring import Counters
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
 

@@ -83,7 +83,7 @@ async def test_a_cone_that_was_put_down_while_no_gateway_ran_is_put_down_once(li
     yard = line.yard
     await line.set(task("a", "place"))
     await kill_while_sending(line, wire)
-    await line.go()
+    await line.advance()
     # The operator is quicker than the robot's way back.
     await abort(yard)
     await yard.ready()
@@ -91,7 +91,7 @@ async def test_a_cone_that_was_put_down_while_no_gateway_ran_is_put_down_once(li
         if row.op == "Abort":
             await yard.at(*CONE)
         await yard.ack(row.id)
-    await line.go()
+    await line.advance()
     assert len(await placed(line)) == 1
     assert await line.states() == {"a": "done"}
 

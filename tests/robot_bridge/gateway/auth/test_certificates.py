@@ -10,8 +10,8 @@ import subprocess
 
 import pytest
 
-from robot_bridge.gateway.auth import certificates, tls
-from robot_bridge.gateway.auth.tls import ServerFiles, ServerTls, server_files
+from robot_bridge.gateway.auth import certificates, port
+from robot_bridge.gateway.auth.port import ServerFiles, ServerTls, server_files
 from robot_bridge.protocol.credentials import AccessError
 
 
@@ -158,7 +158,7 @@ def test_what_is_renewed_belongs_to_whom_it_did(files):
 @pytest.fixture
 async def watched(files, monkeypatch):
     """A gateway's TLS that looks at its files all the time."""
-    monkeypatch.setattr(tls, "WATCH_INTERVAL", 0.01)
+    monkeypatch.setattr(port, "WATCH_INTERVAL", 0.01)
     found = ServerTls(ServerFiles(files.certificate, files.key))
     watching = asyncio.create_task(found.watch())
     yield found
@@ -184,7 +184,7 @@ async def test_a_gateway_that_runs_for_long_is_warned_before_its_certificate_end
     certificates.renew(files.folder, days=5)
     await until(lambda: "holds for 4 days more" in caplog.text)
     caplog.clear()
-    monkeypatch.setattr(tls, "WARN_INTERVAL", 0.0)
+    monkeypatch.setattr(port, "WARN_INTERVAL", 0.0)
     await until(lambda: "holds for 4 days more" in caplog.text)
 
 

@@ -12,7 +12,7 @@ LANE = [(20.0, 40.0), (50.0, 40.0)]
 
 async def able(yard, *abilities):
     await yard.ready("r1", magic=2, abilities=list(abilities), path_cones=True)
-    await yard.take()
+    await yard.acknowledge_all()
     return yard
 
 

@@ -22,7 +22,7 @@ async def driving(two):
     for robot in ("r1", "r2"):
         await two.at(20.0, 40.0, robot=robot)
         await two.send(f"far-{robot}", robot=robot)
-        await two.take(robot)
+        await two.acknowledge_all(robot)
     return two
 
 
@@ -40,7 +40,7 @@ async def test_it_ends_what_the_robot_does(driving, lose, error, done):
     assert told.endswith("it was sent to no robot; it is stored and sent as soon as the database takes it")
     await driving.fleet.save()
     assert driving.waiting("r1") == ["Abort"]
-    await driving.take()
+    await driving.acknowledge_all()
     assert await driving.states() == {
         "far-r1": "aborted", "abort": "acknowledged", "far-r2": "acknowledged"
     }  # fmt: skip
@@ -56,7 +56,7 @@ async def test_what_the_robot_is_told_afterwards_comes_behind_it(driving, lose, 
     assert driving.waiting("r1") == ["Abort", "SetPosEnd"]
     await driving.fleet.save()
     assert driving.waiting("r1") == ["Abort", "SetPosEnd"]
-    await driving.take()
+    await driving.acknowledge_all()
     assert await driving.states() == {
         "far-r1": "superseded", "abort": "acknowledged", "next": "acknowledged", "far-r2": "acknowledged"
     }  # fmt: skip

@@ -15,7 +15,7 @@ TOO_LATE = "it stood at its end when it was heard again, and the Abort came too 
 async def begin(line):
     """Send the robot to a cone; it has taken that on and is on its way."""
     await line.set(task("a", "place"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(30.0, 40.0, v=1.0)
     assert (await line.states()) == {"a": "current"}
 
@@ -33,7 +33,7 @@ async def come_back(line, after=20.0):
     line.yard.now += after
     line.yard.fleet.age()
     await line.yard.ready()
-    assert "Abort" in await line.yard.take()
+    assert "Abort" in await line.yard.acknowledge_all()
 
 
 @pytest.mark.parametrize(("order", "after"), [(abort, 20.0), (stop, 20.0), (abort, 1.0)])
@@ -42,7 +42,7 @@ async def test_a_cone_that_was_put_down_before_the_abort_came_is_put_down_once(l
     await order(line)
     await come_back(line, after)
     await line.yard.at(*CONE)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "done"}
     (found,) = await placed(line)
     assert (found.x, found.y) == CONE
@@ -58,7 +58,7 @@ async def test_so_it_is_when_the_gateway_was_started_anew_before_the_robot_said_
     await line.yard.restart()
     await line.yard.ready()
     await line.yard.at(*CONE)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "done"}
     assert len(await placed(line)) == 1
 
@@ -67,9 +67,9 @@ async def test_so_it_is_on_sql_where_robots_do_not_connect_anew(line):
     await begin(line)
     await abort(line)
     line.yard.now += 20
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(*CONE)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "done"}
 
 
@@ -80,7 +80,7 @@ async def test_a_robot_that_is_seen_elsewhere_or_driving_has_aborted(line, x, v)
     await come_back(line)
     assert (await line.yard.states())["abort"] == "acknowledged"
     await line.yard.at(x, CONE[1], v=v)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "waiting"}
     (command,) = [c for c in await line.yard._stored() if c.op == "SetPosEnd"]
     assert (command.state.value, command.steps[-1].by) == ("aborted", "Ada")
@@ -92,11 +92,11 @@ async def test_until_it_says_where_it_is_its_queue_sends_nothing_though_resumed(
     await begin(line)
     await abort(line)
     await come_back(line)
-    await line.go()
+    await line.advance()
     await line.resume()
     assert await line.yard.deliver() == []
     await line.yard.at(*CONE)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "done"}
 
 
@@ -104,9 +104,9 @@ async def test_a_robot_that_is_heard_all_along_has_aborted_when_it_says_so(line)
     await begin(line)
     await line.yard.at(CONE[0], CONE[1], v=0.5)
     await abort(line)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(*CONE)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "waiting"}
 
 
@@ -118,7 +118,7 @@ async def test_a_cone_is_put_down_once_by_a_robot_that_says_where_it_is_before_i
     (row,) = await line.yard.deliver()
     await line.yard.at(*CONE)
     await line.yard.ack(row.id)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "done"}
     assert len(await placed(line)) == 1
 
@@ -129,10 +129,10 @@ async def test_a_queue_that_was_resumed_after_the_robot_took_the_abort_on_goes_o
     await come_back(line)
     taken_on = line.yard.now
     line.yard.now += 5
-    await line.go()
+    await line.advance()
     await line.resume()
     await line.yard.at(40.0, 40.0)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "current"}
     first = next(c for c in await line.yard._stored() if c.op == "SetPosEnd")
     assert (first.state.value, first.steps[-1].at) == ("aborted", taken_on)
@@ -142,12 +142,12 @@ async def test_a_queue_that_was_resumed_after_the_robot_took_the_abort_on_goes_o
 async def test_one_that_was_resumed_before_that_goes_on_then_and_not_before(line):
     await begin(line)
     await abort(line)
-    await line.go()
+    await line.advance()
     await line.resume()
     assert (await line.sent()).count(CONE) == 1
     await come_back(line)
     line.yard.now += 1
     await line.yard.at(40.0, 40.0)
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "current"}
     assert (await line.sent()).count(CONE) == 2

@@ -19,7 +19,7 @@ LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 async def ready(yard):
     """A yard with robot r1, which has taken its map."""
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     return yard
 
 
@@ -32,10 +32,10 @@ async def abort(yard, id="x", by="Bob", **what):
 
 async def test_the_task_of_a_robot_is_aborted_with_who_and_why_at_each_step(ready):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     report = await abort(ready, robot="r1", reason="flat tyre")
     assert (report.op, report.steps[0].by, report.steps[0].reason) == ("Abort", "Bob", "flat tyre")
-    await ready.take()
+    await ready.acknowledge_all()
     assert await ready.states() == {"a": "aborted", "x": "acknowledged"}
     assert await ready.reason("a") == "the robot acknowledged the Abort: flat tyre"
 
@@ -123,7 +123,7 @@ async def test_a_robot_that_started_anew_is_not_sent_an_old_order_that_it_never_
     await ready.deliver()
     ready.now += 61.0
     await ready.ready(magic=2)
-    assert await ready.take() == ["SetMap"]
+    assert await ready.acknowledge_all() == ["SetMap"]
     assert await ready.states() == {"old": "expired"}
 
 
@@ -137,7 +137,7 @@ async def drive(yard, points):
 
 async def test_a_robot_blocked_at_the_start_of_a_loop_has_not_driven_it_when_the_gateway_starts_anew(ready):
     await ready.send("a", "SetPath", points=LOOP)
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.at(10.0, 10.0)
     await ready.fleet.save()
     await ready.restart()
@@ -156,7 +156,7 @@ async def test_a_robot_blocked_at_the_start_of_a_loop_has_not_driven_it_when_the
 
 async def test_the_metres_driven_are_stored_once_a_save_and_only_when_they_grow(ready):
     await ready.send("a", "SetPath", points=LOOP)
-    await ready.take()
+    await ready.acknowledge_all()
     await drive(ready, [(10.0 + 0.5 * k, 10.0) for k in range(13)])
     assert ready.sql("select driven from commands") == [(0.0,)]
     await ready.fleet.save()
@@ -169,12 +169,12 @@ async def test_the_metres_driven_are_stored_once_a_save_and_only_when_they_grow(
 
 async def test_a_robot_that_started_anew_drives_its_path_from_the_start(ready):
     await ready.send("a", "SetPath", points=LOOP)
-    await ready.take()
+    await ready.acknowledge_all()
     await drive(ready, [(10.0 + k, 10.0) for k in range(11)])
     await ready.fleet.save()
     await ready.ready(magic=2)
     assert ready.sql("select driven from commands") == [(None,)]
-    await ready.take()
+    await ready.acknowledge_all()
     assert ready.sql("select driven from commands") == [(0.0,)]
 
 
@@ -267,6 +267,6 @@ async def test_a_caller_that_goes_away_leaves_no_step_unknown(ready):
 
 async def test_a_second_ready_of_the_same_run_gives_nobody_a_task_twice(ready):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.fleet.receive("r1", "websocket", Ready(1), 7)
     assert await ready.steps("a") == ["queued", "delivered", "acknowledged"]

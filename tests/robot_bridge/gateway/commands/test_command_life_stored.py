@@ -15,14 +15,14 @@ FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 async def ready(yard):
     """A yard with robot r1, which has taken its map."""
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     return yard
 
 
 async def test_a_target_is_queued_delivered_acknowledged_and_reached(ready):
     report = await ready.send("a", x=50.0, y=40.0)
     assert (report.state.value, report.operator) == ("queued", "Ada")
-    assert await ready.take() == ["SetPosEnd"]
+    assert await ready.acknowledge_all() == ["SetPosEnd"]
     await ready.at(20.0, 40.0, v=1.0)
     await ready.at(49.95, 40.1, v=0.5)
     assert await ready.steps("a") == FULL_LIFE[:3]
@@ -56,7 +56,7 @@ async def test_the_newer_target_supersedes_the_older_at_any_point_of_its_life(re
     assert ready.waiting() == ["SetPosEnd"]
     await ready.deliver()
     await ready.send("c")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.send("d", "SetPath", points=[(1.0, 1.0), (2.0, 2.0)])
     assert await ready.states() == {"a": "superseded", "b": "superseded", "c": "superseded", "d": "queued"}
     assert await ready.reason("c") == "by command command-d"
@@ -80,10 +80,10 @@ async def test_an_abort_before_delivery_ends_the_target_at_once(ready):
 
 async def test_an_abort_after_delivery_ends_the_target_when_the_robot_acknowledges(ready):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.send("x", "Abort")
     assert await ready.states() == {"a": "acknowledged", "x": "queued"}
-    await ready.take()
+    await ready.acknowledge_all()
     assert await ready.states() == {"a": "aborted", "x": "acknowledged"}
     await ready.at(20.0, 20.0, v=0.8)
     assert (await ready.states())["x"] == "acknowledged"
@@ -93,10 +93,10 @@ async def test_an_abort_after_delivery_ends_the_target_when_the_robot_acknowledg
 
 async def test_a_target_sent_after_an_abort_outlives_it(ready):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.send("x", "Abort")
     await ready.send("b")
-    await ready.take()
+    await ready.acknowledge_all()
     assert await ready.states() == {"a": "superseded", "x": "acknowledged", "b": "acknowledged"}
 
 
@@ -120,7 +120,7 @@ async def test_abort_all_asked_again_under_its_id_changes_nothing(ready):
 
 async def test_an_abort_ends_without_a_deviation(ready):
     await ready.send("x", "Abort")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.at(3.0, 4.0)
     (report,) = (await ready.fleet.orders.newest(GetCommands("r1", 1))).commands
     assert (report.state.value, report.deviation) == ("reached", None)
@@ -128,7 +128,7 @@ async def test_an_abort_ends_without_a_deviation(ready):
 
 async def test_a_repeated_id_changes_nothing(ready):
     await ready.send("a", x=50.0)
-    await ready.take()
+    await ready.acknowledge_all()
     ready.reported.clear()
     again = await ready.send("a", x=60.0)
     assert again.state.value == "acknowledged"
@@ -207,9 +207,9 @@ async def test_a_robot_that_started_anew_gets_its_task_again_under_a_new_id(read
 
 async def test_a_robot_that_only_reconnected_gets_nothing_again(ready):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.ready(magic=1)
-    assert await ready.take() == ["SetMap"]
+    assert await ready.acknowledge_all() == ["SetMap"]
     assert await ready.steps("a") == ["queued", "delivered", "acknowledged"]
 
 
@@ -217,19 +217,19 @@ async def test_what_was_delivered_and_not_acknowledged_waits_until_it_is(ready):
     await ready.send("a")
     await ready.deliver()
     await ready.ready(magic=1)
-    assert "SetPosEnd" in await ready.take()
+    assert "SetPosEnd" in await ready.acknowledge_all()
     assert await ready.states() == {"a": "acknowledged"}
 
 
 @pytest.mark.parametrize("abort_delivered", [False, True])
 async def test_a_robot_that_started_anew_is_not_sent_what_an_operator_aborted(ready, abort_delivered):
     await ready.send("a")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.send("x", "Abort")
     if abort_delivered:
         await ready.deliver()
     await ready.ready(magic=2)
-    assert [op for op in await ready.take() if op != "SetMap"] == ["Abort"]
+    assert [op for op in await ready.acknowledge_all() if op != "SetMap"] == ["Abort"]
     assert await ready.states() == {"a": "aborted", "x": "acknowledged"}
 
 
@@ -241,7 +241,7 @@ async def test_a_robot_that_started_anew_gets_what_it_forgot_in_the_order_it_was
     if acknowledged:
         await ready.ack((await ready.deliver())[-1].id)
     await ready.ready(magic=2)
-    assert [op for op in await ready.take() if op != "SetMap"] == ["Abort", "SetPosEnd"]
+    assert [op for op in await ready.acknowledge_all() if op != "SetMap"] == ["Abort", "SetPosEnd"]
     assert await ready.states() == {"x": "acknowledged", "b": "acknowledged"}
 
 
@@ -252,7 +252,7 @@ async def test_open_commands_outlive_the_gateway(ready):
     for robot in ("r2", "r3"):
         await ready.ready(robot)
     await ready.send("a", x=50.0, y=40.0)
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.send("b", robot="r2")
     await ready.deliver("r2")
     await ready.send("c", robot="r3")
@@ -264,14 +264,14 @@ async def test_open_commands_outlive_the_gateway(ready):
         "r3": "command-c",
     }
     await ready.at(50.0, 40.0)
-    assert "SetPosEnd" in await ready.take("r2")
-    assert "SetPosEnd" in await ready.take("r3")
+    assert "SetPosEnd" in await ready.acknowledge_all("r2")
+    assert "SetPosEnd" in await ready.acknowledge_all("r3")
     assert await ready.states() == {"a": "reached", "b": "acknowledged", "c": "acknowledged"}
 
 
 async def test_a_path_half_driven_is_followed_to_its_end_when_the_gateway_starts_anew(ready):
     await ready.send("a", "SetPath", points=[(10.0, 10.0), (60.0, 10.0)])
-    await ready.take()
+    await ready.acknowledge_all()
     for x in range(10, 31, 2):
         await ready.at(float(x), 10.0, v=2.0)
     await ready.restart()
@@ -286,7 +286,7 @@ async def test_ended_commands_stay_ended_when_the_gateway_starts_anew(ready):
     await ready.send("a")
     await ready.send("b")
     await ready.send("x", "Abort")
-    await ready.take()
+    await ready.acknowledge_all()
     await ready.at(1.0, 1.0)
     before = await ready.states()
     await ready.restart()
@@ -336,7 +336,7 @@ async def test_set_positions_sends_none_when_one_is_refused(ready, second, text)
 
 async def test_a_transaction_that_fails_leaves_nothing_in_memory(ready):
     await ready.ready("r2")
-    await ready.take("r2")
+    await ready.acknowledge_all("r2")
     await ready.send("a")
     ready.reported.clear()
     refuse_commands_of_r2(ready)
@@ -348,7 +348,7 @@ async def test_a_transaction_that_fails_leaves_nothing_in_memory(ready):
     assert ready.reported == []
     assert (ready.waiting("r1"), ready.waiting("r2")) == (["SetPosEnd"], [])
     assert {r.robot: r.command for r in ready.fleet.reports()} == {"r1": "command-a", "r2": None}
-    await ready.take()
+    await ready.acknowledge_all()
     assert await ready.states() == {"a": "acknowledged"}
 
 

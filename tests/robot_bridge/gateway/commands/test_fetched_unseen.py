@@ -96,7 +96,7 @@ async def test_a_cone_that_was_put_down_while_no_gateway_looked_is_put_down_once
     await plugged.set(task("a", "place"))
     fetched = fetch(yard)
     await yard.restart()
-    await plugged.go()
+    await plugged.advance()
     # The operator is quicker than the gateway's first look at the tables.
     await order(yard)
     yard.ask("r1", OpAck(id=fetched))
@@ -108,6 +108,6 @@ async def test_a_cone_that_was_put_down_while_no_gateway_looked_is_put_down_once
         yard.sql("delete from sa where id = ?", id)
         yard.ask("r1", OpAck(id=id))
     await yard.link.poll()
-    await plugged.go()
+    await plugged.advance()
     assert len(await placed(plugged)) == 1
     assert await plugged.states() == {"a": "done"}

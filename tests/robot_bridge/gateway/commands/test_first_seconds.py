@@ -15,7 +15,7 @@ PATH = [(20.0, 40.0), (40.0, 40.0), (40.0, 60.0)]
 
 async def test_a_path_that_was_driven_before_its_acknowledgement_came_is_reached(roads):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*PATH[0])
     await roads.fleet.save()
     await roads.send("a", "SetPath", points=PATH)
@@ -31,7 +31,7 @@ async def test_a_path_that_was_driven_before_its_acknowledgement_came_is_reached
 
 async def test_a_path_that_was_driven_before_it_was_stored_where_its_robot_is_is_reached(roads):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*PATH[0])
     await roads.send("a", "SetPath", points=PATH)
     (row,) = await roads.deliver()
@@ -44,7 +44,7 @@ async def test_a_path_that_was_driven_before_it_was_stored_where_its_robot_is_is
 
 async def test_a_path_that_was_driven_while_the_link_was_broken_is_reached(roads):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*PATH[0])
     await roads.send("a", "SetPath", points=PATH)
     (row,) = await roads.deliver()
@@ -57,7 +57,7 @@ async def test_a_path_that_was_driven_while_the_link_was_broken_is_reached(roads
 
 async def test_a_path_that_was_driven_although_its_delivery_was_not_noted_is_reached(roads):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*PATH[0])
     await roads.fleet.save()
     await roads.send("a", "SetPath", points=PATH)
@@ -65,7 +65,7 @@ async def test_a_path_that_was_driven_although_its_delivery_was_not_noted_is_rea
     await roads.restart()
     await roads.ready()
     await roads.at(*PATH[1])
-    assert await roads.take() == ["SetPath", "SetMap"]
+    assert await roads.acknowledge_all() == ["SetPath", "SetMap"]
     await roads.at(*PATH[-1])
     assert (await roads.states())["a"] == "reached"
 
@@ -84,7 +84,7 @@ async def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_has_nothin
     roads, restarts, stops_first
 ):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*LAP[-1])
     await roads.fleet.save()
     await roads.send("a", "SetPath", points=LAP)
@@ -108,7 +108,7 @@ async def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_has_nothin
 
 async def test_a_lap_is_not_reached_by_a_robot_that_was_seen_not_to_drive_it(roads):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*LAP[-1])
     await roads.drive("a", [LAP[-1], *LAP])
     await roads.at(*LAP[-1])
@@ -121,9 +121,9 @@ async def test_a_robot_that_starts_anew_while_the_database_fails_is_sent_its_tas
     roads, monkeypatch, restarts
 ):
     await roads.ready(magic=1)
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.send("a")
-    await roads.take()
+    await roads.acknowledge_all()
     run = roads.database.run
 
     async def fail(work, *arguments):
@@ -139,7 +139,7 @@ async def test_a_robot_that_starts_anew_while_the_database_fails_is_sent_its_tas
     if restarts:
         await roads.restart()
     await roads.ready(magic=2)
-    assert "SetPosEnd" in await roads.take()
+    assert "SetPosEnd" in await roads.acknowledge_all()
     assert await roads.steps("a") == ["queued", "delivered", "acknowledged", "acknowledged", "acknowledged"]
 
 
@@ -156,16 +156,16 @@ async def test_robots_whose_road_was_closed_when_the_gateway_died_are_led_round(
     await roads.restart()
     await roads.ready()
     await roads.fleet.watch_roads()
-    assert "SetPath" not in await roads.take()
+    assert "SetPath" not in await roads.acknowledge_all()
     await roads.at(15.0, 8.0, v=1.0)
     await roads.fleet.watch_roads()
     points = await roads.new_path()
     assert points[0] == [15.0, 8.0]
     assert highest(points) == pytest.approx(22.0, abs=0.5)
     assert (roads.news["replanned"]["robot"], roads.news["replanned"]["became"]) == ("r1", "another way")
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.fleet.watch_roads()
-    assert await roads.take() == []
+    assert await roads.acknowledge_all() == []
 
 
 async def test_a_robot_that_is_not_heard_when_its_road_is_closed_is_led_round_from_where_it_comes_back(roads):
@@ -174,7 +174,7 @@ async def test_a_robot_that_is_not_heard_when_its_road_is_closed_is_led_round_fr
     roads.fleet.age()
     (robot,) = (await roads.close_road(*SOUTH, reason="tree")).robots
     assert (robot.robot, robot.became) == ("r1", "later")
-    assert await roads.take() == []
+    assert await roads.acknowledge_all() == []
     await roads.ready()
     await roads.at(15.0, 8.0, v=1.0)
     await roads.fleet.watch_roads()
@@ -214,7 +214,7 @@ async def test_a_way_is_told_from_where_a_robot_is_not_from_where_it_was(roads):
     await roads.ready()
     await roads.at(10.0, 8.0)
     await roads.send("cone", x=126.0, y=8.0)
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.ready()
     with pytest.raises(
         RefusedError, match="GetPath: it is not known where robot 'r1' is; send SendPos first"

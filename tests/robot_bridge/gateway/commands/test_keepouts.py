@@ -113,7 +113,7 @@ async def test_a_queue_takes_no_task_into_a_keepout_unless_it_is_overridden(line
     ask = line.queues.set if request_of is SetQueue else line.queues.add
     with pytest.raises(RefusedError, match=said):
         await ask(request_of("r1", 0, [AROUND, wrong]), "Ada")
-    assert (await line.seen()).tasks == []
+    assert (await line.report()).tasks == []
     report = await ask(request_of("r1", 0, [AROUND, wrong], override="it is drained"), "Ada")
     assert [one.task for one in report.tasks] == [AROUND.task, wrong.task]
 
@@ -144,7 +144,7 @@ async def test_where_a_cone_stands_ahead_of_its_robot_the_robots_place_counts(li
     # The basin's northern rim is at y = 34.9, its southern one at 29.5.
     for y, theta, enters in ((33.0, -1.5708, False), (28.0, -1.5708, True)):
         place = to(f"task-cone-{y:g}", (66.0, y), theta=theta, kind=TaskKind.PLACE)
-        asked = line.queues.add(AddTasks("r1", (await line.seen()).revision, [place]), "Ada")
+        asked = line.queues.add(AddTasks("r1", (await line.report()).revision, [place]), "Ada")
         if enters:
             with pytest.raises(RefusedError, match=IN_IT):
                 await asked

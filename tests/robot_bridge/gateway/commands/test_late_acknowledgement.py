@@ -16,7 +16,7 @@ READ = "the robot had read it by then, and acknowledged it"
 async def overtaken(yard):
     """A yard whose robot has read a target that was aborted before the gateway knew; the target's message."""
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.send("a")
     (row,) = await yard.fleet.mailboxes.outbox("r1", 0)
     await yard.fleet.orders.abort(AbortTask("command-x", robot="r1"), "Bob")
@@ -49,7 +49,7 @@ async def test_it_says_so_only_when_the_robot_took_it_on_and_is_the_one(yard, ov
 
 async def test_a_command_that_was_acknowledged_in_time_gets_no_such_line(yard):
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.send("a")
     (row,) = await yard.deliver()
     await yard.ack(row.id)
@@ -60,7 +60,7 @@ async def test_a_command_that_was_acknowledged_in_time_gets_no_such_line(yard):
 
 async def test_a_delivery_is_nothing_new_when_the_command_has_gone_further_meanwhile(yard):
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.send("a")
     (row,) = await yard.fleet.mailboxes.outbox("r1", 0)
     noting = asyncio.create_task(yard.fleet.mailboxes.delivered([row.id]))

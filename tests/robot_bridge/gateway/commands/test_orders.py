@@ -88,7 +88,7 @@ async def test_what_is_no_order_is_refused_with_what_is(orders):
 
 async def test_an_abort_is_asked_under_its_own_id_of_one_robot_or_of_one_command(two, orders):
     await two.send("driving")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     report = await orders.abort(AbortTask("abort-0001", aborts="command-driving", reason="smoke"), "Bob")
     assert (report.command, report.robot, report.op, report.operator) == ("abort-0001", "r1", "Abort", "Bob")
     assert report.steps[0].reason == "smoke"
@@ -98,7 +98,7 @@ async def test_an_abort_is_asked_under_its_own_id_of_one_robot_or_of_one_command
         "command command-gone has ended or was never issued, so there is nothing to abort"
     )
     # Asked again it is answered as it stands, although there is nothing to abort by now.
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     again = await orders.abort(AbortTask("abort-0001", aborts="command-driving"), "Bob")
     assert again.state.value == "acknowledged"
 
@@ -151,10 +151,10 @@ async def test_what_is_for_a_robot_that_does_nothing_is_refused_by_one_that_does
 
 async def test_what_is_instead_of_a_task_is_refused_when_that_is_another_or_is_being_aborted(two):
     await two.send("a")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     assert await refusal(two.fleet._book.issue([instead("new-0001", "command-b")])) == OTHERWISE
     await two.fleet._book.issue([instead("new-0002", "command-a")])
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     await two.send("x", "Abort")
     assert await refusal(two.fleet._book.issue([instead("new-0003", "new-0002")])) == OTHERWISE
 
@@ -163,7 +163,7 @@ async def test_a_way_to_a_task_is_told_only_as_long_as_that_is_the_task(two):
     book, written = two.fleet._book, []
     way = SetPath([(20.0, 40.0), (50.0, 40.0)])
     await two.send("a")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     await book.lead("r1", "command-a", way, written.append)
     assert len(written) == 1
     assert await refusal(book.lead("r1", "command-b", way, written.append)) == OTHERWISE
@@ -174,7 +174,7 @@ async def test_a_way_to_a_task_is_told_only_as_long_as_that_is_the_task(two):
 
 async def test_a_beginning_is_sent_while_a_target_is_driven_and_ends_it_not(two):
     await two.send("a")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     (report,) = await two.fleet._book.issue([CommandOrder("new-0001", "r1", SetPosIni(20.0, 40.0), "Ada")])
     assert report.state.value == "queued"
     assert (await two.states())["a"] == "acknowledged"

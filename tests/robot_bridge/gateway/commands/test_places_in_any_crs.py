@@ -23,7 +23,7 @@ THERE = {
 async def ask(roads):
     """Ask as an operator does, with the JSON that comes in: ``await ask(method, **params)``."""
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(20.0, 8.0)
 
     fleet = roads.fleet

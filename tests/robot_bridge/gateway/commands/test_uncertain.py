@@ -20,7 +20,7 @@ DONE = pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
 @DONE
 async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(roads, lose, done):
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(*LANE[0])
     await roads.send("a", "SetPath", points=LANE)
     (row,) = await roads.deliver()
@@ -29,7 +29,7 @@ async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(r
         await roads.ack(row.id)
     await roads.fleet.save()
     if not done:
-        await roads.take()
+        await roads.acknowledge_all()
     for x in (30.0, 40.0, 50.0):
         await roads.at(x, 40.0, v=float(x < 50))
     assert (await roads.states())["a"] == "reached"
@@ -38,10 +38,10 @@ async def test_an_acknowledgement_is_looked_up_and_its_robot_is_seen_to_arrive(r
 async def carrying_out(yard):
     """Have robot r1 carry out a target."""
     await yard.ready()
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.at(20.0, 40.0)
     await yard.send("a")
-    await yard.take()
+    await yard.acknowledge_all()
     assert await yard.states() == {"a": "acknowledged"}
 
 
@@ -59,7 +59,7 @@ async def test_a_robot_that_starts_anew_is_sent_its_task_once_by_a_commit_in_dou
     assert len(sent) == done
     await roads.ready(magic=2)
     assert len(targets(roads)) == 1 and targets(roads)[: len(sent)] == sent
-    assert await roads.take() == ["SetMap", "SetPosEnd"]
+    assert await roads.acknowledge_all() == ["SetMap", "SetPosEnd"]
     assert await roads.states() == {"a": "acknowledged"}
 
 

@@ -14,7 +14,7 @@ from robot_bridge.core.messages.robots import Ready, SendGPS, SendPos
 async def standing(roads):
     """Robot r1, which stands at (20, 8)."""
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(20.0, 8.0)
     roads.now += 0.1
     return roads

@@ -81,7 +81,7 @@ async def test_a_path_is_not_sent_by_a_position_from_before_the_restart(plugged)
     assert "SetPath" not in plugged.waiting()
     plugged.ask("r1", SendPos(*BEGIN, 0.0, 0.0))
     await plugged.link.poll()
-    await line.go()
+    await line.advance()
     assert "SetPath" in plugged.waiting()
 
 

@@ -95,7 +95,7 @@ async def test_a_robot_waits_for_no_map_and_has_the_whole_one_when_it_is_made(st
             (part,) = await maps_of(yard, 1)
             assert part.meta[PART_OF] == "0.00,0.00,800.00,800.00"
             assert 0 < len(part.obstacles) < SIDE**2
-            await yard.take()
+            await yard.acknowledge_all()
             made.set()
             (whole,) = await maps_of(yard, 1)
     assert len(whole.obstacles) == SIDE**2
@@ -118,7 +118,7 @@ async def test_a_map_that_goes_wrong_keeps_no_other_robots_from_following(start,
         monkeypatch.setattr(yard.fleet.maps, "_follow", failing_for_r2)
         for robot in ("r2", "r1"):
             await yard.ready(robot)
-        await yard.take()
+        await yard.acknowledge_all()
         made.set()
         (whole,) = await maps_of(yard, 1)
     assert len(whole.obstacles) == SIDE**2
@@ -171,7 +171,7 @@ async def test_the_whole_map_is_stored_for_those_alone_who_read_rows_themselves(
 async def test_an_answer_goes_out_without_being_read_unless_more_was_written_meanwhile(start, monkeypatch):
     async with start(SiteMaps(city(largest_whole_bytes=0))) as yard:
         await yard.ready()
-        await yard.take()
+        await yard.acknowledge_all()
         boxes, database, looked = yard.fleet.mailboxes, yard.database, []
         read, jot = database.read, database.jot
 
@@ -213,7 +213,7 @@ async def test_a_site_beyond_its_limit_is_never_sent_whole(start):
     assert too_large.whole_map() is None
     async with start(too_large) as yard:
         await yard.ready()
-        await yard.take()
+        await yard.acknowledge_all()
         await yard.at(*FAR)
         await yard.fleet.maps.send_requested(SendMap("r1"))
         (part,) = await maps_of(yard, 1)
@@ -225,12 +225,12 @@ async def test_a_robot_whose_place_was_not_known_is_sent_what_is_around_it_once_
         await yard.ready()
         (middle,) = await maps_of(yard, 1)
         assert holds(middle, (400.0, 400.0)) and not holds(middle, FAR)
-        await yard.take()
+        await yard.acknowledge_all()
         await quiet(yard)
         await yard.at(*FAR)
         (around,) = await maps_of(yard, 1)
         assert holds(around, FAR)
-        await yard.take()
+        await yard.acknowledge_all()
         await yard.at(640.0, 640.0)
         await quiet(yard)
         assert not yard.waiting()
@@ -239,15 +239,15 @@ async def test_a_robot_whose_place_was_not_known_is_sent_what_is_around_it_once_
 async def test_a_robot_that_is_where_it_was_known_to_be_is_sent_one_map(start):
     async with start(SiteMaps(city(largest_whole_bytes=0, window_m=100.0))) as yard:
         await yard.ready()
-        await yard.take()
+        await yard.acknowledge_all()
         await yard.at(*FAR)
         await maps_of(yard, 1)
-        await yard.take()
+        await yard.acknowledge_all()
         yard.now += 5
         await yard.ready(magic=2)
         (around,) = await maps_of(yard, 1)
         assert holds(around, FAR)
-        await yard.take()
+        await yard.acknowledge_all()
         await quiet(yard)
         await yard.at(*FAR)
         await quiet(yard)
@@ -257,9 +257,9 @@ async def test_a_robot_that_is_where_it_was_known_to_be_is_sent_one_map(start):
 async def test_a_robot_that_was_told_where_it_stands_is_sent_what_is_around_that(start):
     async with start(SiteMaps(city(largest_whole_bytes=0, window_m=100.0))) as yard:
         await yard.ready()
-        await yard.take()
+        await yard.acknowledge_all()
         await yard.send("a", "SetPosIni", x=FAR[0], y=FAR[1])
-        await yard.take()
+        await yard.acknowledge_all()
         yard.now += 5
         await yard.ready(magic=2)
         (around, *_) = await maps_of(yard, 1)

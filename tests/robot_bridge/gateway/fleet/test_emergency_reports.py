@@ -44,7 +44,7 @@ async def two(yard):
     """A yard with r1 and r2, which have taken their maps."""
     for robot in ("r1", "r2"):
         await yard.ready(robot)
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
     return yard
 
 

@@ -54,7 +54,7 @@ async def two(yard):
     """A yard with r1 over WebSocket and r2 over SQL; both have taken their maps."""
     for robot, link in (("r1", "websocket"), ("r2", "sql")):
         await yard.ready(robot, link=link)
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
     yard.reported.clear()
     return yard
 
@@ -99,12 +99,12 @@ async def test_what_robots_have_not_fetched_is_aborted_at_once_and_everything_el
     two, control
 ):
     await two.ready("r3")
-    await two.take("r3")
+    await two.acknowledge_all("r3")
     await two.send("queued")
     await two.send("delivered", robot="r2")
     await two.deliver("r2")
     await two.send("driving", robot="r3")
-    await two.take("r3")
+    await two.acknowledge_all("r3")
     await control.stop(reason="smoke")
     assert control.outbox("r1") == control.outbox("r2") == [("Abort", True)]
     states = await two.states()
@@ -115,7 +115,7 @@ async def test_what_robots_have_not_fetched_is_aborted_at_once_and_everything_el
     }
     assert await two.reason("queued") == "before the robot acknowledged it: smoke"
     for robot, id in (("r2", "delivered"), ("r3", "driving")):
-        await two.take(robot)
+        await two.acknowledge_all(robot)
         assert (await two.states())[id] == "aborted"
         assert await two.reason(id) == "the robot acknowledged the Abort: smoke"
 
@@ -135,7 +135,7 @@ async def test_a_target_that_was_reached_before_the_stop_came_is_reached_and_not
     await two.ack(row.id)
     await two.at(50.0, 40.0)
     assert await two.steps("cone") == ["queued", "delivered", "acknowledged", "reached"]
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     assert (await two.states())["cone"] == "reached"
 
 
@@ -217,12 +217,12 @@ async def test_a_target_sent_in_the_same_moment_does_not_set_a_robot_in_motion(t
         assert isinstance(results[0], RefusedError) or states[f"target-{k}"] == "aborted"
         assert control.outbox("r1") == [("Abort", True)]
         await control.clear()
-        await two.take("r1")
+        await two.acknowledge_all("r1")
 
 
 async def test_a_robot_that_says_ready_meanwhile_is_stopped_before_it_gets_its_map(two, control):
     await control.stop(reason="smoke")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     assert control.report.waiting == ["r2"]
     await two.ready("new", link="sql")
     (told,) = (await two.fleet.orders.newest(GetCommands("new", 10))).commands
@@ -241,9 +241,9 @@ async def test_a_robot_that_says_ready_meanwhile_is_stopped_before_it_gets_its_m
 
 async def test_it_is_counted_who_acknowledged_who_stands_and_who_refuses(two, control):
     await two.ready("r3")
-    await two.take("r3")
+    await two.acknowledge_all("r3")
     await control.stop()
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     (abort,) = await two.deliver("r3")
     await two.ack(abort.id, "r3", ok=False, reason="no brakes")
     counted = control.report
@@ -256,7 +256,7 @@ async def test_it_is_counted_who_acknowledged_who_stands_and_who_refuses(two, co
     await two.at(1.0, 1.0, v=0.8)
     assert control.report.standing == 0
     await two.at(1.5, 1.0, v=0.0)
-    await two.take("r2")
+    await two.acknowledge_all("r2")
     counted = control.report
     assert (counted.acknowledged, counted.standing, counted.waiting, counted.refused) == (2, 1, [], ["r3"])
     before = control.report
@@ -272,7 +272,7 @@ async def test_what_a_robot_answers_to_the_direct_call_counts_and_that_to_anothe
     emergency.answered("r1", control.called[0], refused=False)
     emergency.answered("r2", control.called[0], refused=True)
     assert (control.report.acknowledged, control.report.refused) == (1, ["r2"])
-    await two.take("r2")
+    await two.acknowledge_all("r2")
     assert (control.report.acknowledged, control.report.refused) == (2, [])
 
 
@@ -286,14 +286,14 @@ async def test_every_operator_is_told_of_each_change(two, control):
 
     two.fleet.listeners.add(Listener())
     await control.stop()
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     await control.clear()
     assert told == [(True, False, 0), (True, True, 0), (True, True, 1), (False, True, 1)]
 
 
 async def test_it_is_in_force_until_it_is_cleared_however_often_the_gateway_starts_anew(two, control):
     await two.send("driving")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     await control.stop(reason="smoke")
     for _ in range(2):
         two.now += 10_000.0
@@ -319,7 +319,7 @@ async def test_an_ordinary_abort_does_not_take_its_place(two, control):
 
 async def test_a_robot_that_missed_it_is_stopped_before_it_is_sent_on(two, control):
     await two.send("driving")
-    await two.take("r1")
+    await two.acknowledge_all("r1")
     await control.stop()
     await control.clear()
     await two.send("next")

@@ -49,11 +49,11 @@ async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarde
     (alarm,) = (await look(guarded)).alarms
     assert (alarm.robot, alarm.name, alarm.outcome) == ("r1", "Water basin", "aborted")
     assert guarded.news["geofence"]["alarms"][0]["name"] == "Water basin"
-    assert await guarded.take() == ["Abort"]
+    assert await guarded.acknowledge_all() == ["Abort"]
     for _ in range(3):
         await guarded.at(66.0, 31.0)
         await look(guarded)
-    assert await guarded.take() == []
+    assert await guarded.acknowledge_all() == []
 
 
 async def test_a_stop_that_cannot_be_stored_is_tried_until_it_is(guarded, monkeypatch):
@@ -70,7 +70,7 @@ async def test_a_stop_that_cannot_be_stored_is_tried_until_it_is(guarded, monkey
     monkeypatch.setattr(database, "run", away)
     assert (await look(guarded)).alarms[0].outcome == "aborted"
     assert len(failures) == 3
-    assert await guarded.take() == ["Abort"]
+    assert await guarded.acknowledge_all() == ["Abort"]
 
 
 async def test_a_failed_stop_is_told_with_the_reason_and_given_up_when_the_robot_has_left(
@@ -106,22 +106,22 @@ async def test_a_robot_that_cannot_be_paused_is_aborted(guarded, monkeypatch):
     await guarded.at(*IN_THE_BASIN, v=1.0)
     (alarm,) = (await look(guarded)).alarms
     assert (alarm.action, alarm.outcome) == ("pause", "aborted")
-    assert await guarded.take() == ["Abort"]
+    assert await guarded.acknowledge_all() == ["Abort"]
 
 
 async def test_an_emergency_stop_in_force_is_stop_enough(guarded):
     await guarded.fleet.emergency.stop(EmergencyStop("stop-0001"), "Eve")
-    await guarded.take()
+    await guarded.acknowledge_all()
     await guarded.at(*IN_THE_BASIN)
     (alarm,) = (await look(guarded)).alarms
     assert alarm.outcome == "stopped"
-    assert await guarded.take() == []
+    assert await guarded.acknowledge_all() == []
 
 
 async def test_a_robot_that_is_not_heard_is_named_and_its_alarm_stays(guarded):
     await guarded.at(*IN_THE_BASIN)
     await look(guarded)
-    await guarded.take()
+    await guarded.acknowledge_all()
     guarded.now += 60
     guarded.fleet.age()
     report = await look(guarded)
@@ -191,11 +191,11 @@ async def test_what_nobody_foresaw_of_who_is_near_a_robot_is_told_and_ends_no_ga
 async def test_a_settings_change_does_not_stop_a_robot_again(guarded):
     await guarded.at(*IN_THE_BASIN)
     await look(guarded)
-    await guarded.take()
+    await guarded.acknowledge_all()
     await look(guarded)
     guarded.site.take_over(replace(guarded.site.site))
     await look(guarded)
-    assert await guarded.take() == []
+    assert await guarded.acknowledge_all() == []
     assert len(guarded.fleet.geofence.report().alarms) == 1
 
 
@@ -218,13 +218,13 @@ async def test_an_object_that_an_operator_accepted_is_an_obstacle_until_it_is_re
     (alarm,) = report.alarms
     assert (alarm.kind, alarm.name, alarm.outcome) == ("obstacle", "cone c7", "aborted")
     assert report.obstacles == before + 1
-    assert await guarded.take() == ["Abort"]
+    assert await guarded.acknowledge_all() == ["Abort"]
     # Another one elsewhere is no new entry into this one.
     other = await see(guarded, "c8", (40.0, 40.0))
     await guarded.fleet.observations.review(ReviewObservation(other, accept=True), "Ada")
     await guarded.at(*OUTSIDE)
     assert [one.name for one in (await look(guarded)).alarms] == ["cone c7"]
-    assert await guarded.take() == []
+    assert await guarded.acknowledge_all() == []
     await guarded.fleet.observations.review(ReviewObservation(seen, accept=False, revise=True), "Ada")
     await look(guarded)
     guarded.now += LEFT_AFTER_S

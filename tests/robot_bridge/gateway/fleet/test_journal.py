@@ -17,6 +17,8 @@ from sqlalchemy import make_url
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal, journal_file
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
+from tests.support.errors import StageError
+from tests.support.faults.disk import Disk
 
 FIRST = StopRow("stop-0001", 1000.5, "Ada", "child on the track")
 SECOND = StopRow("stop-0002", 1001.0, "Ben", None)
@@ -217,3 +219,21 @@ def test_a_folder_in_which_nothing_can_be_noted_is_found_before_it_is_needed(tmp
 
 def test_a_folder_in_which_stops_can_be_noted_is_right(file):
     StopJournal(file).check()
+
+
+async def test_a_full_disk_takes_a_stop_and_has_room_for_the_next_one_afterwards(tmp_path):
+    try:
+        with Disk(tmp_path / "disk", megabytes=1) as disk:
+            file = disk.folder / "fleet.db.stop"
+            journal = StopJournal(file)
+            journal.check()
+            disk.fill()
+            await journal.write([FIRST, SECOND])
+            assert StopJournal(file).read() == [FIRST, SECOND]
+            disk.free()
+            await journal.write([])
+            disk.fill()
+            await journal.write([SECOND])
+            assert StopJournal(file).read() == [SECOND]
+    except StageError as error:
+        pytest.skip(str(error))

@@ -43,11 +43,11 @@ async def test_over_sql_the_map_comes_before_the_task_that_is_sent_again(working
 
 async def test_over_websocket_it_does_too(yard):
     await yard.ready(magic=1)
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.send("a")
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.ready(magic=2)
-    assert await yard.take() == ["SetMap", "SetPosEnd"]
+    assert await yard.acknowledge_all() == ["SetMap", "SetPosEnd"]
     assert (await yard.states())["a"] == "acknowledged"
 
 

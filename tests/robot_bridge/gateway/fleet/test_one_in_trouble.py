@@ -19,7 +19,7 @@ from robot_bridge.gateway.model.events import CommandChanged, Listeners, Observa
 async def two(roads):
     for robot, y in (("r1", 40.0), ("r2", 42.0)):
         await roads.ready(robot)
-        await roads.take(robot)
+        await roads.acknowledge_all(robot)
         await roads.at(20.0, y, robot=robot)
     return roads
 

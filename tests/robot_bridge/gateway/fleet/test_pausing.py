@@ -30,13 +30,13 @@ LAP = [(20.0, 40.0), (50.0, 40.0), (50.0, 60.0), (20.0, 60.0), (20.0, 40.0)]
 
 async def pause(line, reason=None, robot="r1"):
     report = await line.yard.fleet.pauses.pause(PauseRobot(robot, reason), "Eve")
-    await line.go()
+    await line.advance()
     return report
 
 
 async def pause_on_the_way(line, x=35.0, y=40.0, **how):
     """Let r1 be seen driving, and stand paused a bit further."""
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(x, y, v=1.0)
     await pause(line, **how)
     assert await line.reach(x + 0.5, y) == ["Abort"]
@@ -51,7 +51,7 @@ async def path_sent(line):
 async def test_a_target_sent_directly_is_kept_and_gone_on_with(line):
     await line.yard.send("x", x=60.0, y=40.0, theta=0.0)
     await pause_on_the_way(line, reason="dog")
-    report = await line.seen()
+    report = await line.report()
     assert (report.state.value, report.reason, report.by) == ("paused", "paused by Eve: dog", "Eve")
     (kept,) = report.tasks
     assert (kept.state.value, kept.x, kept.y, kept.theta, kept.added_by) == (
@@ -62,11 +62,11 @@ async def test_a_target_sent_directly_is_kept_and_gone_on_with(line):
         "Ada",
     )
     assert await line.yard.reason("x") == "the robot acknowledged the Abort: paused: dog"
-    await line.go()
+    await line.advance()
     assert len(await line.sent()) == 2
     await line.resume()
     assert await line.reach(60.0, 40.0) == ["SetPosEnd"]
-    report = await line.seen()
+    report = await line.report()
     assert (report.tasks, report.state.value, report.ended[0].state.value) == ([], "running", "done")
     assert await line.sent() == [(60.0, 40.0), "Abort", (60.0, 40.0)]
 
@@ -80,7 +80,7 @@ async def test_of_a_path_sent_directly_what_is_left_is_driven(line):
 
 async def test_of_a_closed_lap_what_is_left_is_driven_also_after_a_restart(line):
     await line.yard.send("x", "SetPath", points=LAP)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     for x, y in [(30.0, 40.0), (40.0, 40.0), (50.0, 40.0), (50.0, 50.0), (50.0, 60.0), (35.0, 60.0)]:
         await line.yard.at(x, y, v=1.0)
     await line.yard.at(20.0, 60.0, v=1.0)
@@ -90,8 +90,8 @@ async def test_of_a_closed_lap_what_is_left_is_driven_also_after_a_restart(line)
     await line.yard.restart()
     await line.yard.ready()
     await line.yard.at(20.0, 41.0)
-    await line.go()
-    assert (await line.seen()).state.value == "paused"
+    await line.advance()
+    assert (await line.report()).state.value == "paused"
     await line.resume()
     assert await path_sent(line) == [(20.0, 41.0), LAP[-1]]
 
@@ -106,7 +106,7 @@ async def test_a_path_that_a_robot_is_on_its_way_to_is_kept_with_the_way_there(l
 async def test_a_cone_sent_directly_is_placed_once(line):
     await line.yard.send("x", x=60.0, y=40.0, cone=True)
     await pause_on_the_way(line)
-    assert (await line.seen()).tasks[0].kind.value == "place"
+    assert (await line.report()).tasks[0].kind.value == "place"
     await line.resume()
     assert await line.reach(60.0, 40.1) == ["SetPosEnd"]
     (cone,) = await placed(line)
@@ -119,7 +119,7 @@ async def unheard(line, how):
         await line.set(task("a"))
     else:
         await line.yard.send("x", x=50.0, y=40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(35.0, 40.0, v=1.0)
     await pause(line)
     return 50.0, 40.0
@@ -133,25 +133,25 @@ async def test_continue_before_the_robot_has_stopped_holds_and_sends_it_on_once_
     line.yard.now += 1
     if restarted:
         await line.yard.restart()
-        await line.go()
-    report = await line.seen()
+        await line.advance()
+    report = await line.report()
     assert report.state.value == "running"
     assert [one.reason for one in report.tasks] == [STOPS_FIRST]
     assert await line.sent() == [place, "Abort"], "it was sent before it has stopped"
     assert await line.reach(35.5, 40.0) == ["Abort"]
-    assert (await line.seen()).state.value == "running"
+    assert (await line.report()).state.value == "running"
     assert await line.sent() == [place, "Abort", place]
     assert await line.reach(*place) == ["SetPosEnd"]
-    report = await line.seen()
+    report = await line.report()
     assert (report.tasks, report.ended[0].attempts) == ([], 2)
 
 
 async def test_so_it_does_after_an_abort_of_a_task_of_its_queue(line):
     await line.set(task("a"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(35.0, 40.0, v=1.0)
     await line.yard.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
-    await line.go()
+    await line.advance()
     await line.resume()
     line.yard.now += 1
     assert await line.sent() == [PLACES["a"], "Abort"]
@@ -161,10 +161,10 @@ async def test_so_it_does_after_an_abort_of_a_task_of_its_queue(line):
 
 async def test_a_queue_that_was_resumed_while_its_robot_drives_on_leaves_its_task_as_it_is(line):
     await line.set(task("a"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.queues.pause(PauseQueue("r1"), "Eve")
     await line.resume()
-    (only,) = (await line.seen()).tasks
+    (only,) = (await line.report()).tasks
     assert (only.state.value, only.reason) == ("current", None)
 
 
@@ -173,8 +173,8 @@ async def test_paused_again_after_a_continue_that_came_early_it_stands(line):
     await line.resume()
     await pause(line)
     assert await line.reach(35.5, 40.0) == ["Abort"]
-    await line.go()
-    assert (await line.seen()).state.value == "paused"
+    await line.advance()
+    assert (await line.report()).state.value == "paused"
     assert await line.sent() == [place, "Abort"]
     await line.resume()
     assert await line.sent() == [place, "Abort", place]
@@ -187,41 +187,41 @@ async def test_an_emergency_stop_after_a_continue_that_came_early_holds_it(line)
     await line.yard.fleet.emergency.clear(ClearEmergencyStop("clear", "stop-0001"), "Eve")
     await line.reach(35.5, 40.0)
     await line.reach(35.5, 40.0)
-    assert (await line.seen()).state.value == "paused"
+    assert (await line.report()).state.value == "paused"
     assert (await line.sent()).count(place) == 1
 
 
 async def test_a_continue_before_the_robot_has_heard_of_an_emergency_stop_does_not_hold(line):
     await line.set(task("a"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(35.0, 40.0, v=1.0)
     await line.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    await line.go()
+    await line.advance()
     await line.resume()
     line.yard.now += 1
     await line.yard.fleet.emergency.clear(ClearEmergencyStop("clear", "stop-0001"), "Eve")
     await line.reach(35.5, 40.0)
     await line.reach(35.5, 40.0)
-    assert (await line.seen()).state.value == "paused"
+    assert (await line.report()).state.value == "paused"
     assert (await line.sent()).count(PLACES["a"]) == 1
 
 
 @pytest.mark.parametrize("resumed", ["after it is heard", "before it is heard"])
 async def test_a_robot_that_was_there_before_it_heard_of_the_pause_places_no_second_cone(line, resumed):
     await line.yard.send("x", x=60.0, y=40.0, cone=True)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     line.yard.now += 5  # nobody hears it for a while
     await pause(line)
     if resumed == "before it is heard":
         await line.resume()
-    assert await line.yard.take() == ["Abort"]
+    assert await line.yard.acknowledge_all() == ["Abort"]
     await line.yard.at(60.0, 40.0)
-    await line.go()
+    await line.advance()
     if resumed == "after it is heard":
         await line.resume()
     assert await line.sent() == [(60.0, 40.0), "Abort"]
     assert len(await placed(line)) == 1
-    assert (await line.seen()).tasks == []
+    assert (await line.report()).tasks == []
 
 
 async def test_a_command_that_was_not_fetched_is_kept_too(line):
@@ -229,17 +229,17 @@ async def test_a_command_that_was_not_fetched_is_kept_too(line):
     await pause(line)
     assert (await line.yard.states())["x"] == "aborted"
     await line.resume()
-    assert (await line.seen()).tasks[0].reason == STOPS_FIRST
+    assert (await line.report()).tasks[0].reason == STOPS_FIRST
     assert await line.reach(20.0, 40.0) == ["Abort"]
     assert await line.reach(60.0, 40.0) == ["SetPosEnd"]
-    assert (await line.seen()).ended[0].state.value == "done"
+    assert (await line.report()).ended[0].state.value == "done"
 
 
 async def test_a_task_of_the_queue_waits_at_its_head_and_nothing_is_kept_beside_it(line):
     await line.set(task("a"), task("b"))
     await pause_on_the_way(line)
     assert await line.states() == {"a": "waiting", "b": "waiting"}
-    assert (await line.seen()).reason == "paused by Eve"
+    assert (await line.report()).reason == "paused by Eve"
     await line.resume()
     assert await line.reach(*PLACES["a"]) == ["SetPosEnd"]
     assert await line.states() == {"a": "done", "b": "current"}
@@ -247,10 +247,10 @@ async def test_a_task_of_the_queue_waits_at_its_head_and_nothing_is_kept_beside_
 
 async def test_what_was_ordered_beside_a_queue_comes_before_it(line):
     await line.set(task("a"), task("b"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.send("x", x=70.0, y=40.0)
     await pause_on_the_way(line)
-    report = await line.seen()
+    report = await line.report()
     assert [one.x for one in report.tasks] == [70.0, PLACES["a"][0], PLACES["b"][0]]
     assert report.reason == "paused by Eve"
     await line.resume()
@@ -260,7 +260,7 @@ async def test_what_was_ordered_beside_a_queue_comes_before_it(line):
 
 async def test_asked_again_it_changes_nothing(line):
     await line.yard.send("x", x=60.0, y=40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     first = await pause(line)
     assert await pause(line) == first
     await line.reach(35.0, 40.0)
@@ -273,10 +273,10 @@ async def test_paused_twice_on_its_way_it_goes_on_twice(line):
     await line.yard.send("x", x=60.0, y=40.0)
     for x in (30.0, 40.0):
         await pause_on_the_way(line, x)
-        assert len((await line.seen()).tasks) == 1
+        assert len((await line.report()).tasks) == 1
         await line.resume()
     await line.reach(60.0, 40.0)
-    assert (await line.seen()).ended[0].attempts == 3
+    assert (await line.report()).ended[0].attempts == 3
 
 
 async def test_a_robot_that_does_nothing_is_only_paused(line):
@@ -291,7 +291,7 @@ async def test_a_robot_that_does_nothing_is_only_paused(line):
 
 async def test_what_somebody_has_aborted_is_not_kept(line):
     await line.yard.send("x", x=60.0, y=40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.fleet.orders.abort(AbortTask("abort-0001", robot="r1"), "Ada")
     assert (await pause(line)).tasks == []
     await line.reach(35.0, 40.0)
@@ -303,24 +303,24 @@ async def test_after_an_emergency_stop_it_goes_on_only_on_purpose(line):
     await pause_on_the_way(line)
     await line.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
     await line.resume()
-    report = await line.seen()
+    report = await line.report()
     assert report.state.value == "paused" and "emergency stop is in force" in report.reason
     assert (60.0, 40.0) not in (await line.sent())[1:]
 
 
 async def test_a_command_that_comes_in_between_is_stopped_and_kept(line):
     await line.yard.send("x", x=60.0, y=40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await asyncio.gather(line.yard.send("y", x=70.0, y=40.0), pause(line))
     await line.reach(35.0, 40.0)
-    assert [one.x for one in (await line.seen()).tasks] == [70.0]
+    assert [one.x for one in (await line.report()).tasks] == [70.0]
     assert (await line.sent()).count("Abort") == 1
 
 
 @pytest.mark.parametrize("done", [True, False], ids=["done", "not done"])
 async def test_a_pause_of_which_nobody_knows_whether_it_was_stored_is_asked_for_again(line, done, lose):
     await line.yard.send("x", x=60.0, y=40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     lose(line.yard, insert_commands, done)
     with pytest.raises(UncertainError):
         await pause(line)
@@ -329,7 +329,7 @@ async def test_a_pause_of_which_nobody_knows_whether_it_was_stored_is_asked_for_
     assert await line.reach(35.0, 40.0) == ["Abort"]
     await line.resume()
     assert await line.reach(60.0, 40.0) == ["SetPosEnd"]
-    assert (await line.seen()).tasks == []
+    assert (await line.report()).tasks == []
 
 
 async def test_a_robot_that_never_was_here_cannot_be_paused(line):
@@ -339,17 +339,17 @@ async def test_a_robot_that_never_was_here_cannot_be_paused(line):
 
 async def test_a_cone_that_was_there_all_the_same_is_not_placed_again_when_another_task_came_first(line):
     await line.yard.send("x", x=60.0, y=40.0, cone=True)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     line.yard.now += 5  # nobody hears it for a while
     await line.set(task("a"))
     await pause(line)
-    await line.queues.make_current(MakeCurrent("r1", (await line.seen()).revision, "task-000a"), "Ada")
+    await line.queues.make_current(MakeCurrent("r1", (await line.report()).revision, "task-000a"), "Ada")
     await line.reach(60.0, 40.0)
     await line.resume()
     await line.reach(*PLACES["a"])
     assert await line.sent() == [(60.0, 40.0), "Abort", PLACES["a"]]
     assert len(await placed(line)) == 1
-    assert (await line.seen()).tasks == []
+    assert (await line.report()).tasks == []
 
 
 async def test_where_a_robot_waits_for_another_it_goes_on_after_the_pause(roads):
@@ -365,7 +365,7 @@ async def test_on_its_way_to_where_it_waits_both_parts_of_its_way_are_kept(roads
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
-    await roads.take()
+    await roads.acknowledge_all()
     report = await roads.fleet.pauses.pause(PauseRobot("r1"), "Eve")
     assert [(one.x, one.y) for one in report.tasks] == [(hold.x, hold.y), (90.0, 22.0)]
 
@@ -374,10 +374,10 @@ async def test_a_target_that_it_waits_on_its_way_to_is_kept_as_one_task(roads):
     await roads.ready()
     await roads.at(16.0, 8.0, v=1.0)
     await roads.send("cone", x=92.0, y=22.0, cone=True)
-    await roads.take()
+    await roads.acknowledge_all()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
     await roads.fleet.mailboxes.finish([outcome], [], acks=False)
-    await roads.take()
+    await roads.acknowledge_all()
     metres = math.dist((16, 8), (44, 22)) + 1
     await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
@@ -391,11 +391,11 @@ async def test_a_task_of_its_queue_that_waits_for_another_robot_is_not_there_twi
     await roads.at(*ways[0][0], v=1.0)
     await roads.fleet.queues.set(SetQueue("r1", 0, [QueueTask("task-0001", 90.0, 22.0, path=ways[0])]), "Ada")
     await roads.fleet.driving.advance()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.drive("two", ways[1], robot="r2")
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
-    await roads.take()
+    await roads.acknowledge_all()
     for share in (0.25, 0.5, 0.75, 1.0):
         await roads.at(16.0 + share * (hold.x - 16.0), 8.0 + share * (hold.y - 8.0), v=1.0 - share)
     await roads.fleet.driving.advance()

@@ -76,7 +76,7 @@ async def test_its_commands_have_failed_and_those_of_others_go_on(stored):
 async def test_so_they_have_when_it_was_removed_while_no_gateway_ran(stored):
     yard = stored.yard
     await yard.send("a")
-    await yard.take()
+    await yard.acknowledge_all()
     remove(yard)
     await yard.restart()
     await yard.fleet.save()
@@ -137,7 +137,7 @@ async def test_its_queue_is_told_no_more_and_sends_nothing(stored):
     assert len((await stored.queues.read(GetQueue())).queues) == 1
     remove(stored.yard)
     await stored.yard.fleet.save()
-    await stored.go()
+    await stored.advance()
     assert (await stored.queues.read(GetQueue())).queues == []
     assert stored.yard.waiting() == []
 
@@ -171,22 +171,22 @@ async def test_a_supervisor_removes_one_that_is_lost_with_its_queue_and_its_comm
     assert set((await yard.states()).values()) == {"failed", "queued"}
     assert (await yard.states())["other"] == "queued"
     await yard.ready()
-    assert (await stored.seen()).tasks == []
-    assert {one.state.value for one in (await stored.seen()).ended} == {"removed"}
+    assert (await stored.report()).tasks == []
+    assert {one.state.value for one in (await stored.report()).ended} == {"removed"}
 
 
 @pytest.mark.parametrize("restarts", [False, True])
 async def test_one_that_comes_back_is_told_to_abort_what_it_may_still_do(stored, restarts):
     yard = stored.yard
     await yard.send("a")
-    await yard.take()
+    await yard.acknowledge_all()
     await silence(yard)
     await at_desk(yard, "r1")
     if restarts:
         await yard.restart()
     await yard.ready()
-    assert "Abort" in await yard.take()
-    assert "Abort" not in await yard.take()
+    assert "Abort" in await yard.acknowledge_all()
+    assert "Abort" not in await yard.acknowledge_all()
 
 
 async def test_of_many_those_that_are_back_are_left_alone_and_named(stored):

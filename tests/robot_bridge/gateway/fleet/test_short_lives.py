@@ -110,7 +110,7 @@ async def test_a_robot_that_started_anew_is_told_once_more_once_though_the_gatew
 ):
     await yard.ready()
     await yard.send("a")
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.fleet.receive("r1", "websocket", Ready(2), 5)
     await yard.restart()
     await yard.ready(magic=2)

@@ -69,7 +69,7 @@ async def driven(yard, monkeypatch):
     monkeypatch.setattr(emergency_stop, "STORED_WITHIN", 60.0)
     for robot in ("r1", "r2", "r3"):
         await yard.ready(robot, link="websocket" if robot == "r3" else "sql")
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
     await yard.send("target", robot="r2")
     await yard.send("other", robot="r1")
     return yard

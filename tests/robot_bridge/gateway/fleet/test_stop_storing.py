@@ -77,7 +77,7 @@ class Storing:
 async def storing_on(yard):
     for robot in ROBOTS:
         await yard.ready(robot)
-        await yard.take(robot)
+        await yard.acknowledge_all(robot)
     return Storing(yard)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.gateway.monitoring.periodic_tasks import (
+from robot_bridge.gateway.monitoring import (
     MOST_GONE,
     REST,
     YOUNG,

@@ -2,7 +2,7 @@
 
 from prometheus_client.parser import text_string_to_metric_families
 
-from robot_bridge.gateway.monitoring.metrics import Counters, MetricReading, Metrics
+from robot_bridge.gateway.monitoring import Counters, MetricReading, Metrics
 
 
 def samples(metrics):

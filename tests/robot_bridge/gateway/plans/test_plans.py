@@ -35,6 +35,7 @@ from robot_bridge.core.messages.plans import (
 from robot_bridge.core.messages.queues import TaskState
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.plans.service import PlanService
 
 CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}
@@ -77,7 +78,7 @@ class Drive:
         cones = [PlanCone(target.id, target.id, "row") for target in plan.targets]
         request = SubmitPlan(name, document_of(plan), cones, seconds=0.2, **more)
         report = await self.plans.submit(request, "Ada")
-        await self.line.go()
+        await self.line.advance()
         return report
 
     async def seen(self, name="plan-1", **how):
@@ -88,17 +89,17 @@ class Drive:
         """Let each robot drive what it was sent to its end, so many times, and the gateway look."""
         for _ in range(times):
             for robot in robots:
-                await self.yard.take(robot)
-                for task in (await self.line.seen(robot, paths=True)).tasks[:1]:
+                await self.yard.acknowledge_all(robot)
+                for task in (await self.line.report(robot, paths=True)).tasks[:1]:
                     for x, y in task.path[::4]:
                         await self.yard.at(x, y, v=1.0, robot=robot)
                     await self.yard.at(task.x, task.y, robot=robot)
-            await self.line.go()
+            await self.line.advance()
         await self.plans.watch()
 
     async def planned(self):
         """Wait for what is being planned."""
-        await asyncio.gather(*self.plans._tasks)
+        await asyncio.gather(*self.plans._replanner._tasks)
 
     async def lose(self, robot="r2", other="r1"):
         """Let one robot fall silent for long, and the other go on being heard."""
@@ -106,7 +107,7 @@ class Drive:
         x, y = (self.yard.fleet.robots.get(other).pose.x, self.yard.fleet.robots.get(other).pose.y)
         await self.yard.at(x, y, robot=other)
         self.yard.fleet.age()
-        await self.line.go()
+        await self.line.advance()
         await self.plans.watch()
 
     def cones(self):
@@ -144,10 +145,10 @@ async def test_a_plan_is_entered_followed_and_finished_and_every_operator_hears_
 async def test_all_of_it_is_entered_or_nothing(drive):
     with pytest.raises(OutdatedError):
         await drive.submit(revisions={"r2": 7})
-    assert [(await drive.line.seen(robot)).tasks for robot in ("r1", "r2")] == [[], []]
+    assert [(await drive.line.report(robot)).tasks for robot in ("r1", "r2")] == [[], []]
     assert drive.yard.sql("select count(*) from plans") == [(0,)]
     await drive.submit(revisions={"r1": 0, "r2": 0})
-    assert all([(await drive.line.seen(robot)).tasks for robot in ("r1", "r2")])
+    assert all([(await drive.line.report(robot)).tasks for robot in ("r1", "r2")])
 
 
 async def test_submitted_twice_it_is_driven_once(drive):
@@ -167,23 +168,29 @@ async def test_it_is_paused_by_anybody_and_goes_on_from_there(drive):
     with pytest.raises(OutdatedError):
         await drive.plans.resume(ResumePlan("plan-1", report.revision - 1), "Ada")
     await drive.plans.resume(ResumePlan("plan-1", report.revision), "Ada")
-    await drive.line.go()
+    await drive.line.advance()
     await drive.go(times=8)
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
 
-async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive):
+@pytest.mark.parametrize("set_back", [0.0, 365 * 86400.0])
+async def test_the_cones_of_a_lost_robot_are_placed_by_another_by_itself(drive, set_back):
     await drive.submit(by_itself=True)
     await drive.go(robots=["r1"])
+    drive.yard.now += LOST
+    watch = ClockWatch(drive.yard.clock)
+    drive.yard.clock.wall -= set_back
+    if set_back:
+        drive.yard.fleet.clock_was_set(watch.measure_step())
     await drive.lose()
     assert (await drive.seen()).state is PlanState.REPLANNING
     await drive.planned()
     report = await drive.seen()
     assert (report.state, report.robots, report.problems) == (PlanState.DRIVEN, ["r1"], [])
-    await drive.line.go()
+    await drive.line.advance()
     await drive.go(robots=["r1"], times=8)
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
-    assert (await drive.line.seen("r2")).tasks == []
+    assert (await drive.line.report("r2")).tasks == []
 
 
 async def test_a_new_plan_by_which_robots_come_too_near_is_not_sent_by_itself(drive):
@@ -194,7 +201,7 @@ async def test_a_new_plan_by_which_robots_come_too_near_is_not_sent_by_itself(dr
     await drive.planned()
     report = await drive.seen()
     assert report.state is PlanState.PROPOSED and report.meetings
-    assert (await drive.line.seen("r1")).state.value == "paused"
+    assert (await drive.line.report("r1")).state.value == "paused"
     await drive.plans.confirm(ConfirmReplan("plan-1", report.revision), "Bob")
     assert (await drive.seen()).state is PlanState.DRIVEN
 
@@ -209,13 +216,13 @@ async def test_unless_that_was_chosen_somebody_has_to_ask_and_to_confirm(drive):
     await drive.planned()
     report = await drive.seen(documents=True)
     assert report.state is PlanState.PROPOSED and report.proposal is not None
-    assert (await drive.line.seen("r1")).state.value == "paused"
+    assert (await drive.line.report("r1")).state.value == "paused"
     discarded = await drive.plans.discard(DiscardReplan("plan-1", report.revision), "Bob")
-    assert discarded.state is PlanState.DRIVEN and (await drive.line.seen("r1")).state.value == "running"
+    assert discarded.state is PlanState.DRIVEN and (await drive.line.report("r1")).state.value == "running"
     await drive.plans.replan(Replan("plan-1", discarded.revision), "Bob")
     await drive.planned()
     await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Bob")
-    await drive.line.go()
+    await drive.line.advance()
     await drive.go(robots=["r1"], times=8)
     assert drive.cones() == ALL
 
@@ -240,7 +247,7 @@ async def test_a_gateway_that_is_started_again_goes_on_with_it(drive, state):
         await drive.yard.at(x, y, robot=robot)
     if state == "proposed":
         await drive.plans.confirm(ConfirmReplan("plan-1", report.revision), "Bob")
-    await drive.line.go()
+    await drive.line.advance()
     await drive.go(times=10)
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
@@ -276,14 +283,14 @@ async def test_planning_that_counts_no_more_says_nothing_of_what_is_planned_inst
             may_end.wait(60)
         return meetings
 
-    monkeypatch.setattr("robot_bridge.gateway.plans.service.count_meetings", count)
+    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.count_meetings", count)
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await begun.wait()
-    (first,) = drive.plans._tasks
+    (first,) = drive.plans._replanner._tasks
     discarded = await drive.plans.discard(DiscardReplan("plan-1", (await drive.seen()).revision), "Ada")
     await drive.plans.replan(Replan("plan-1", discarded.revision), "Ada")
-    await asyncio.gather(*(drive.plans._tasks - {first}))
+    await asyncio.gather(*(drive.plans._replanner._tasks - {first}))
     may_end.set()
     await first
     report = await drive.seen()
@@ -304,7 +311,7 @@ async def test_after_an_emergency_stop_it_waits_for_somebody(drive):
     await drive.submit(by_itself=True)
     await drive.go()
     await drive.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    await drive.line.go()
+    await drive.line.advance()
     await drive.plans.watch()
     report = await drive.seen()
     assert (report.state, report.by_itself) == (PlanState.PAUSED, False)
@@ -323,7 +330,7 @@ async def test_a_plan_that_is_cleared_is_followed_no_more_and_its_tasks_stay(dri
     report = await drive.plans.clear(ClearPlan("plan-1"), "Bob")
     assert report.state is PlanState.CLEARED
     assert await drive.plans.clear(ClearPlan("plan-1"), "Bob") == report
-    assert (await drive.line.seen("r1")).tasks
+    assert (await drive.line.report("r1")).tasks
     await drive.submit(plan_of(), "plan-2")
 
 
@@ -350,7 +357,7 @@ def test_bounds_of_a_submission(wrong):
 
 
 async def test_planning_that_takes_too_long_leaves_the_robots_standing_and_says_so(drive, monkeypatch):
-    monkeypatch.setattr("robot_bridge.gateway.plans.model.PATIENCE", 0.0)
+    monkeypatch.setattr("robot_bridge.gateway.plans.replanning.PATIENCE", 0.0)
     await drive.submit()
     await drive.plans.replan(Replan("plan-1", 1), "Ada")
     await drive.planned()
@@ -366,7 +373,7 @@ async def test_paths_that_are_led_round_what_stands_are_driven(drive):
     bent = replace(first, path=((x, y), ((x + end[0]) / 2, y + 2.0), end))
     trip = replace(one.trips[0], stops=(bent, *others))
     await drive.submit(replace(plan, robots=(replace(one, trips=(trip,)),)))
-    assert (await drive.line.seen("r1", paths=True)).tasks[0].path[1][1] == y + 2.0
+    assert (await drive.line.report("r1", paths=True)).tasks[0].path[1][1] == y + 2.0
 
 
 async def test_a_stop_at_which_a_cone_is_collected_names_the_placed_cone(drive):

@@ -20,27 +20,27 @@ async def test_a_cone_is_driven_to_along_its_path_and_put_down_where_the_robot_s
     assert await drive(line, LANE, (50.0, 40.1)) == ["SetPath"]
     assert await line.states() == {"a": "current", "b": "waiting"}
     await line.yard.restart()
-    await line.go()
+    await line.advance()
     assert await line.reach(50.0, 40.1) == ["SetPosEnd"]
     (cone,) = await placed(line, layout="slalom")
     assert (cone.cone, cone.label, cone.robot, cone.collected_at) == ("c7", "7", "r1", None)
     assert (cone.planned_x, cone.planned_y, cone.x, cone.y) == (50.0, 40.0, 50.0, 40.1)
     assert cone.deviation == pytest.approx(0.1)
     assert await line.states() == {"a": "done", "b": "current"}
-    assert (await line.seen()).ended[0].deviation == pytest.approx(0.1)
+    assert (await line.report()).ended[0].deviation == pytest.approx(0.1)
 
 
 async def test_the_robot_is_told_to_put_the_cone_down_only_at_the_end(line):
     await line.set(task("a", "place", path=LANE))
     await drive(line, LANE, LANE[-1])
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     commands = await line.yard._stored()
     assert [(c.op, c.params.get("cone")) for c in commands] == [("SetPath", None), ("SetPosEnd", True)]
 
 
 async def test_a_path_that_was_broken_off_goes_on_from_where_the_robot_stands(line):
     await line.set(task("a", path=LANE, theta=0.0))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     for x in (25.0, 30.0, 35.0):
         await line.yard.at(x, 40.0 + (x - 20) / 20, v=1.0)
     await line.yard.fleet.save()
@@ -55,7 +55,7 @@ async def test_a_path_that_was_broken_off_goes_on_from_where_the_robot_stands(li
 async def test_a_robot_far_off_its_path_is_not_sent_across_the_country(line):
     await line.yard.at(20.0, 60.0)
     await line.set(task("a", "place", path=LANE), task("b"))
-    report = await line.seen()
+    report = await line.report()
     assert await line.sent() == []
     assert report.state.value == "paused"
     assert report.reason.startswith("the robot stands 20.0 m off what is left of the path; drive it there")
@@ -64,7 +64,7 @@ async def test_a_robot_far_off_its_path_is_not_sent_across_the_country(line):
 async def test_a_robot_drives_a_path_from_its_beginning_or_not_at_all(line):
     await line.yard.at(40.0, 41.0)
     await line.set(task("a", path=LANE))
-    assert "stands 20.0 m from where the path begins" in (await line.seen()).reason
+    assert "stands 20.0 m from where the path begins" in (await line.report()).reason
 
 
 async def test_what_is_collected_is_marked_and_not_collected_twice(line):
@@ -99,13 +99,13 @@ async def test_a_cone_that_stands_ahead_of_its_robot_is_measured_there(line, mon
     await drive(line, LANE[:2], (49.5, 40.05))
     (command,) = [c for c in await line.yard._stored() if c.op == "SetPosEnd"]
     assert (command.params["x"], command.params["y"]) == (49.5, 40.0)
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.fleet.receive("r1", "websocket", SendPos(49.5, 40.1, 0.1, 0.0), None)
-    await line.go()
+    await line.advance()
     (cone,) = await placed(line)
     assert (cone.x, cone.y) == pytest.approx((49.5 + 0.5 * math.cos(0.1), 40.1 + 0.5 * math.sin(0.1)))
     assert cone.deviation == pytest.approx(math.dist((cone.x, cone.y), PLACES["a"]))
-    assert (await line.seen()).ended[0].deviation == cone.deviation
+    assert (await line.report()).ended[0].deviation == cone.deviation
 
 
 async def test_what_has_ended_is_forgotten_in_time_and_what_stands_or_waits_is_not(line):
@@ -126,10 +126,10 @@ async def test_what_has_ended_is_forgotten_in_time_and_what_stands_or_waits_is_n
 
 async def test_a_robot_is_sent_round_a_closed_road_without_its_queue_pausing(line):
     await line.set(task("a", "place", path=LANE), task("b"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     way = [(20.0, 40.0), (35.0, 45.0), (50.0, 40.0)]
     report = await line.yard.fleet.driving.redirect("r1", SetPath(way), "gateway", "road closed")
-    await line.go()
+    await line.advance()
     assert report.params["points"] == [list(point) for point in way] or report.params["points"] == way
     assert await drive(line, way, (50.0, 40.0)) == ["SetPath"]
     await line.reach(50.0, 40.0)
@@ -139,11 +139,11 @@ async def test_a_robot_is_sent_round_a_closed_road_without_its_queue_pausing(lin
 
 async def test_a_cone_that_was_put_down_just_when_its_task_was_given_back_is_not_put_down_again(line):
     await line.set(task("a", "place"), task("b"))
-    await line.yard.take()
-    revision = (await line.seen()).revision
+    await line.yard.acknowledge_all()
+    revision = (await line.report()).revision
     await line.queues.make_current(MakeCurrent("r1", revision, "task-000b"), "Ada")
     await line.yard.at(*PLACES["a"])
-    await line.go()
+    await line.advance()
     assert await line.states() == {"b": "current", "a": "waiting"}
     await line.reach(*PLACES["b"])
     assert await line.states() == {"a": "done", "b": "done"}

@@ -28,14 +28,14 @@ async def test_progress_is_no_reason_to_refuse_an_edit(line):
 
 async def test_tasks_are_added_moved_and_removed(line):
     await line.set(task("a"), task("b"))
-    report = await line.seen()
+    report = await line.report()
     report = await line.queues.add(AddTasks("r1", report.revision, [task("c")], "task-000b"), "Ada")
     assert [one.task[-1] for one in report.tasks] == ["a", "c", "b"]
     report = await line.queues.move(MoveTask("r1", report.revision, "task-000b", "task-000c"), "Ada")
     report = await line.queues.add(AddTasks("r1", report.revision, [task("d")]), "Ada")
     assert [one.task[-1] for one in report.tasks] == ["a", "b", "c", "d"]
     await line.yard.restart()
-    assert [one.task[-1] for one in (await line.seen()).tasks] == ["a", "b", "c", "d"]
+    assert [one.task[-1] for one in (await line.report()).tasks] == ["a", "b", "c", "d"]
     for refused in (
         lambda r: line.queues.move(MoveTask("r1", r, "task-000a"), "Ada"),
         lambda r: line.queues.remove(RemoveTask("r1", r, "task-000a"), "Ada"),
@@ -45,7 +45,7 @@ async def test_tasks_are_added_moved_and_removed(line):
     ):
         with pytest.raises(RefusedError):
             await refused(report.revision)
-    assert (await line.seen()).revision == report.revision
+    assert (await line.report()).revision == report.revision
 
 
 async def test_a_list_that_names_what_is_done_does_not_have_it_done_again(line):
@@ -63,12 +63,12 @@ async def test_a_list_that_names_what_is_done_does_not_have_it_done_again(line):
 
 async def test_another_task_is_made_current_and_the_present_one_comes_next(line):
     await line.set(task("a"), task("b"), task("c"))
-    await line.yard.take()
-    report = await line.seen()
+    await line.yard.acknowledge_all()
+    report = await line.report()
     await line.queues.make_current(MakeCurrent("r1", report.revision, "task-000c"), "Ada")
-    await line.go()
-    assert [one.task[-1] for one in (await line.seen()).tasks] == ["c", "a", "b"]
-    assert (await line.seen()).state.value == "running"
+    await line.advance()
+    assert [one.task[-1] for one in (await line.report()).tasks] == ["c", "a", "b"]
+    assert (await line.report()).state.value == "running"
     for id in "cab":
         await line.reach(*PLACES[id])
     assert await line.sent() == [PLACES[id] for id in "acab"]
@@ -77,7 +77,7 @@ async def test_another_task_is_made_current_and_the_present_one_comes_next(line)
 
 async def test_an_edit_made_while_somebody_orders_the_robot_about_does_not_undo_the_pause(line, monkeypatch):
     await line.set(task("a"), task("b"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     run = line.yard.database.run
 
     async def ordered_first(asked, *arguments):
@@ -90,9 +90,9 @@ async def test_an_edit_made_while_somebody_orders_the_robot_about_does_not_undo_
     with pytest.raises(OutdatedError) as refused:
         await line.queues.add(AddTasks("r1", 1, [task("c")]), "Eve")
     added = refused.value
-    await line.go()
+    await line.advance()
     assert added.newer["state"] == "paused"
-    report = await line.seen()
+    report = await line.report()
     assert (report.revision, report.reason) == (2, "Ada ordered SetPosEnd beside the queue")
     assert await line.states() == {"a": "waiting", "b": "waiting"}
 
@@ -100,8 +100,8 @@ async def test_an_edit_made_while_somebody_orders_the_robot_about_does_not_undo_
 async def test_a_task_that_failed_may_be_given_another_path(line):
     await line.yard.at(20.0, 60.0)
     await line.set(task("a", "place", path=LANE))
-    assert (await line.seen()).state.value == "paused"
+    assert (await line.report()).state.value == "paused"
     await line.set(task("a", "place", path=[(20.0, 60.0), (50.0, 40.0)]))
     await line.resume()
     assert await line.sent() == ["SetPath"]
-    assert (await line.seen()).tasks[0].reason is None
+    assert (await line.report()).tasks[0].reason is None

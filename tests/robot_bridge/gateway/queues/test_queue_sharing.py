@@ -16,17 +16,17 @@ def share(robot, revision, *ids, **paths):
 async def test_what_a_lost_robot_has_left_is_done_by_another_once(line):
     await line.set(task("a"), task("b"), task("c"))
     await line.set(task("d"), robot="r2")
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     line.yard.now += 20
     await line.yard.at(20.0, 40.0, robot="r2")
     line.yard.fleet.age()
-    await line.go()
-    revisions = [(await line.seen(robot)).revision for robot in ("r1", "r2")]
+    await line.advance()
+    revisions = [(await line.report(robot)).revision for robot in ("r1", "r2")]
     request = TakeOver("r1", revisions[0], [share("r2", revisions[1], "b", "a", "c")], "battery")
     reports = (await line.queues.take_over(request, "Ada")).queues
-    await line.go()
+    await line.advance()
     assert [[one.task[-1] for one in report.tasks] for report in reports] == [[], ["d", "b", "a", "c"]]
-    assert (await line.seen()).reason == "its tasks were taken over: battery"
+    assert (await line.report()).reason == "its tasks were taken over: battery"
     # When it is back it is told to stop, and what it does then is not its task any more.
     assert await line.reach(30.0, 40.0) == ["Abort"]
     await line.yard.restart()
@@ -39,9 +39,9 @@ async def test_what_a_lost_robot_has_left_is_done_by_another_once(line):
 
 async def test_what_a_robot_is_doing_may_stay_with_it(line):
     await line.set(task("a"), task("b"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.queues.take_over(TakeOver("r1", 1, [share("r2", 0, "b")]), "Ada")
-    await line.go()
+    await line.advance()
     assert await line.states() == {"a": "current"}
     assert await line.sent("r2") == [PLACES["b"]]
     await line.reach(*PLACES["a"])
@@ -61,13 +61,13 @@ async def test_a_split_that_loses_or_doubles_a_task_changes_nothing(line, ids, s
     with pytest.raises(RefusedError, match=said):
         await line.queues.take_over(TakeOver("r1", 1, [share("r2", 0, *ids)]), "Ada")
     assert await line.states() == {"a": "current", "b": "waiting", "c": "waiting"}
-    assert (await line.seen("r2")).tasks == []
+    assert (await line.report("r2")).tasks == []
 
 
 async def test_a_path_begins_where_its_robot_is_and_is_given_anew(line):
     await line.set(task("a"), task("b", "place", path=[(50.0, 40.0), (60.0, 40.0)]))
     new = [(20.0, 40.0), (60.0, 40.0)]
     await line.queues.take_over(TakeOver("r1", 1, [share("r2", 0, "b", b=new)]), "Ada")
-    await line.go()
-    assert [one.path for one in (await line.seen("r2", paths=True)).tasks] == [new]
+    await line.advance()
+    assert [one.path for one in (await line.report("r2", paths=True)).tasks] == [new]
     assert await line.sent("r2") == ["SetPath"]

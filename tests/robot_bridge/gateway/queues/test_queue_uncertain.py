@@ -18,7 +18,7 @@ async def test_after_a_commit_of_which_nobody_knows_the_queue_is_what_the_databa
     with pytest.raises(UncertainError):
         await line.queues.pause(PauseQueue("r1"), "Ada")
     await line.reach(*PLACES["a"])
-    assert (await line.seen()).state.value == ("paused" if done else "running")
+    assert (await line.report()).state.value == ("paused" if done else "running")
     assert await line.states() == {"a": "done", "b": "waiting" if done else "current"}
 
 
@@ -31,8 +31,8 @@ async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_i
     lose(line.yard, None, done)
     with pytest.raises(UncertainError):
         await line.resume()
-    await line.go()
-    assert (await line.seen()).state.value == ("running" if done else "paused")
+    await line.advance()
+    assert (await line.report()).state.value == ("running" if done else "paused")
     assert await line.sent() == ([PLACES["a"], PLACES["b"]] if done else [PLACES["a"]])
 
 
@@ -40,7 +40,7 @@ async def test_a_queue_of_which_nobody_knows_whether_it_was_resumed_goes_on_if_i
 async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(line, done, lose):
     lose(line.yard, insert_commands, done)
     await line.set(task("a"), task("b"))
-    await line.go()
+    await line.advance()
     await line.reach(*PLACES["a"])
     assert await line.states() == {"a": "done", "b": "current"}
     assert await line.sent() == [PLACES["a"], PLACES["b"]]
@@ -48,10 +48,10 @@ async def test_a_task_of_which_nobody_knows_whether_it_was_sent_is_sent_once(lin
 
 async def test_a_cone_of_which_nobody_knows_whether_it_was_written_down_is_so_once(line, lose):
     await line.set(task("a", "place"), task("b"))
-    await line.yard.take()
+    await line.yard.acknowledge_all()
     await line.yard.at(*PLACES["a"])
     lose(line.yard, write_outcome, True)
-    await line.go()
-    await line.go()
+    await line.advance()
+    await line.advance()
     assert len(await placed(line)) == 1
     assert await line.states() == {"a": "done", "b": "current"}

@@ -24,13 +24,13 @@ from tests.support.bridge.road_places import SOUTH, highest
 async def set_off_with_a_queue(roads, **cone):
     """Let r1 drive the path of its first task, towards the crossing that r2 comes to as well."""
     await roads.ready()
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(4.0, 2.0, v=1.0)
     path = [(4.0, 2.0), (16.0, 8.0), (44.0, 22.0), (90.0, 22.0)]
     tasks = [QueueTask("task-0001", 90.0, 22.0, path=path, **cone), QueueTask("task-0002", 92.0, 22.0)]
     await roads.fleet.queues.set(SetQueue("r1", 0, tasks), "Ada")
     await roads.fleet.driving.advance()
-    assert await roads.take() == ["SetPath"]
+    assert await roads.acknowledge_all() == ["SetPath"]
     for x in (8.0, 12.0, 16.0):
         await roads.at(x, x / 2, v=1.0)
     await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
@@ -50,7 +50,7 @@ async def drive_to(roads, points):
 
 async def test_the_task_of_a_queue_goes_on_by_another_way_when_its_road_is_closed(each):
     await each.ready()
-    await each.take()
+    await each.acknowledge_all()
     await each.at(10.0, 8.0, v=1.0)
     tasks = [
         QueueTask("task-0001", 126.0, 8.0, path=[(10.0, 8.0), (126.0, 8.0)]),
@@ -58,12 +58,12 @@ async def test_the_task_of_a_queue_goes_on_by_another_way_when_its_road_is_close
     ]
     await each.fleet.queues.set(SetQueue("r1", 0, tasks), "Ada")
     await each.fleet.driving.advance()
-    assert await each.take() == ["SetPath"]
+    assert await each.acknowledge_all() == ["SetPath"]
     (robot,) = (await each.close_road(*SOUTH, reason="tree")).robots
     assert (robot.robot, robot.became) == ("r1", "another way")
     points = await each.new_path()
     assert highest(points) == pytest.approx(22.0, abs=0.5)
-    await each.take()
+    await each.acknowledge_all()
     (queue,) = (await each.fleet.queues.read(GetQueue("r1"))).queues
     assert queue.state is QueueState.RUNNING
     assert [one.task for one in queue.tasks] == ["task-0001", "task-0002"]
@@ -73,7 +73,7 @@ async def test_the_task_of_a_queue_goes_on_by_another_way_when_its_road_is_close
     await each.at(126.0, 8.0)
     await each.fleet.driving.advance()
     # The next has no path of its own: the gateway finds one.
-    assert await each.take() == ["SetPath"]
+    assert await each.acknowledge_all() == ["SetPath"]
 
 
 async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_same_task(each):
@@ -91,7 +91,7 @@ async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_sa
     assert (queue.tasks[0].command, queue.tasks[1].task) == (resolved.command, "task-0001")
     first = await each.new_path()
     assert first[-1] == [hold.x, hold.y] == [queue.tasks[0].x, queue.tasks[0].y]
-    await each.take()
+    await each.acknowledge_all()
     await drive_to(each, first)
     # It stands there, and neither the queue nor a restart sends it on before the other has passed.
     await each.restart()
@@ -103,7 +103,7 @@ async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_sa
     await each.fleet.driving.advance()
     await each.fleet.watch_roads()
     await each.fleet.driving.advance()
-    assert await each.take() == []
+    assert await each.acknowledge_all() == []
     assert (await queue_of(each)).state is QueueState.RUNNING
     for x in range(44, 61, 4):
         await each.at(float(x), 22.0, v=1.0, robot="r2")
@@ -112,7 +112,7 @@ async def test_the_path_of_a_queue_waits_for_another_robot_and_goes_on_as_the_sa
     await each.fleet.driving.advance()
     rest = await each.new_path()
     assert (rest[0], rest[-1]) == ([hold.x, hold.y], [90.0, 22.0])
-    await each.take()
+    await each.acknowledge_all()
     assert each.sql("select robot from holds") == []
     await drive_to(each, rest)
     queue = await queue_of(each)
@@ -128,7 +128,7 @@ async def test_a_cone_whose_robot_waited_is_put_down_where_it_belongs(roads, own
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
-    await roads.take()
+    await roads.acknowledge_all()
     await drive_to(roads, first)
     assert (await queue_of(roads)).tasks[0].path[-1] == (90.0, 22.0)
     await roads.at(60.0, 40.0, robot="r2")
@@ -137,11 +137,11 @@ async def test_a_cone_whose_robot_waited_is_put_down_where_it_belongs(roads, own
     await roads.fleet.driving.advance()
     rest = await roads.new_path()
     assert rest[-1] == [pytest.approx(89.6, abs=0.01), 22.0]
-    await roads.take()
+    await roads.acknowledge_all()
     await drive_to(roads, rest)
     (row,) = [row for row in await roads.deliver() if row.op == "SetPosEnd"]
     assert json.loads(row.params)["cone"] is True
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(89.6, 22.0)
     await roads.fleet.driving.advance()
     assert (await queue_of(roads)).ended[0].deviation == pytest.approx(0.0, abs=0.01)
@@ -152,17 +152,17 @@ async def test_a_queue_that_is_changed_while_its_robot_waits_does_what_it_was_ch
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
-    await roads.take()
+    await roads.acknowledge_all()
     await drive_to(roads, first)
     revision = (await queue_of(roads)).revision
     await roads.fleet.queues.set(SetQueue("r1", revision, [QueueTask("task-0009", 30.0, 10.0)]), "Ada")
     await roads.fleet.driving.advance()
-    assert await roads.take() == ["SetPath"]
+    assert await roads.acknowledge_all() == ["SetPath"]
     assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
     roads.now = hold.until + 60
     await roads.at(60.0, 40.0, robot="r2")
     await roads.fleet.watch_roads()
-    assert await roads.take() == []
+    assert await roads.acknowledge_all() == []
 
 
 async def test_a_queue_that_is_paused_while_its_robot_waits_stays_paused(roads):
@@ -170,14 +170,14 @@ async def test_a_queue_that_is_paused_while_its_robot_waits_stays_paused(roads):
     await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     first = await roads.new_path()
-    await roads.take()
+    await roads.acknowledge_all()
     await drive_to(roads, first)
     await roads.fleet.queues.pause(PauseQueue("r1"), "Ada")
     await roads.at(60.0, 40.0, robot="r2")
     roads.now = hold.until + 1
     await roads.fleet.watch_roads()
     await roads.fleet.driving.advance()
-    assert await roads.take() == []
+    assert await roads.acknowledge_all() == []
     assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
     await roads.fleet.queues.resume(ResumeQueue("r1", (await queue_of(roads)).revision), "Ada")
     await roads.fleet.driving.advance()

@@ -112,11 +112,11 @@ async def test_a_robot_that_asked_for_its_way_is_told_another_and_keeps_its_task
     await roads.ready()
     await roads.at(10.0, 8.0)
     await roads.send("cone", x=126.0, y=8.0, cone=True)
-    await roads.take()
+    await roads.acknowledge_all()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
     assert highest(outcome.answer.points) == pytest.approx(8.0, abs=0.01)
     await roads.fleet.mailboxes.finish([outcome], [], acks=False)
-    await roads.take()
+    await roads.acknowledge_all()
     closed = await roads.close_road(*SOUTH)
     assert [robot.became for robot in closed.robots] == ["another way"]
     assert highest(await roads.new_path()) == pytest.approx(22.0, abs=0.5)
@@ -132,7 +132,7 @@ async def test_a_robot_that_stands_on_the_closed_road_or_has_no_other_way_is_sto
     (robot,) = (await roads.close_road(*SOUTH)).robots
     assert (robot.robot, robot.became) == ("r1", "stopped")
     assert "is on a road that an operator closed" in robot.text
-    assert await roads.take() == ["Abort"]
+    assert await roads.acknowledge_all() == ["Abort"]
     assert (await roads.states())["one"] == "aborted"
     (robot,) = (await roads.close_road(195.0, 84.0, "closure-2")).robots
     assert (robot.robot, robot.became) == ("r2", "stopped")
@@ -177,14 +177,14 @@ async def test_a_robot_that_is_to_stop_is_led_nowhere_when_its_road_is_closed(ro
     await roads.fleet.orders.abort(AbortTask("command-abort", "r1"), "Ada")
     (robot,) = (await roads.close_road(*SOUTH)).robots
     assert (robot.became, "told otherwise in the meantime" in robot.text) == ("failed", True)
-    assert await roads.take() == ["Abort"]
+    assert await roads.acknowledge_all() == ["Abort"]
 
 
 async def test_a_robot_with_a_target_that_is_to_stop_is_led_nowhere_either(roads):
     await roads.ready()
     await roads.at(10.0, 8.0)
     await roads.send("cone", x=126.0, y=8.0, cone=True)
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.fleet.orders.abort(AbortTask("command-abort", "r1"), "Ada")
     assert [one.became for one in (await roads.close_road(*SOUTH)).robots] == ["failed"]
-    assert await roads.take() == ["Abort"]
+    assert await roads.acknowledge_all() == ["Abort"]

@@ -11,6 +11,7 @@ from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.commands import AbortAll, AbortTask
 from robot_bridge.core.messages.roads import ResolveConflict
 from robot_bridge.core.messages.robots import GetPath
+from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.storage.repositories import closures as stored_closures
 from tests.support.bridge.road_places import highest
 
@@ -25,8 +26,8 @@ async def test_a_conflict_is_told_with_place_and_time(roads):
     assert found["nearest_at"] == pytest.approx(roads.now + 40)
     await roads.at(20.0, 8.0)
     await roads.fleet.orders.abort_all(AbortAll(), "Ada")
-    await roads.take("r1")
-    await roads.take("r2")
+    await roads.acknowledge_all("r1")
+    await roads.acknowledge_all("r2")
     await asyncio.sleep(0.3)
     await roads.fleet.watch_roads()
     assert roads.news["conflicts"]["conflicts"] == []
@@ -46,6 +47,18 @@ async def test_a_head_on_conflict_is_resolved_by_another_way(roads):
     assert (states["one"], states["two"]) == ("superseded", "acknowledged")
 
 
+async def test_a_robot_that_waits_does_so_no_longer_when_the_clock_is_set_back(roads):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
+    watch = ClockWatch(roads.clock)
+    roads.clock.wall -= 365 * 86400.0
+    roads.fleet.clock_was_set(watch.measure_step())
+    (moved,) = (await roads.fleet.roads.traffic.conflicts()).waiting
+    assert hold.until - moved.until == 365 * 86400.0
+
+
 async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
     # They meet where the road from the south joins the ring at (44, 22).
     await each.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
@@ -58,20 +71,20 @@ async def test_a_robot_waits_for_another_at_a_crossing_and_is_sent_on(each):
     assert (await each.fleet.roads.traffic.conflicts()).conflicts == []
     points = await each.new_path()
     assert points[-1] == [hold.x, hold.y]
-    await each.take()
+    await each.acknowledge_all()
     assert (await each.states())["one"] == "superseded"
     await each.restart()
     each.now += 10
     await each.at(hold.x, hold.y, v=0.0)
     await each.at(24.0, 22.0, v=1.0, robot="r2")
     await each.fleet.watch_roads()
-    assert await each.take() == []
+    assert await each.acknowledge_all() == []
     each.now = hold.until + 1
     # The other is late: the one that waits is not sent on by the clock alone.
     there = 44.0 - math.dist((hold.x, hold.y), (44.0, 22.0))
     await each.at(there, 22.0, v=1.0, robot="r2")
     await each.fleet.watch_roads()
-    assert await each.take() == []
+    assert await each.acknowledge_all() == []
     for x in range(44, 61, 4):
         await each.at(float(x), 22.0, v=1.0, robot="r2")
     await each.at(60.0, 26.0, v=1.0, robot="r2")
@@ -86,17 +99,17 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
     await roads.ready()
     await roads.at(16.0, 8.0, v=1.0)
     await roads.send("cone", x=92.0, y=22.0, cone=True)
-    await roads.take()
+    await roads.acknowledge_all()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
     await roads.fleet.mailboxes.finish([outcome], [], acks=False)
-    await roads.take()
+    await roads.acknowledge_all()
     metres = math.dist((16, 8), (44, 22)) + 1
     await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
     resolved = await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert resolved.command == "command-cone"
     (hold,) = (await roads.fleet.roads.traffic.conflicts()).waiting
     assert (await roads.new_path())[-1] == [hold.x, hold.y]
-    await roads.take()
+    await roads.acknowledge_all()
     with pytest.raises(RefusedError, match="GetPath: robot 'r1' waits for 'r2'"):
         await roads.fleet.receive("r1", "websocket", GetPath(), 8)
     await roads.at(hold.x, hold.y)
@@ -134,7 +147,7 @@ async def test_who_cannot_give_way_says_why_and_nothing_changes(roads):
 async def test_a_robot_that_is_aborted_while_it_waits_is_sent_on_by_nobody(each):
     hold = await each.wait_at_the_crossing()
     await each.fleet.orders.abort(AbortTask("command-abort", "r1"), "Ada")
-    assert await each.take() == ["Abort"]
+    assert await each.acknowledge_all() == ["Abort"]
     await each.at(hold.x, hold.y)
     assert (await each.states())["abort"] == "reached"
     assert each.sql("select robot from holds") == []
@@ -143,7 +156,7 @@ async def test_a_robot_that_is_aborted_while_it_waits_is_sent_on_by_nobody(each)
     each.now = hold.until + 10
     await each.at(hold.x, hold.y)
     await each.fleet.watch_roads()
-    assert await each.take() == []
+    assert await each.acknowledge_all() == []
 
 
 async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads, monkeypatch):
@@ -158,5 +171,5 @@ async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads,
     with pytest.raises(StoreError, match="the disk is full"):
         await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
     assert await roads.states() == before
-    assert await roads.take() == []
+    assert await roads.acknowledge_all() == []
     assert (await roads.fleet.roads.traffic.conflicts()).waiting == []

@@ -25,7 +25,7 @@ async def meeting(roads):
     """r1 drives along the road at y = 8, on which r3 stands."""
     await roads.drive("one", [(20.0, 8.0), (100.0, 8.0)])
     await roads.ready("r3")
-    await roads.take("r3")
+    await roads.acknowledge_all("r3")
     await roads.at(60.0, 8.0, robot="r3")
     return roads
 
@@ -50,9 +50,9 @@ async def test_a_standing_robot_goes_aside_and_nothing_is_sent_before_somebody_s
     # Beside the way of r1 by the clearance, and no further than it has to be.
     assert 1.24 <= abs(y - 8.0) < 1.8 and abs(x - 60.0) < 1.0
     assert meeting.site.site.surface_index.at(x, y) >= 0
-    assert await meeting.take("r3") == []
+    assert await meeting.acknowledge_all("r3") == []
     await meeting.send("aside", "SetPath", "r3", points=aside.points)
-    await meeting.take("r3")
+    await meeting.acknowledge_all("r3")
     assert await conflicts(meeting) == []
     assert not ways["r1", "aside"].possible
     assert "has a task" in ways["r1", "aside"].text
@@ -86,7 +86,7 @@ async def test_the_place_aside_is_free_of_keepouts_obstacles_and_other_robots(me
     first = (await ways_out(meeting, "r1", "r3"))["r3", "aside"].points[1]
     # Somebody else stands there by now.
     await meeting.ready("r4")
-    await meeting.take("r4")
+    await meeting.acknowledge_all("r4")
     await meeting.at(*first, robot="r4")
     second = (await ways_out(meeting, "r1", "r3"))["r3", "aside"].points[1]
     assert math.dist(first, second) >= math.hypot(0.5, 0.8) + 0.3

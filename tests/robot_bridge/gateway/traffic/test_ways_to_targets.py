@@ -38,7 +38,7 @@ def cone_at(place, override=None):
 
 async def stand(yard, place=START, **declared):
     await yard.ready(**declared)
-    await yard.take()
+    await yard.acknowledge_all()
     await yard.at(*place)
 
 
@@ -197,7 +197,7 @@ async def test_led_round_a_closed_road_it_has_its_cone_still(roads):
 
 async def test_one_that_waits_for_another_has_its_cone_when_it_goes_on(roads):
     await roads.ready(path_cones=True)
-    await roads.take()
+    await roads.acknowledge_all()
     await roads.at(16.0, 8.0, v=1.0)
     await roads.send("way", "SetPath", points=[(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)], cone=True)
     await sent(roads)
@@ -269,7 +269,7 @@ async def test_one_that_asks_for_its_path_is_sent_the_target_of_its_task(roads):
 
 async def test_a_task_waits_for_its_way_until_the_robot_has_said_where_it_is(roads):
     await roads.ready(path_cones=True)
-    await roads.take()
+    await roads.acknowledge_all()
     await give(roads, QueueTask("task-0001", *GOAL))
     assert await sent(roads) == []
     assert (await queue_of(roads)).tasks[0].reason == "waits for the robot to say where it is"

@@ -7,7 +7,7 @@ from alembic import op
 from sqlalchemy.dialects import mysql
 
 revision = "0012"
-down_revision = "0010"
+down_revision = "0011"
 
 Number: Any = sa.Double().with_variant(mysql.DOUBLE(asdecimal=False), "mysql", "mariadb")
 Id = sa.BigInteger().with_variant(sa.Integer, "sqlite")

@@ -270,6 +270,14 @@ def test_gdal_reads_sqlite_through_the_file_that_is_written(new_database, site, 
     assert heading == pytest.approx((90 - math.degrees(-3.0 + FRAME.rotation)) % 360)
 
 
+def test_the_site_of_the_environment_keeps_no_views_from_being_removed(new_database, site):
+    words, env = ("database", "views", "--database", new_database("sqlite")), {"ROBOT_BRIDGE_SITE": str(site)}
+    assert "made map_robots" in run_command(*words, env=env).stdout
+    assert "the views are removed" in run_command(*words, "--remove", env=env).stdout
+    done = run_command(*words, "--remove", "--site", str(site), env=env)
+    assert done.returncode == 1 and "give --site FOLDER to make the views, or --remove" in done.stderr
+
+
 def test_a_file_that_cannot_be_written_is_named(new_database, site, tmp_path):
     vrt = tmp_path / "none" / "fleet.vrt"
     words = (

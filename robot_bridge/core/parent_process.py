@@ -1,10 +1,14 @@
-"""Notifications to systemd that the service is ready, alive or ending; see sd_notify(3)."""
+"""A program and whoever started it: what systemd is told (sd_notify(3)), and the end of standard input."""
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import os
 import socket
+from collections.abc import Callable
+
+# --- systemd: the service is ready, alive or ending ---
 
 
 def notify(*states: str) -> None:
@@ -25,3 +29,23 @@ def watchdog_interval() -> float | None:
     if not limit.isdigit() or process not in ("", str(os.getpid())):
         return None
     return int(limit) / 1e6 / 2
+
+
+# --- Standard input: whoever started the program holds its other side, and is gone when it closes ---
+
+_STDIN = 0
+
+
+def call_at_end_of_input(called: Callable[[], object]) -> None:
+    """Have the running event loop call ``called`` once standard input, a pipe, is closed at its other side.
+
+    That happens however the program at that side ended, also when it was killed.
+    """
+    loop = asyncio.get_running_loop()
+
+    def read() -> None:
+        if not os.read(_STDIN, 4096):
+            loop.remove_reader(_STDIN)
+            called()
+
+    loop.add_reader(_STDIN, read)

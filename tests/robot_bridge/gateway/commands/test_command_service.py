@@ -46,7 +46,7 @@ async def test_a_robot_that_was_pushed_to_the_end_of_its_path_over_a_restart_has
     await two.at(20.0, 40.0)
     lanes = [(20.0, 40.0), (50.0, 40.0), (50.0, 43.0), (20.0, 43.0)]
     await two.send("a", "SetPath", points=lanes)
-    await two.take()
+    await two.acknowledge_all()
     await restart(two)
     await two.ready()
     await two.at(20.0, 43.0)
@@ -55,7 +55,7 @@ async def test_a_robot_that_was_pushed_to_the_end_of_its_path_over_a_restart_has
 
 async def test_a_robot_of_which_no_place_is_known_may_have_driven_its_loop_when_it_says_so(two):
     await drive(two, "a")
-    await two.take()
+    await two.acknowledge_all()
     await restart(two)
     await two.ready()
     await two.at(20.0, 40.0)
@@ -67,7 +67,7 @@ async def test_a_robot_of_which_no_place_is_known_may_have_driven_its_loop_when_
 async def test_the_metres_driven_before_the_restart_stay_driven(two):
     await two.at(20.0, 40.0)
     await drive(two, "a")
-    await two.take()
+    await two.acknowledge_all()
     for x in (22.0, 24.0, 26.0):
         await two.at(x, 40.0, v=1.0)
     await restart(two)
@@ -82,7 +82,7 @@ async def test_a_rest_concerns_only_the_paths_of_the_robot_that_was_seen_on_them
     await two.send("target")
     await drive(two, "path", "r2")
     for robot in ("r1", "r2"):
-        await two.take(robot)
+        await two.acknowledge_all(robot)
     assert book.rests("r1", SendPos(50.0, 40.0, 0.0, 0.0)) is None
     assert book.rests("r2", None) is None
     assert book.rests("r2", START) is None
@@ -148,7 +148,7 @@ async def test_every_command_of_a_robot_that_is_gone_fails_with_the_reason(two):
 
 async def test_what_is_reached_is_told_with_its_place_and_without_a_reason(two):
     await two.send("a")
-    await two.take()
+    await two.acknowledge_all()
     await two.at(50.0, 40.1)
     (report,) = await two._stored()
     assert (report.state.value, report.steps[-1].reason) == ("reached", None)
@@ -176,7 +176,7 @@ async def test_what_came_of_it_is_told_and_nothing_of_what_stayed_as_it_was(two,
 async def test_where_nothing_is_done_nothing_is_to_be_stored(two):
     await two.at(20.0, 40.0)
     await drive(two, "a")
-    await two.take()
+    await two.acknowledge_all()
     assert two.fleet._book.observe("r1", START) is None
     assert two.fleet._book.observe("r2", START) is None
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 import pytest
-from fleet_supervisor.plugin.layers.layer_source import point_rows
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
+from fleet_supervisor.plugin.processing.common.cone_layers import point_rows
 from fleet_supervisor.plugin.ui.errors import LayerCrsError, LayerReadingError
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from qgis.core import QgsCoordinateReferenceSystem, QgsCoordinateTransformContext

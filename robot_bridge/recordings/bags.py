@@ -16,8 +16,8 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
-from ...core.messages.validation import COORDINATE
-from ..tracks import (
+from ..core.messages.validation import COORDINATE
+from .tracks import (
     LATITUDE,
     LONGITUDE,
     SPEED_BOUNDS,

@@ -7,7 +7,7 @@ import itertools
 import pytest
 
 from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
-from robot_bridge.gateway.model.command_states import CommandLifeError, advance, is_open, may_become, note
+from robot_bridge.gateway.commands.active_command import CommandLifeError, advance, may_become, note
 
 ENDS = {"reached", "aborted", "failed", "expired", "superseded"}
 MAY_BECOME = {
@@ -46,7 +46,7 @@ def test_a_command_takes_the_steps_of_the_table_and_no_other(now, then):
 
 @pytest.mark.parametrize("state", CommandState)
 def test_a_command_is_open_as_long_as_a_step_may_come(state):
-    assert is_open(state) is bool(MAY_BECOME[state.value])
+    assert state.is_open is bool(MAY_BECOME[state.value])
 
 
 def test_a_note_adds_a_line_and_changes_no_state():

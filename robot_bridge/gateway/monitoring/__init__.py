@@ -1,1 +1,0 @@
-"""Monitoring of the gateway: counters, metrics, periodic tasks, garbage collection."""

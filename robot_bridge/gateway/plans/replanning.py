@@ -1,0 +1,285 @@
+"""What is left of a plan, planned again: its robots held, the new plan proposed, entered when confirmed."""
+
+from __future__ import annotations
+
+import asyncio
+import logging
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from ...core.assignment.clearance import ClearTravel, Floats, NearOrByRoad, meetings
+from ...core.assignment.job import AssignmentJob, CancellableTravel, RoadTravel, StraightTravel, Travel
+from ...core.assignment.plan import ConePlan, PlanSituation
+from ...core.assignment.plan_changes import replan
+from ...core.assignment.progress import current_stops, situation_of, standing_cones, tasks_of
+from ...core.assignment.solver import Objective
+from ...core.errors import AssignmentCancelledError, AssignmentError, RefusedError, RoadsError, StoreError
+from ...core.logs import log_unforeseen
+from ...core.messages.plans import MOST_CONES, PlanReport, PlanState
+from ...core.messages.queues import PauseQueue
+from ...core.messages.validation import MessageError
+from ..commands.active_command import GATEWAY
+from ..queues.registry import QueueContext
+from ..queues.requests import QueueEditor, QueueEntries
+from ..traffic.road_planning import RoadPlanner
+from .following import FollowedPlans
+from .model import (
+    LONGEST_PAUSE_REASON,
+    FollowedPlan,
+    PlanTerms,
+    check_proposal,
+    problem_in_words,
+    stops_of,
+    superseded,
+)
+from .persistence import save_plan
+
+log = logging.getLogger(__name__)
+
+# --- The plan of what is left in the making, in a worker thread ---
+
+Place = tuple[float, float]
+PATIENCE = 5.0
+"""times the seconds asked for that planning may take in all: ways and the search are timed apart."""
+
+
+@dataclass(frozen=True)
+class ReplanGround:
+    """What plans are made on: ``placed`` cones, robots that are ``standing`` by name, roads; metres."""
+
+    terms: PlanTerms
+    placed: list[Place]
+    standing: Mapping[str, Place]
+    planner: RoadPlanner | None
+
+
+class Replanning:
+    """One plan of what is left in the making; :meth:`run` is for a worker thread."""
+
+    def __init__(self, plan: ConePlan, ground: ReplanGround, situation: PlanSituation) -> None:
+        self._plan, self._ground, self._situation = plan, ground, situation
+        self._cancelled = threading.Event()
+        self._until = 0.0
+
+    def cancel(self) -> None:
+        """Have :meth:`run` end soon."""
+        self._cancelled.set()
+
+    def run(self) -> ConePlan:
+        """Return the plan; raises AssignmentError, RoadsError and RefusedError when there is none."""
+        seconds = self._ground.terms.seconds
+        self._until = time.monotonic() + PATIENCE * seconds
+        objective = Objective(self._plan.objective, time_limit_s=seconds)
+        return replan(self._plan, self._travel, self._situation, objective, lambda share: self._goes_on())
+
+    def _travel(self, job: AssignmentJob) -> Travel:
+        terms, planner = self._ground.terms, self._ground.planner
+        travel: Travel = StraightTravel(job)
+        router = planner.router_of_its_own() if planner is not None and terms.on_roads else None
+        if router is not None:
+            roads = RoadTravel(job, router, progress=lambda share: self._check())
+            name = f"{roads.name}, straight within {terms.direct_m:g} m"
+            travel = NearOrByRoad(travel, roads, terms.direct_m, name)
+        cones = np.concatenate(
+            [job.places[job.first_target :], _places(terms.stand), _places(self._ground.placed)]
+        )
+        robots = _places(list(self._ground.standing.values()))
+        room = np.repeat([terms.clearance_m, terms.off_standing_m], [len(cones), len(robots)])
+        clear = ClearTravel(travel, job.places, np.concatenate([cones, robots]), room)
+        return CancellableTravel(clear, self._goes_on)
+
+    def _goes_on(self) -> bool:
+        return not self._cancelled.is_set() and time.monotonic() < self._until
+
+    def _check(self) -> None:
+        if not self._goes_on():
+            raise AssignmentCancelledError("The plan of what is left took too long, or was given up.")
+
+
+def count_meetings(plan: ConePlan, ground: ReplanGround) -> int:
+    """Return how often robots come too near to one another by ``plan``; for a worker thread."""
+    return len(meetings(plan, ground.terms.apart_m, ground.standing, ground.terms.off_standing_m))
+
+
+def _places(places: Sequence[Place]) -> Floats:
+    return np.array(places, dtype=np.float64).reshape(-1, 2)
+
+
+# --- Its robots held, the plan proposed, and confirmed ---
+
+
+class Stops(Protocol):
+    """What knows whether an emergency stop is in force."""
+
+    @property
+    def in_force(self) -> bool:
+        """Whether it is."""
+
+
+class _Proposal(NamedTuple):
+    """A plan of what is left, where its robots come too near to one another, and its ways on closed roads."""
+
+    document: ConePlan
+    meetings: int
+    closed: int
+
+
+class Replanner:
+    """Plans what is left of plans; who calls :meth:`hold` or :meth:`confirm` holds the lock of ``plans``."""
+
+    def __init__(
+        self, context: QueueContext, editor: QueueEditor, plans: FollowedPlans, stops: Stops
+    ) -> None:
+        self._context = context
+        self._editor = editor
+        self._plans = plans
+        self._stops = stops
+        self._making: dict[str, Replanning] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    async def hold(self, one: FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
+        """Hold the robots of a plan and begin to plan what is left.
+
+        :raises RefusedError: when that is under way, or no robot is left; StoreError.
+        """
+        plan = one.plan
+        if plan.state is PlanState.REPLANNING:
+            raise RefusedError(f"plan {plan.name!r} is being planned again already")
+        staying = [robot for robot in plan.staying if robot not in one.problem.away]
+        if not staying:
+            raise RefusedError(
+                f"no robot of plan {plan.name!r} is left to take over; connect one, and plan anew"
+            )
+        why = "plan of what is left" + (f": {problem_in_words(one.problem)}" if one.problem else "")
+        held = {robot: at for robot, at in plan.held.items() if robot in self._plans.still_held(plan)}
+        for robot in staying:
+            if self._plans.queue(robot).running or self._plans.has_failed(robot):
+                report = await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
+                held[robot] = report.at
+        one.seen_to = one.problem
+        begun = await self._plans.change(one, PlanState.REPLANNING, operator, why, proposal=None, held=held)
+        self.begin(one, try_again=try_again)
+        return begun
+
+    def begin(self, one: FollowedPlan, *, try_again: bool) -> None:
+        """Begin to plan what is left of a plan that is stored as being planned again."""
+        plan, robots = one.plan, self._context.robots
+        places = {
+            name: (pose.x, pose.y)
+            for name in robots.commanded()
+            if (pose := robots.get(name).pose) is not None
+        }
+        drive = set(plan.staying) - set(one.problem.away)
+        standing = {name: place for name, place in places.items() if name not in drive}
+        now = self._context.clock.time()
+        situation = situation_of(plan.document, one.progress, places, one.problem, now, try_again=try_again)
+        ground = ReplanGround(plan.terms, standing_cones(one.progress), standing, self._plans.planner)
+        making = self._making[plan.name] = Replanning(plan.document, ground, situation)
+        task = asyncio.create_task(self._make(one, making, ground))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    def cancel(self, plan: str) -> None:
+        """Have the planning of what is left of a plan end soon."""
+        if plan in self._making:
+            self._making[plan].cancel()
+
+    def forget(self, plan: str) -> None:
+        """Let nothing come of the plan of what is left that is in the making."""
+        self._making.pop(plan, None)
+
+    async def confirm(self, one: FollowedPlan, operator: str, override: str | None) -> PlanReport:
+        """Enter the tasks of the proposed plan in place of what is left.
+
+        :raises RefusedError: where there is no proposal, or its tasks cannot be entered; StoreError.
+        """
+        plan, progress = one.plan, one.progress
+        proposal = check_proposal(plan, progress)
+        tasks = tasks_of(proposal, plan.name, plan.terms.cones, under_way=current_stops(progress))
+        away = [one.robot.id for one in proposal.robots if one.lost and one.robot.id in plan.staying]
+        stops, gone = stops_of(proposal, tasks), superseded(progress, away)
+        after = plan.changed(
+            PlanState.DRIVEN,
+            operator,
+            self._context.clock.time(),
+            plan.reason,
+            document=proposal,
+            proposal=None,
+            held={},
+        )
+        entries = QueueEntries(
+            tasks,
+            resumed=self._plans.still_held(plan),
+            away=[robot for robot in away if robot in self._context.robots],
+            withdrawn={task for task in gone if progress.stops[task].robot in away},
+            reason="its robot is lost",
+            override=override,
+        )
+        place = len(progress.stops) + plan.revision * MOST_CONES
+        also = partial(save_plan, plan=after, new=stops, gone=gone, place=place)
+        await self._editor.enter(entries, operator, also)
+        progress.forget(gone)
+        progress.sent(stops)
+        one.plan, one.seen = after, None
+        await self._plans.follow(one)
+        return self._plans.announce(one)
+
+    async def finish(self) -> None:
+        """Wait for what is being planned, after it was cancelled: the gateway ends."""
+        for making in self._making.values():
+            making.cancel()
+        # It stays stored as being planned again: the next gateway begins that again.
+        self._making.clear()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
+
+    async def _make(self, one: FollowedPlan, making: Replanning, ground: ReplanGround) -> None:
+        try:
+            document = await asyncio.to_thread(making.run)
+            meetings = await asyncio.to_thread(count_meetings, document, ground)
+            closed = len(await self._plans.closed_ways(document))
+        except (AssignmentError, RoadsError, RefusedError) as error:
+            await self._made(one, making, None, str(error))
+        except Exception:
+            # Else the robots would stay held, and nobody would hear why.
+            log_unforeseen(log, f"plan of what is left of {one.plan.name}")
+            await self._made(one, making, None, "it could not be planned; see the gateway's log")
+        else:
+            await self._made(one, making, _Proposal(document, meetings, closed), None)
+
+    async def _made(
+        self, one: FollowedPlan, making: Replanning, proposal: _Proposal | None, why: str | None
+    ) -> None:
+        try:
+            async with self._plans.lock:
+                if self._making.get(one.plan.name) is not making:
+                    return
+                self.forget(one.plan.name)
+                if one.plan.state is not PlanState.REPLANNING:
+                    return
+                if proposal is None:
+                    reason = f"what is left could not be planned: {why}"
+                    await self._plans.change(one, PlanState.PAUSED, GATEWAY, reason, held={})
+                    return
+                await self._propose(one, proposal)
+        except StoreError as error:
+            # It is stored as being planned again: it is, when the gateway starts next, or somebody asks.
+            log.error("plan %s: %s", one.plan.name, error)
+
+    async def _propose(self, one: FollowedPlan, proposal: _Proposal) -> None:
+        """Store a proposal, and confirm it where that was chosen and nothing speaks against it."""
+        one.meetings, one.closed = proposal.meetings, proposal.closed
+        await self._plans.change(
+            one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal.document
+        )
+        if one.plan.by_itself and not one.meetings and not one.closed and not self._stops.in_force:
+            await self._plans.follow(one)
+            try:
+                await self.confirm(one, GATEWAY, None)
+            except (RefusedError, MessageError) as error:
+                await self._plans.change(one, PlanState.PROPOSED, GATEWAY, str(error))
