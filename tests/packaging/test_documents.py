@@ -47,6 +47,11 @@ def test_every_link_resolves(document):
         assert not anchor or anchor in anchors(path), f"{document.name} links to {target}: no such heading"
 
 
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda document: document.name)
+def test_no_conflict_of_a_merge_is_left(document):
+    assert not re.search(r"^(<{7}|>{7}) ", document.read_text(encoding="utf-8"), re.MULTILINE)
+
+
 def test_the_readme_leads_to_every_guide():
     guides = {path.name for path in (ROOT / "docs").glob("*.md")}
     assert {"install.md", "operator.md", "integrator.md", "robot-map.md"} <= guides
