@@ -329,7 +329,7 @@ class NatsBus:
 
     async def _connect(self, note: Any, **options: Any) -> Any:
         """Connect to one of the servers; raises what the last one brought about."""
-        servers = random.sample(self._servers, len(self._servers))
+        servers = random.sample(self._servers, len(self._servers))  # nosec B311 # nothing secret: spreads load
         for server in servers:
             try:
                 return await self._connect_to(server, note, **options)

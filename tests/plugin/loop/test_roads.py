@@ -22,18 +22,10 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from tests.support.inside_qgis.mouse import move_mouse
-from tests.support.operators import ask
 
 CRS = "EPSG:32633"
 SOUTH = (60.0, 8.0)
 """On the road from (16, 8) to (120, 8)."""
-
-
-@pytest.fixture
-def loop(loop):
-    """Its gateway has found a way already: the first can take longer than a click is waited for."""
-    ask(loop.address, ("get_route", {"start": [10.0, 8.0], "x": 126.0, "y": 8.0}))
-    return loop
 
 
 @pytest.fixture

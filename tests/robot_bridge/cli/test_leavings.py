@@ -12,6 +12,7 @@ from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
 from robot_bridge.gateway import monitoring as tasks
+from robot_bridge.gateway.api.site_queries import SiteQueries
 from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.auth.gate import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
@@ -32,7 +33,9 @@ async def running(sample_site, tmp_path):
     gate = AuthGate(database, LimitSettings(), may_be_open=True)
     maps = SiteMaps(read_site(sample_site))
     links = LinkProcesses(LinkOptions(), sample_site)
-    made = app.Gateway(Fleet(maps, database), gate, links, RequestHandlers(), FieldPage(maps))
+    handlers = RequestHandlers()
+    queries = SiteQueries(maps, handlers)
+    made = app.Gateway(Fleet(maps, database), gate, links, handlers, FieldPage(maps), queries)
     server = await made.serve("127.0.0.1", 0)
     yield made, server.sockets[0].getsockname()[1]
     server.close()

@@ -44,7 +44,7 @@ def test_what_was_confirmed_outlives_a_power_cut_and_a_stop_one_on_a_full_disk(t
         if "the right to mount" not in str(error):
             raise
         pytest.skip(str(error))
-    print(findings.told())
+    print(findings.lines())
     assert findings.wrong == []
     assert findings.counts[breaking.POWER_CUT] == 2
     assert findings.counts["... reached"] >= 10

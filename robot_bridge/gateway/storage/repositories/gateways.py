@@ -71,17 +71,17 @@ _JOIN = text(
         process = excluded.process, since = excluded.since, lease_until = excluded.lease_until
     where gateways.run = excluded.run or gateways.lease_until <= {_NOW}
     returning run
-    """
+    """  # nosec B608 # names of ours
 )
 _ONE_JOINS = text("lock table gateways in share row exclusive mode")
 _RENEW = text(
     f"""
     update gateways set lease_until = {_NOW} + :lease
     where gw = :gw and run = :run and lease_until > {_NOW} returning since
-    """
+    """  # nosec B608 # names of ours
 )
 _MEMBERS = text(
-    f"select gw, run, version, host, process, since, lease_until - {_NOW} from gateways order by since, gw"
+    f"select gw, run, version, host, process, since, lease_until - {_NOW} from gateways order by since, gw"  # nosec B608 # names of ours
 )
 _LEAVE = text("delete from gateways where gw = :gw and run = :run")
 
@@ -117,7 +117,7 @@ def clock(connection: Connection) -> float:
 
 # --- Who has which robot ---
 
-_IS_ALIVE = text(f"select 1 from gateways g where g.gw = :gw and g.run = :run and {_ALIVE}")
+_IS_ALIVE = text(f"select 1 from gateways g where g.gw = :gw and g.run = :run and {_ALIVE}")  # nosec B608 # names of ours
 _LOCKED = text(
     "select robot, gw, run, fence from robot_owners where robot = any(:robots) order by robot for update"
 )
@@ -135,7 +135,7 @@ _CLAIM_LEFT = text(
     update robot_owners o set gw = :gw, run = :run, fence = o.fence + 1
     where not exists (select 1 from gateways g where g.gw = o.gw and g.run = o.run and {_ALIVE})
     returning robot, fence
-    """
+    """  # nosec B608 # names of ours
 )
 _CLAIM_NEW = text(
     """

@@ -6,6 +6,7 @@ leases and fences. What it makes up are processes, sockets and robots.
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
 
 import pytest
@@ -28,6 +29,7 @@ from robot_bridge.gateway.storage.repositories import gateways
 from robot_bridge.gateway.storage.repositories.gateways import Member, NoMemberError
 
 NAMES, ROBOTS = ("a", "b", "c"), ("r1", "r2")
+RUNS = itertools.count(1)
 KEYS = (*NAMES, "old a", "old b", "old c")
 """Processes: those of a name that stood still when another took it are old."""
 
@@ -86,7 +88,7 @@ class Fleet(RuleBasedStateMachine):
         if old is not None:
             self.processes[f"old {name}"] = self.processes.pop(name)
             self.connected = {r: f"old {name}" if gw == name else gw for r, gw in self.connected.items()}
-        me = Member(name, f"run-{self.now}-{name}", "1", "here", 1)
+        me = Member(name, f"run-{next(RUNS)}", "1", "here", 1)
         if self.run(gateways.join, me, LEASE_S, self.now):
             process = Process(me, LeaseTrust(self.clock))
             process.trust.renewed(self.clock.steady())
@@ -248,7 +250,7 @@ def test_no_two_gateways_command_one_robot(engine):
     run_state_machine_as_test(
         machine,
         settings=settings(
-            max_examples=20, stateful_step_count=30, deadline=None, suppress_health_check=list(HealthCheck)
+            max_examples=6, stateful_step_count=25, deadline=None, suppress_health_check=list(HealthCheck)
         ),
     )
 

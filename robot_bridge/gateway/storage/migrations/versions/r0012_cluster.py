@@ -57,3 +57,9 @@ def upgrade() -> None:
         sqlite_autoincrement=True,
         **EXACT,
     )
+
+
+def downgrade() -> None:
+    """Take the tables away: one gateway alone needs none of them."""
+    for name in ("relayed_requests", "robot_owners", "gateways"):
+        op.drop_table(name)
