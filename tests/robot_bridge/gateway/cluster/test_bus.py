@@ -192,6 +192,7 @@ async def test_a_server_that_is_not_there_is_named():
         await NatsBus(["nats://127.0.0.1:1"], "a", "fleet.f").check()
 
 
+@pytest.mark.usefixtures("nats")
 async def test_an_account_that_may_not_speak_is_named(tmp_path):
     from tests.support.nats_server import NatsServer
 

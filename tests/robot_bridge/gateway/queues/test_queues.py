@@ -235,7 +235,7 @@ async def test_a_queue_goes_on_by_itself_when_the_gateway_was_away_for_less_than
 @pytest.mark.parametrize("behind", [4.0, 60.0, 50 * 365 * 86400.0])
 async def test_nor_when_the_clock_stood_still_meanwhile_and_nobody_knows_for_how_long(line, behind):
     await line.set(task("a"), task("b"))
-    await line.yard.deliver()
+    await line.yard.acknowledge_all()
     await line.yard.at(*PLACES["a"])
     await line.yard.fleet.save()
     line.yard.clock.wall -= behind
@@ -243,7 +243,7 @@ async def test_nor_when_the_clock_stood_still_meanwhile_and_nobody_knows_for_how
     line.yard.fleet.age()
     assert all(0 <= robot.age <= robot.pose_age for robot in line.yard.fleet.reports())
     await line.yard.ready()
-    await line.go()
+    await line.advance()
     assert await is_held(line) is (behind > 5)
 
 
