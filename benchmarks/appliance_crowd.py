@@ -274,13 +274,15 @@ class Crowd:
             self._robots.append(robot)
             self._tasks.append(asyncio.create_task(robot.hear()))
         for _ in range(plan.desks):
-            watched = lambda: self._seen and self._seen.desk  # noqa: E731
-            desk = await Watcher.arrive(plan, context, plan.desk, self._sayings, watched)
+            desk = await Watcher.arrive(
+                plan, context, plan.desk, self._sayings, lambda: self._seen and self._seen.desk
+            )
             self._desks.append(desk)
             self._tasks.append(asyncio.create_task(desk.look()))
         for _ in range(plan.phones):
-            watched = lambda: self._seen and self._seen.phone  # noqa: E731
-            phone = await Watcher.arrive(plan, context, plan.phone, self._sayings, watched)
+            phone = await Watcher.arrive(
+                plan, context, plan.phone, self._sayings, lambda: self._seen and self._seen.phone
+            )
             self._phones.append(phone)
             self._tasks.append(asyncio.create_task(phone.look()))
             self._tasks.append(asyncio.create_task(phone.keep_to(plan.budget, plan.phone_rates)))

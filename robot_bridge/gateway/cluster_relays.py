@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
@@ -14,7 +13,7 @@ from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.request_handlers import Answering
-from .monitoring import Counters, Work, every
+from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
 
 BEAT_INTERVAL_S = 1.0
@@ -91,9 +90,7 @@ class ClusterRelays:
             self._owners_changed.clear()
             await takeover.claim_left()
             await takeover.follow()
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(OWNERS_INTERVAL_S):
-                    await self._owners_changed.wait()
+            await wait_at_most(self._owners_changed, OWNERS_INTERVAL_S)
 
     def _woken(self, wake: Wake) -> None:
         if wake.what == "owners":

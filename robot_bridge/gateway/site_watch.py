@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, read_site, sibling_sites
 from .fleet.service import Fleet
 from .model.request_handlers import handles
+from .monitoring import wait_at_most
 from .site.site_maps import SiteMaps
 from .storage.repositories import metadata
 from .traffic.road_planning import check_roads
@@ -53,8 +53,7 @@ class SiteWatch:
     async def run(self) -> None:
         """Take over what is published, until cancelled."""
         while True:
-            with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._reload.wait(), LOOK_INTERVAL)
+            await wait_at_most(self._reload, LOOK_INTERVAL)
             await self.refresh(requested=self._reload.is_set())
 
     async def refresh(self, *, requested: bool = False) -> None:

@@ -11,7 +11,6 @@ from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 import numpy as np
-from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from ...core.errors import CrsError, RefusedError
@@ -19,6 +18,7 @@ from ...core.messages.validation import MessageError
 from ...core.sites.transforms import lonlat_of
 from ...protocol.codec import decode_desk_request
 from ...protocol.openapi import DEGREES, GEOJSON, PARAMETERS, PROBLEM, ROUTE, SITE_FRAME, QueryParameter
+from ..auth.port import http_response
 from ..model.request_handlers import RequestHandlers
 from ..site.site_maps import SiteMaps
 
@@ -171,12 +171,5 @@ def _problem(status: http.HTTPStatus, detail: str, headers: Sequence[tuple[str, 
 def _response(
     status: http.HTTPStatus, kind: str, body: bytes, headers: Sequence[tuple[str, str]] = ()
 ) -> Response:
-    every = [
-        ("Content-Type", kind),
-        ("Content-Length", str(len(body))),
-        ("Cache-Control", "no-store"),
-        ("X-Content-Type-Options", "nosniff"),
-        ("Connection", "close"),
-        *headers,
-    ]
-    return Response(status.value, status.phrase, Headers(every), body)
+    fixed = [("Content-Type", kind), ("Cache-Control", "no-store"), ("X-Content-Type-Options", "nosniff")]
+    return http_response(status, body, [*fixed, *headers])

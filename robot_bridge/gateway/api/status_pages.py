@@ -14,11 +14,11 @@ from functools import partial
 from typing import Any
 
 from sqlalchemy import Connection, func, select
-from websockets.datastructures import Headers
 from websockets.http11 import Response
 
 from ...core.errors import BridgeError
 from ...core.messages.safety import RobotState
+from ..auth.port import http_response
 from ..fleet.service import Fleet
 from ..monitoring import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
 from ..storage.schema import rr, sa
@@ -166,12 +166,4 @@ def _waiting(connection: Connection) -> dict[tuple[str, ...], float]:
 
 
 def _page(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
-    headers = Headers(
-        {
-            "Content-Type": kind,
-            "Content-Length": str(len(body)),
-            "Cache-Control": "no-store",
-            "Connection": "close",
-        }
-    )
-    return Response(status.value, status.phrase, headers, body)
+    return http_response(status, body, [("Content-Type", kind), ("Cache-Control", "no-store")])

@@ -20,6 +20,7 @@ from typing import Any, cast
 from urllib.parse import urlsplit
 
 from websockets.asyncio.server import Server, ServerConnection, serve
+from websockets.datastructures import Headers
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
@@ -315,6 +316,14 @@ def _allow_connections(limits: LimitSettings) -> None:
         soft = limit
     if soft < needed:
         log.warning("the system allows %d open files, fewer than the limits of the site take", soft)
+
+
+def http_response(status: http.HTTPStatus, body: bytes, headers: Iterable[tuple[str, str]]) -> Response:
+    """Return what a page is answered with, after which its connection ends."""
+    every = [*headers, ("Connection", "close")]
+    if status != http.HTTPStatus.NOT_MODIFIED:
+        every.append(("Content-Length", str(len(body))))
+    return Response(status.value, status.phrase, Headers(every), body)
 
 
 async def _ask(doorman: Doorman, visitor: ClientConnection, request: Request) -> Response | None:

@@ -238,7 +238,7 @@ class NatsBus:
         faults: list[str] = []
         heard = asyncio.Event()
 
-        async def note(error: Exception) -> None:
+        async def add_fault(error: Exception) -> None:
             faults.append(str(error))
             heard.set()
 
@@ -247,7 +247,7 @@ class NatsBus:
 
         try:
             async with asyncio.timeout(self._patience):
-                client = await self._connect(note, allow_reconnect=False)
+                client = await self._connect(add_fault, allow_reconnect=False)
         except (self._nats.errors.Error, OSError, TimeoutError) as error:
             raise BridgeError(
                 f"bus {self._where}: {str(error) or 'no server answers'}{_all(faults)}; check that NATS "
@@ -292,13 +292,15 @@ class NatsBus:
         async def ended() -> None:
             lost.set()
 
-        async def note(error: Exception) -> None:
+        async def log_fault(error: Exception) -> None:
             self._say(str(error))
 
         async with asyncio.timeout(self._patience):
             # A connection that is lost is made anew here, not by the client: it would keep what is published
             # meanwhile, and send that as if it were new.
-            client = await self._connect(note, allow_reconnect=False, disconnected_cb=ended, closed_cb=ended)
+            client = await self._connect(
+                log_fault, allow_reconnect=False, disconnected_cb=ended, closed_cb=ended
+            )
         self._client = client
         check_version(self._where, client.connected_server_version)
         cut = len(self._prefix) + 1
@@ -327,23 +329,23 @@ class NatsBus:
             subject, content = await self._outgoing.next()
             await client.publish(f"{self._prefix}.{subject}", content)
 
-    async def _connect(self, note: Any, **options: Any) -> Any:
+    async def _connect(self, on_error: Any, **options: Any) -> Any:
         """Connect to one of the servers; raises what the last one brought about."""
         servers = random.sample(self._servers, len(self._servers))  # nosec B311 # nothing secret: spreads load
         for server in servers:
             try:
-                return await self._connect_to(server, note, **options)
+                return await self._connect_to(server, on_error, **options)
             except (self._nats.errors.Error, OSError, TimeoutError):
                 if server is servers[-1]:
                     raise
         raise AssertionError("there is a server")
 
-    async def _connect_to(self, server: str, note: Any, **options: Any) -> Any:
+    async def _connect_to(self, server: str, on_error: Any, **options: Any) -> Any:
         if self._password is not None:
             options |= {"user": urlsplit(server).username, "password": self._password}
         return await self._nats.connect(
             server,
-            error_cb=note,
+            error_cb=on_error,
             connect_timeout=CONNECT_S,
             reconnect_time_wait=0.1,
             max_reconnect_attempts=1,

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import logging
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import URL
@@ -15,8 +13,6 @@ from .exchange import Exchange, fleet_key
 from .leases import check_gateway_name
 from .membership import LEASE_PATIENCE_S, Membership
 from .ownership import Ownership
-
-log = logging.getLogger(__name__)
 
 BUSES = "none, postgresql, or nats://HOST:PORT (several with commas between them; tls:// with TLS)"
 
@@ -100,6 +96,3 @@ async def join_cluster(settings: ClusterSettings, database: Database, lease: Dat
 def lease_database(url: URL) -> Database:
     """Return the connection by which a gateway renews its lease, and looks for stops."""
     return Database(url, patience=LEASE_PATIENCE_S)
-
-
-__all__: Sequence[str] = ("BUSES", "Cluster", "ClusterSettings", "join_cluster", "lease_database")

@@ -15,7 +15,7 @@ from ...core.logs import RepeatedLines
 from ..model.events import EventBus
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
-from .messages import Beat, BusMessage, BusMessageError, Codec, StopCall, Wake
+from .messages import Beat, BusMessage, BusMessageError, Codec, StopCall, Wake, WakeTopic
 
 log = logging.getLogger(__name__)
 
@@ -57,10 +57,10 @@ class Exchange:
         taken = [bus.publish(subject, content) for bus in (self._buses if urgent else self._buses[:1])]
         return any(taken)
 
-    def wake(self, what: str, gateway: str | None = None) -> None:
+    def wake(self, what: WakeTopic, gateway: str | None = None) -> None:
         """Have a gateway, or all others, look at once for ``what`` has been committed."""
         subject = EVERYBODY if gateway is None else own_subject(gateway)
-        self.send(subject, Wake(self.gateway, what))  # type: ignore[arg-type]
+        self.send(subject, Wake(self.gateway, what))
 
     def beat(self) -> None:
         """Tell the others that this gateway is there."""

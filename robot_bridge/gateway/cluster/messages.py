@@ -52,10 +52,14 @@ class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
+WakeTopic = Literal["requests", "answers", "owners", "steps", "stops"]
+"""What another gateway had better look at."""
+
+
 class Wake(BusMessage, frozen=True, tag="wake"):
     """Something was committed that concerns another gateway, which had better look at once."""
 
-    what: Literal["requests", "answers", "owners", "steps", "stops"]
+    what: WakeTopic
 
 
 class StopCall(BusMessage, frozen=True, tag="stop"):

@@ -48,6 +48,7 @@ from ...core.messages.validation import MessageError
 from ...protocol.codec import decode_desk_request
 from ..model.request_handlers import Answering
 from ..model.robots import Robots
+from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.owner_fence import FencedError
 from ..storage.repositories import commands, relayed
@@ -271,9 +272,7 @@ class RequestRelay:
                     break
                 if pause <= 0:
                     raise RefusedError(await self._unanswered(left, robots))
-                with contextlib.suppress(TimeoutError):
-                    async with asyncio.timeout(pause):
-                        await event.wait()
+                await wait_at_most(event, pause)
         finally:
             for id in ids:
                 self._answered.pop(id, None)
@@ -295,13 +294,11 @@ class RequestRelay:
         while True:
             self._asked.clear()
             await self.begin_waiting()
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_S):
-                    await self._asked.wait()
+            await wait_at_most(self._asked, LOOK_S)
 
     async def begin_waiting(self) -> None:
         """Begin with what waits for robots of this gateway; raises StoreError."""
-        for request in await self._database.run(relayed.take, self._membership.me, MOST_AT_ONCE):
+        for request in await self._database.run(relayed.begin, self._membership.me, MOST_AT_ONCE):
             task = asyncio.create_task(self._do(request))
             self._doing.add(task)
             task.add_done_callback(self._doing.discard)

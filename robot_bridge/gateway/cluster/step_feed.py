@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
 from ..model.events import CommandChanged, EventBus, Listeners
 from ..model.robots import Robots
+from ..monitoring import wait_at_most
 from ..storage.database import Database
-from ..storage.repositories import commands, step_feed
+from ..storage.repositories import commands
 from .exchange import Exchange
 from .messages import Wake
 
@@ -43,19 +43,17 @@ class StepFeed:
             while True:
                 self._woken.clear()
                 await self.catch_up()
-                with contextlib.suppress(TimeoutError):
-                    async with asyncio.timeout(LOOK_S):
-                        await self._woken.wait()
+                await wait_at_most(self._woken, LOOK_S)
         finally:
             waking.cancel()
 
     async def catch_up(self) -> None:
         """Tell operators of the steps since the last look; raises StoreError."""
         if self._newest is None:
-            self._newest = await self._database.read(step_feed.newest)
-            self._seen = {id for id, _ in await self._database.read(step_feed.after, self._margin())}
+            self._newest = await self._database.read(commands.newest_step)
+            self._seen = {id for id, _ in await self._database.read(commands.steps_after, self._margin())}
             return
-        found = await self._database.read(step_feed.after, self._margin())
+        found = await self._database.read(commands.steps_after, self._margin())
         new = list(dict.fromkeys(command for id, command in found if id not in self._seen))
         reports = await self._database.read(commands.find_all, new) if new else {}
         for command in new:
@@ -65,7 +63,7 @@ class StepFeed:
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
 
     def _margin(self) -> int:
-        return (self._newest or 0) - step_feed.MARGIN
+        return (self._newest or 0) - commands.STEP_MARGIN
 
     def _tell(self, report: CommandReport) -> None:
         if self._robots.gateway_of(report.robot) is None:

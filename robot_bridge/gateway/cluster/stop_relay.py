@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import uuid
 from collections.abc import Sequence
@@ -14,6 +13,7 @@ from sqlalchemy import Connection
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError
 from ...core.messages.safety import StoppedGateways
+from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
@@ -157,9 +157,7 @@ class EmergencyStopRelay:
             except StoreError as error:
                 log.debug("emergency stops cannot be looked up: %s", error)
                 await self._stop_if_cut_off()
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_S):
-                    await self._look_now.wait()
+            await wait_at_most(self._look_now, LOOK_S)
 
     async def _stop_if_cut_off(self) -> None:
         if not (self._stops_when_cut_off and self.is_cut_off()) or self._stops.in_force:

@@ -17,7 +17,6 @@ from urllib.parse import urlsplit
 
 import numpy as np
 from numpy.typing import NDArray
-from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from ...core.errors import CrsError
@@ -25,6 +24,7 @@ from ...core.sites.frame import Points, SiteFrame
 from ...core.sites.settings import SiteBounds
 from ...core.sites.site import Site
 from ...core.sites.transforms import lonlat_of
+from ..auth.port import http_response
 from ..monitoring import gateway_version
 from ..site.site_maps import SiteMaps
 
@@ -75,7 +75,7 @@ class FieldPage:
         content = self._files.get(urlsplit(request.path).path)
         if content is None:
             text = f"The field page has no such file; it is at {PAGE}.\n".encode()
-            return _response(http.HTTPStatus.NOT_FOUND, [("Content-Type", KINDS[".txt"])], text)
+            return http_response(http.HTTPStatus.NOT_FOUND, text, [("Content-Type", KINDS[".txt"])])
         return self._answer(request, content)
 
     async def site(self, request: Request) -> Response:
@@ -88,7 +88,7 @@ class FieldPage:
                 except CrsError as error:
                     text = f"The site cannot be drawn on the earth: {error}\n".encode()
                     kind = [("Content-Type", KINDS[".txt"])]
-                    return _response(http.HTTPStatus.SERVICE_UNAVAILABLE, kind, text)
+                    return http_response(http.HTTPStatus.SERVICE_UNAVAILABLE, text, kind)
                 self._site = site, outline
         return self._answer(request, self._site[1])
 
@@ -116,10 +116,10 @@ class FieldPage:
             ("Cross-Origin-Resource-Policy", "same-origin"),
         ]
         if content.tag in request.headers.get("If-None-Match", ""):
-            return _response(http.HTTPStatus.NOT_MODIFIED, headers, b"")
+            return http_response(http.HTTPStatus.NOT_MODIFIED, b"", headers)
         if "gzip" in request.headers.get("Accept-Encoding", "") and len(content.plain) > _WORTH_PACKING:
-            return _response(http.HTTPStatus.OK, [*headers, ("Content-Encoding", "gzip")], content.packed)
-        return _response(http.HTTPStatus.OK, headers, content.plain)
+            return http_response(http.HTTPStatus.OK, content.packed, [*headers, ("Content-Encoding", "gzip")])
+        return http_response(http.HTTPStatus.OK, content.plain, headers)
 
     def _policy(self, request: Request) -> str:
         """Return what the page may load: its own files, its gateway's WebSocket, and the background map."""
@@ -155,11 +155,6 @@ def _content(kind: str, plain: bytes) -> _Content:
 
 def _with_version(content: bytes) -> bytes:
     return content.replace(VERSION_MARK, gateway_version().encode())
-
-
-def _response(status: http.HTTPStatus, headers: list[tuple[str, str]], body: bytes) -> Response:
-    length = [("Content-Length", str(len(body)))] if status != http.HTTPStatus.NOT_MODIFIED else []
-    return Response(status.value, status.phrase, Headers([*headers, *length, ("Connection", "close")]), body)
 
 
 def _suffix(name: str) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 import time
 from collections import Counter
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from sqlalchemy import Engine
 
 from ...core.errors import in_one_line
+from ..monitoring import wait_at_most
 from .roles.blocking_sessions import Offences
 
 if TYPE_CHECKING:
@@ -155,8 +155,7 @@ class NotifiedWakeup:
         if self.is_flooded:
             await asyncio.sleep(LONGEST_S)
             return
-        with contextlib.suppress(TimeoutError):
-            await asyncio.wait_for(self._news.wait(), FALLBACK_S)
+        await wait_at_most(self._news, FALLBACK_S)
         self._news.clear()
 
     async def close(self) -> None:

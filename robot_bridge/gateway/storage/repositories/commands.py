@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, func, insert, select, update
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
@@ -239,3 +239,23 @@ def last_given_track(connection: Connection, robot: str, ops: Sequence[str]) -> 
     )
     row = connection.execute(query).one_or_none()
     return None if row is None else GivenTrack(row[0], decode_json(row[1]), CommandState(row[2]))
+
+
+# --- Steps in the order in which they were written, for gateways that follow those of others ---
+
+STEP_MARGIN = 500
+"""ids that may still be missing below the newest: who took a number first may commit last."""
+STEPS_AT_ONCE = 2000
+
+
+def newest_step(connection: Connection) -> int:
+    """Return the id of the newest step, 0 without one."""
+    return int(connection.scalar(select(func.max(command_steps.c.id))) or 0)
+
+
+def steps_after(connection: Connection, id: int) -> list[tuple[int, str]]:
+    """Return the oldest steps after one: their ids, and the commands that they are of."""
+    query = select(command_steps.c.id, command_steps.c.command).where(command_steps.c.id > id)
+    return [
+        (int(row[0]), str(row[1])) for row in connection.execute(query.order_by("id").limit(STEPS_AT_ONCE))
+    ]

@@ -19,7 +19,7 @@ _ADD = text(
     values (:robot, :method, :params, :operator, :asked_by, {_NOW}) returning id
     """  # nosec B608 # names of ours
 )
-_TAKE = text(
+_BEGIN = text(
     f"""
     with mine as (
         select q.id, q.begun_by from relayed_requests q join robot_owners o on o.robot = q.robot
@@ -70,9 +70,9 @@ def add(connection: Connection, requests: Sequence[NewRequest], operator: str, a
     return [int(connection.execute(_ADD, {**one._asdict(), **more}).scalar_one()) for one in requests]
 
 
-def take(connection: Connection, me: Member, most: int) -> list[TakenRequest]:
+def begin(connection: Connection, me: Member, most: int) -> list[TakenRequest]:
     """Return the oldest requests of robots that a gateway has, each once to each of its runs."""
-    rows = connection.execute(_TAKE, {"gw": me.gw, "run": me.run, "most": most})
+    rows = connection.execute(_BEGIN, {"gw": me.gw, "run": me.run, "most": most})
     return sorted(TakenRequest(*row) for row in rows)
 
 
