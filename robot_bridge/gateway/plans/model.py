@@ -14,6 +14,7 @@ from ...core.assignment.progress import (
     PlanProgress,
     SentStop,
     current_cones,
+    current_stops,
     sent_stops,
 )
 from ...core.errors import PlanFileError, RefusedError
@@ -156,14 +157,23 @@ def superseded(progress: PlanProgress, away: Iterable[str]) -> list[str]:
 
 
 def check_proposal(plan: DrivenPlan, progress: PlanProgress) -> ConePlan:
-    """Return the proposed plan; raises RefusedError where there is none, or it counts on what is given up."""
+    """Return the proposed plan.
+
+    :raises RefusedError: where there is none, it counts on what is given up, or it would have a cone done
+        twice.
+    """
     if plan.proposal is None or plan.state is not PlanState.PROPOSED:
         raise RefusedError(f"plan {plan.name!r} has no plan of what is left to confirm; ask for replan first")
-    given_up = sorted(plan.proposal.done - progress.done - current_cones(progress))
-    if given_up:
-        raise RefusedError(
-            f"given up since the plan of what is left was made: {', '.join(given_up[:10])}; replan"
-        )
+    lost = {one.robot.id for one in plan.proposal.robots if one.lost}
+    begun = {at.stop.id for robot, at in current_stops(progress).items() if robot not in lost}
+    coming = {stop.id for _, stop in plan.proposal.all_stops() if stop.is_target}
+    for found, what in (
+        (plan.proposal.done - progress.done - current_cones(progress), "given up"),
+        (coming & (progress.done | begun), "begun or placed"),
+    ):
+        if found:
+            names = ", ".join(sorted(found)[:10])
+            raise RefusedError(f"{what} since the plan of what is left was made: {names}; replan")
     return plan.proposal
 
 

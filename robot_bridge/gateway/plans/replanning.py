@@ -162,6 +162,8 @@ class Replanner:
             if self._plans.queue(robot).running or self._plans.has_failed(robot):
                 report = await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
                 held[robot] = report.at
+        # Up to its pause a robot may have begun a cone: it is to be counted as that robot's.
+        await self._plans.follow(one)
         one.seen_to = one.problem
         begun = await self._plans.change(one, PlanState.REPLANNING, operator, why, proposal=None, held=held)
         self.begin(one, try_again=try_again)
@@ -218,6 +220,7 @@ class Replanner:
             resumed=self._plans.still_held(plan),
             away=[robot for robot in away if robot in self._context.robots],
             withdrawn={task for task in gone if progress.stops[task].robot in away},
+            not_begun={task for task in gone if progress.stops[task].robot not in away},
             reason="its robot is lost",
             override=override,
         )

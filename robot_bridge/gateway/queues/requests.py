@@ -145,6 +145,7 @@ class QueueEntries:
     resumed: Collection[str] = ()
     away: Sequence[str] = ()
     withdrawn: Collection[str] = ()
+    not_begun: Collection[str] = ()
     reason: str | None = None
     override: str | None = None
 
@@ -277,6 +278,7 @@ class QueueEditor:
             for name in names:
                 self._robots.check_known(name)
                 self._check_revision(name, entries.revisions.get(name, self._book.get(name).revision))
+                self._check_not_begun(name, entries.not_begun)
             leaving = {task.id for name in entries.tasks for task in self._book.get(name).waiting}
             leaving |= set(entries.withdrawn)
             changes = [await self._entered(name, entries, leaving, operator) for name in entries.tasks]
@@ -386,6 +388,12 @@ class QueueEditor:
             raise self._book.outdated(
                 robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
             )
+
+    def _check_not_begun(self, robot: str, tasks: Collection[str]) -> None:
+        current = self._book.get(robot).current
+        if current is not None and current.id in tasks:
+            name = f"cone {current.task.cone}" if current.task.cone else f"task {current.id}"
+            raise RefusedError(f"begun since that was looked at: {name} of robot {robot!r}; replan")
 
     async def _checked(
         self, request: SetQueue | AddTasks, queue: Queue, leaving: Collection[str] = ()

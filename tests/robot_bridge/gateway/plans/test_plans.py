@@ -87,6 +87,11 @@ class Drive:
 
     async def go(self, *, robots=("r1", "r2"), times=1):
         """Let each robot drive what it was sent to its end, so many times, and the gateway look."""
+        await self.drive_on(robots=robots, times=times)
+        await self.plans.watch()
+
+    async def drive_on(self, *, robots=("r1", "r2"), times=1):
+        """Let each robot drive what it was sent to its end, so many times; the plan is not looked at."""
         for _ in range(times):
             for robot in robots:
                 await self.yard.acknowledge_all(robot)
@@ -95,7 +100,6 @@ class Drive:
                         await self.yard.at(x, y, v=1.0, robot=robot)
                     await self.yard.at(task.x, task.y, robot=robot)
             await self.line.advance()
-        await self.plans.watch()
 
     async def planned(self):
         """Wait for what is being planned."""
@@ -225,6 +229,65 @@ async def test_unless_that_was_chosen_somebody_has_to_ask_and_to_confirm(drive):
     await drive.line.advance()
     await drive.go(robots=["r1"], times=8)
     assert drive.cones() == ALL
+
+
+async def test_a_cone_begun_since_the_plan_was_looked_at_last_is_not_given_to_another(drive):
+    await drive.submit()
+    await drive.drive_on(robots=["r1"], times=2)
+    report = await drive.seen()
+    await drive.plans.replan(Replan("plan-1", report.revision), "Ada")
+    await drive.planned()
+    await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Ada")
+    await drive.line.advance()
+    await drive.go(times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
+
+
+@pytest.mark.parametrize("moment", ["before", "while it is confirmed"])
+async def test_a_proposal_is_refused_when_one_of_its_cones_was_begun(drive, monkeypatch, moment):
+    await drive.submit()
+    await drive.plans.replan(Replan("plan-1", 1), "Ada")
+    await drive.planned()
+    report = await drive.seen()
+
+    async def go_on():
+        for robot in ("r1", "r2"):
+            await drive.line.resume(robot)
+        await drive.drive_on(times=2)
+
+    if moment == "before":
+        await go_on()
+    else:
+        enter = drive.yard.fleet.queues.enter
+
+        async def enter_late(*args):
+            await go_on()
+            return await enter(*args)
+
+        monkeypatch.setattr(drive.yard.fleet.queues, "enter", enter_late)
+    with pytest.raises(RefusedError, match=r"(begun|placed) since .*replan"):
+        await drive.plans.confirm(ConfirmReplan("plan-1", report.revision), "Ada")
+    monkeypatch.undo()
+    report = await drive.plans.discard(DiscardReplan("plan-1", report.revision), "Ada")
+    await drive.go(times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
+
+
+async def test_a_lost_robot_that_places_its_cone_all_the_same_has_the_proposal_refused(drive):
+    await drive.submit()
+    await drive.go(robots=["r1"])
+    await drive.lose()
+    await drive.plans.replan(Replan("plan-1", (await drive.seen()).revision), "Bob")
+    await drive.planned()
+    await drive.drive_on(robots=["r2"], times=2)
+    with pytest.raises(RefusedError, match="placed since .*replan"):
+        await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Bob")
+    await drive.plans.replan(Replan("plan-1", (await drive.seen()).revision), "Bob")
+    await drive.planned()
+    await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Bob")
+    await drive.line.advance()
+    await drive.go(times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
 
 @pytest.mark.parametrize("state", ["driven", "proposed"])
