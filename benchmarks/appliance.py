@@ -55,7 +55,7 @@ MAPS_NICE = 5
 """As the unit of the map services has it."""
 FRAME = read_settings(SITE / "site.toml").frame
 PANEL = ROOT / "plugin" / "settings" / "preferences.py"
-PAGE = ROOT / "robot_bridge" / "gateway" / "field" / "assets" / "field.js"
+PAGE = ROOT / "robot_bridge" / "gateway" / "field" / "assets" / "budget.js"
 
 TEXT = """\
 A {model} on paper, {cores} cores and {megabytes} MB; nobody ran this on one. A core of it is taken to do
@@ -201,8 +201,8 @@ def subscriptions() -> Subscriptions:
     """Return what the sources of panel and page say."""
     page = PAGE.read_text(encoding="utf-8")
     rate = float(_found(r"positions_rate: float = ([\d.]+)", PANEL.read_text(encoding="utf-8")))
-    rates = [float(text) for text in _found(r"RATES = \[([\d., ]+)\]", page).split(",")]
-    form = _found(r'this\.form = "(\w+)";\n', page)
+    rates = [float(text) for text in _found(r"\[([\d., ]+)\]\.map\(\(rate\)", page).split(",")]
+    form = _found(r'STEPS = \[\{ form: "(\w+)"', page)
     budget = int(_found(r"BUDGET = ([\d_]+)", page))
     return Subscriptions({"rate": rate, "form": "columns"}, {"rate": rates[0], "form": form}, rates, budget)
 

@@ -47,8 +47,8 @@ class Plan:
     """Who is there: ``ca`` is the file of the authority that signed for ``address``.
 
     Desks and phones ask for positions by ``desk`` and ``phone``, the parameters of ``subscribe``. A phone to
-    which more than ``budget`` bytes come in a minute asks for less, as its page does: for places alone, and
-    then at the next of ``phone_rates``.
+    which more than ``budget`` bytes of them come in a minute asks for less, as its page does: for places
+    alone, and then at the next of ``phone_rates``.
     """
 
     address: str
@@ -177,7 +177,7 @@ class Watcher:
         self, socket: ClientConnection, sayings: Sayings, watched: Callable[[], Watched | None]
     ) -> None:
         self._socket, self._sayings, self._watched = socket, sayings, watched
-        self._received = 0
+        self._positions_received = 0
         self._ids, self._answers = itertools.count(3), dict[int, asyncio.Future[Any]]()
 
     @classmethod
@@ -201,12 +201,12 @@ class Watcher:
         newest: dict[str, float] = {}
         async for message in self._socket:
             now, watched = time.time(), self._watched()
-            self._received += len(message)
             if watched is not None:
                 watched.bytes += len(message)
             if isinstance(message, str):
                 self._settle(json.loads(message))
                 continue
+            self._positions_received += len(message)
             for robot, sent in self._sayings.times(message):
                 if sent > newest.get(robot, 0.0):
                     newest[robot] = sent
@@ -214,11 +214,14 @@ class Watcher:
                         watched.delays.append((now - sent) * 1e3)
 
     async def keep_to(self, budget: int, rates: list[float]) -> None:
-        """Ask for less when more than ``budget`` bytes a minute come, by the rule of the field page."""
-        received = deque([self._received], maxlen=MEASURED_S + 1)
+        """Ask for less when positions take more than ``budget`` bytes a minute, as the field page does.
+
+        The page asks for more again after a quiet minute, and this does not.
+        """
+        received = deque([self._positions_received], maxlen=MEASURED_S + 1)
         while True:
             await asyncio.sleep(1.0)
-            received.append(self._received)
+            received.append(self._positions_received)
             if len(received) <= MEASURED_S or (received[-1] - received[0]) / MEASURED_S * 60 <= budget:
                 continue
             slower = [rate for rate in rates if rate < self.subscription["rate"]]
@@ -227,7 +230,7 @@ class Watcher:
             elif slower:
                 self.subscription = {**self.subscription, "rate": max(slower)}
             await self.ask("subscribe", self.subscription)
-            received = deque([self._received], maxlen=MEASURED_S + 1)
+            received = deque([self._positions_received], maxlen=MEASURED_S + 1)
 
     async def ask(self, method: str, params: dict[str, Any]) -> Any:
         """Return the answer to a request.

@@ -45,6 +45,7 @@ export class Connection extends EventTarget {
     this.isUp = false;
     this.byPolling = false;
     this.received = 0;
+    this.positionsReceived = 0;
     this.heardAt = null;
     this._socket = null;
     this._waiting = new Map();
@@ -153,6 +154,7 @@ export class Connection extends EventTarget {
     this.heardAt = performance.now();
     this.received += data.byteLength ?? data.length;
     if (typeof data !== "string") {
+      this.positionsReceived += data.byteLength;
       this._tell("positions", tableOf(data));
       return;
     }

@@ -1,14 +1,12 @@
 /** The field page: wires the connection, the map, the emergency stop and what is said of robots. */
 
+import { PositionBudget } from "/field/budget.js";
 import { Connection, newId, SILENT_AFTER_MS } from "/field/connection.js";
 import { SiteMap } from "/field/map.js";
 import { EmergencyStop } from "/field/stop.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
 
 const TOKEN = "fleet-field-token", LANGUAGE = "fleet-field-language";
-/** Bytes a minute that positions may take on a phone's contract, and the rates that are chosen from. */
-const BUDGET = 900_000;
-const RATES = [1, 0.5, 0.25, 0.1, 0.05];
 const LISTED = 50;
 const by = (id) => document.getElementById(id);
 
@@ -22,8 +20,7 @@ class Field {
     this.place = null;
     this.site = null;
     this.traffic = [];
-    this.rate = RATES[0];
-    this.form = "columns";
+    this.budget = new PositionBudget();
     this.connection = new Connection();
     this.map = new SiteMap(by("map"));
     this.stop = new EmergencyStop(
@@ -198,20 +195,20 @@ class Field {
     if (this.traffic.length > 61) this.traffic.shift();
     const minute = this.traffic.at(-1) - this.traffic[0];
     by("traffic").textContent = tr("{kb} kB in the last minute", { kb: Math.round(minute / 1000) });
-    if (this.traffic.length < 6 || this.connection.byPolling) return;
-    const recent = ((this.traffic.at(-1) - this.traffic.at(-6)) / 5) * 60;
-    if (recent <= BUDGET) return;
-    // First less of each robot, then fewer times.
-    const slower = RATES[RATES.indexOf(this.rate) + 1];
-    if (this.form === "columns") this.form = "places";
-    else if (slower) this.rate = slower;
-    else return;
-    this.traffic = [this.connection.received];
-    this._choosePositions();
+    // What else comes, such as a burst of reports, does not get less by asking for fewer positions.
+    if (this.connection.isUp && !this.connection.byPolling && this.budget.note(this.connection.positionsReceived)) {
+      this._subscribe();
+    }
   }
 
   _choosePositions() {
-    this.connection.choosePositions(by("updates").value === "poll", this.rate, this.form);
+    this.budget.restart();
+    this._subscribe();
+  }
+
+  _subscribe() {
+    const { rate, form } = this.budget.step;
+    this.connection.choosePositions(by("updates").value === "poll", rate, form);
   }
 
   _setConnection(state) {

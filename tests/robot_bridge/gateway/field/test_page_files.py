@@ -19,6 +19,7 @@ from tests.support.bridge.bridge_programs import wait_until
 FILES = (
     "",
     "/",
+    "/budget.js",
     "/field.js",
     "/field.css",
     "/leaflet.js",

@@ -122,6 +122,37 @@ def test_the_token_of_the_address_signs_in_and_is_gone_from_it(phone, tokens):
     assert page.evaluate("localStorage.getItem('fleet-field-token')") is None
 
 
+BUSY_AND_QUIET = """async () => {
+  const { PositionBudget } = await import("/field/budget.js");
+  const budget = new PositionBudget(), steps = [];
+  let bytes = 0;
+  const pass = (seconds, each) => {
+    for (let k = 0; k < seconds; k++) {
+      bytes += each(budget.step);
+      if (budget.note(bytes)) steps.push([budget.step.form, budget.step.rate]);
+    }
+    return steps.splice(0);
+  };
+  // A robot's place is 20 bytes, and all of it 120.
+  const robots = (n) => ({ form, rate }) => n * (form === "columns" ? 120 : 20) * rate;
+  return [pass(300, robots(100)), pass(60, robots(2000)), pass(900, robots(2000)), pass(600, robots(10)),
+          pass(600, robots(180))];
+}"""
+
+
+def test_a_phone_asks_for_less_while_there_is_much_and_for_more_when_that_is_over(phone):
+    few, burst, many, quiet, between = phone("viewer").evaluate(BUSY_AND_QUIET)
+    assert few == []
+    assert burst == [["places", 1], ["places", 0.5], ["places", 0.25]]
+    assert many == []
+    assert quiet == [["places", 0.5], ["places", 1], ["columns", 1]]
+    # Too much of all of it, little enough of places: tried, and then tried more and more seldom.
+    assert between[::2] == [["places", 1]] * len(between[::2]) and between[1::2] == [["columns", 1]] * len(
+        between[1::2]
+    )
+    assert 1 <= len(between) <= 8
+
+
 def test_a_token_in_the_query_is_not_used_and_the_page_says_why(open_phone, bridge, tokens, robots):
     page = open_phone(bridge, f"?token={tokens['operator']}")
     text_is(page, "#login-reason", "logs and histories")
