@@ -171,5 +171,5 @@ def _problem(status: http.HTTPStatus, detail: str, headers: Sequence[tuple[str, 
 def _response(
     status: http.HTTPStatus, kind: str, body: bytes, headers: Sequence[tuple[str, str]] = ()
 ) -> Response:
-    fixed = [("Content-Type", kind), ("Cache-Control", "no-store"), ("X-Content-Type-Options", "nosniff")]
+    fixed = [("Content-Type", kind), ("Cache-Control", "no-store")]
     return http_response(status, body, [*fixed, *headers])

@@ -320,7 +320,7 @@ def _allow_connections(limits: LimitSettings) -> None:
 
 def http_response(status: http.HTTPStatus, body: bytes, headers: Iterable[tuple[str, str]]) -> Response:
     """Return what a page is answered with, after which its connection ends."""
-    every = [*headers, ("Connection", "close")]
+    every = [*headers, ("X-Content-Type-Options", "nosniff"), ("Connection", "close")]
     if status != http.HTTPStatus.NOT_MODIFIED:
         every.append(("Content-Length", str(len(body))))
     return Response(status.value, status.phrase, Headers(every), body)

@@ -109,7 +109,6 @@ class FieldPage:
             # Looked for at each load: after an upgrade a phone has the new page at once.
             ("Cache-Control", "no-cache"),
             ("Content-Security-Policy", self._policy(request)),
-            ("X-Content-Type-Options", "nosniff"),
             ("Referrer-Policy", "no-referrer"),
             ("Permissions-Policy", "geolocation=(self), camera=(), microphone=()"),
             ("Cross-Origin-Opener-Policy", "same-origin"),

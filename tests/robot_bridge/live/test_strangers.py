@@ -29,6 +29,8 @@ def page(bridge, path, host):
     connection.endheaders()
     answer = connection.getresponse()
     text = answer.read().decode()
+    if answer.status == http.HTTPStatus.OK:
+        assert answer.getheader("X-Content-Type-Options") == "nosniff"
     connection.close()
     return answer.status, text
 

@@ -241,6 +241,7 @@ async def test_a_noted_stop_is_in_force_at_the_next_gateway_which_stores_it(two,
     two.client.break_table("emergency_stops")
     await gateway.fleet.emergency.stop(EmergencyStop("stop-0001", "smoke"), "Ada")
     await gateway.fleet.emergency.stop(EmergencyStop("stop-0002"), "Bob")
+    await gateway.until(["stop-0001", "stop-0002"])
     await gateway.end()
     two.client.mend_table("emergency_stops")
     caplog.clear()

@@ -166,7 +166,7 @@ def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(ro
     told = wait_until(lambda: events(nodes, name, "map"), 30)
     assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (2000, 1600, "map")
 
-    # Each comes twice where the robot is declared twice: a busy machine finds its servers one after the other.
+    # Each comes twice where the robot is declared twice: on a busy machine its servers are found one by one.
     def latest(event, key):
         return {one[key]: one for one in events(nodes, name, event)}
 
