@@ -15,8 +15,12 @@ from zlib import crc32
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.support.processes import Processes
+
 ROOT = Path(__file__).resolve().parents[1]
 DATA = ROOT.parent / "shared" / "data"
+LAST_LINES = 30
+"""of what a program printed, in the report of a test that failed."""
 
 
 def register_plugin_package():
@@ -219,8 +223,13 @@ def may_rest(item) -> bool:
 
 @pytest.hookimpl(hookwrapper=True)
 def pytest_runtest_makereport(item):
-    """Have a test that is skipped fail in a run for a release: its machine has everything."""
+    """Have a failure say what its programs printed last.
+
+    A test that is skipped fails in a run for a release: its machine has everything.
+    """
     report = (yield).get_result()
+    if report.failed:
+        report.sections += [part for one in Processes.open_ones for part in one.reports(LAST_LINES)]
     if item.config.getoption("--release") and report.skipped and not hasattr(report, "wasxfail"):
         report.outcome, report.longrepr = "failed", f"skipped: {report.longrepr[2]}"
 

@@ -16,7 +16,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from types import FrameType
-from typing import Any
+from typing import Any, ClassVar
+from weakref import WeakSet
 
 from tests.support.errors import StageError
 from tests.support.forked_programs import BRIDGE, Program, start_forked
@@ -42,9 +43,12 @@ def dying_with_this(command: Sequence[str | Path]) -> list[str]:
 class Processes:
     """A context that starts processes, keeps their output in files, and ends each by its id at the end."""
 
+    open_ones: ClassVar[WeakSet[Processes]] = WeakSet()
+
     def __init__(self, logs: Path):
         self._logs = logs
         self._running: dict[str, subprocess.Popen[bytes]] = {}
+        self.open_ones.add(self)
 
     def __enter__(self) -> Processes:
         self._logs.mkdir(parents=True, exist_ok=True)
@@ -122,6 +126,14 @@ class Processes:
             if name not in but and process.poll() is not None:
                 text = self.log(name).read_text(encoding="utf-8", errors="replace")
                 raise StageError(f"{name} ended with status {process.returncode}{_said(text)}")
+
+    def reports(self, lines: int) -> Iterator[tuple[str, str]]:
+        """Yield of each process its name with whether it runs, and the last ``lines`` that it printed."""
+        for name, process in self._running.items():
+            status = process.poll()
+            state = "runs" if status is None else f"ended with status {status}"
+            text = self.log(name).read_text(encoding="utf-8", errors="replace")
+            yield f"{name}, which {state}", "\n".join(text.splitlines()[-lines:])
 
     @contextmanager
     def halted(self, name: str) -> Iterator[None]:
