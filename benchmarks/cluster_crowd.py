@@ -49,7 +49,7 @@ class Robot:
         self.name = f"load-{number}"
         self.heard: dict[str, float] = {}
         """When it heard of what, by the id of that."""
-        self.told_to_drive = 0.0
+        self.asked, self.told_to_drive = 0.0, 0.0
         self.has_map = asyncio.Event()
         self._plan, self._sayings, self._steps = plan, sayings, itertools.count()
         self._socket: ClientConnection | None = None
@@ -60,6 +60,10 @@ class Robot:
         row, column = divmod(self.number, ROW)
         creep = next(self._steps) % 1000 / 1000
         return round(3.0 + column * APART + creep, PLACES), round(3.0 + row * APART, PLACES)
+
+    def is_told(self) -> bool:
+        """Tell whether it was told to drive since that was asked for."""
+        return self.told_to_drive > self.asked
 
     async def live(self) -> None:
         """Be connected to one gateway or another until cancelled."""
@@ -202,10 +206,10 @@ class Crowd:
         found = []
         for robot in [one for one in self._robots if one.home == robots_of][:count]:
             command, (x, y) = f"command-{next(self._numbers):08d}", robot.place
-            began = time.time()
+            began = robot.asked = time.time()
             params = {"command": command, "robot": robot.name, "op": "SetPosEnd", "params": {"x": x, "y": y}}
             await self._desks[desk].ask("send", params)
-            await _until(lambda robot=robot, began=began: robot.told_to_drive > began)
+            await _until(robot.is_told)
             found.append((robot.told_to_drive - began) * 1e3)
         return found
 
