@@ -49,6 +49,7 @@ class Robot:
         self.name = f"load-{number}"
         self.heard: dict[str, float] = {}
         """When it heard of what, by the id of that."""
+        self.since = self.map_since = 0.0
         self.asked, self.told_to_drive = 0.0, 0.0
         self.has_map = asyncio.Event()
         self._plan, self._sayings, self._steps = plan, sayings, itertools.count()
@@ -61,6 +62,12 @@ class Robot:
         creep = next(self._steps) % 1000 / 1000
         return round(3.0 + column * APART + creep, PLACES), round(3.0 + row * APART, PLACES)
 
+    @property
+    def state(self) -> str:
+        """Where it is connected, since when, and since when it has its map there."""
+        where = "nowhere" if self._socket is None else str(self._socket.remote_address[1])
+        return f"at {where} since {self.since:.1f}, map {self.map_since:.1f}, now {time.time():.1f}"
+
     def is_told(self) -> bool:
         """Tell whether it was told to drive since that was asked for."""
         return self.told_to_drive > self.asked
@@ -71,6 +78,7 @@ class Robot:
             address = self._plan.addresses[turn % len(self._plan.addresses)]
             try:
                 async with _open(f"{address}/robot?robot={self.name}") as self._socket:
+                    self.since = time.time()
                     await self._socket.send(_call("Ready", {"magic": self.number + 1}, 1))
                     await self._hear(self._socket)
             except GONE:
@@ -97,6 +105,7 @@ class Robot:
                 self.told_to_drive = time.time()
             if message["method"] == "SetMap":
                 self.has_map.set()
+                self.map_since = time.time()
             await socket.send(json.dumps({"jsonrpc": "2.0", "id": message["id"], "result": {}}))
 
 
@@ -207,7 +216,13 @@ class Crowd:
         for robot in [one for one in self._robots if one.home == robots_of][:count]:
             command, (x, y) = f"command-{next(self._numbers):08d}", robot.place
             began = robot.asked = time.time()
-            params = {"command": command, "robot": robot.name, "op": "SetPosEnd", "params": {"x": x, "y": y}}
+            params: dict[str, Any] = {
+                "command": command,
+                "robot": robot.name,
+                "op": "SetPosEnd",
+                "params": {"x": x, "y": y},
+            }
+            params["override"] = "robots of a benchmark stand anywhere"
             await self._desks[desk].ask("send", params)
             await _until(robot.is_told)
             found.append((robot.told_to_drive - began) * 1e3)
@@ -222,8 +237,13 @@ class Crowd:
         )
         robots = [robot for robot in self._robots if robot.home not in without]
         desks = [one for number, one in enumerate(self._desks) if number not in without]
-        await _until(lambda: all(f"emergency-{stop}" in robot.heard for robot in robots))
-        await _until(lambda: all(stop in one.in_force for one in desks))
+        try:
+            await _until(lambda: all(f"emergency-{stop}" in robot.heard for robot in robots))
+            await _until(lambda: all(stop in one.in_force for one in desks))
+        except TimeoutError:
+            missed = [one for one in robots if f"emergency-{stop}" not in one.heard]
+            text = ", ".join(f"{one.name} of {one.home} ({one.state})" for one in missed[:20])
+            raise RuntimeError(f"{len(missed)} robots did not hear of {stop}: {text}") from None
         await asked
         heard = max(robot.heard[f"emergency-{stop}"] for robot in robots)
         gateways = [(one.in_force[stop] - began) * 1e3 for one in desks]
