@@ -16,6 +16,11 @@ SETTINGS = """\
 [PythonPlugins]
 fleet_supervisor=true
 processing=true
+MetaSearch=false
+db_manager=false
+grassprovider=false
+otbprovider=false
+sagaprovider=false
 
 [app]
 projections\\unknownCrsBehavior=NoAction

@@ -16,7 +16,7 @@ PIXEL_M = 0.02
 """Metres by which a point may be rounded on its way to the gateway."""
 CORRIDOR_M = 1.0
 """Metres beside its path that a robot may be."""
-UNDER_WAY_M = 12.0
+UNDER_WAY_M = 6.0
 
 
 def lead_round_keepout(scene: Scene) -> None:

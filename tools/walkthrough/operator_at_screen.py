@@ -14,7 +14,8 @@ from tests.support.errors import StageError
 from tools.walkthrough.screen import WHEEL_DOWN, Pixel, Screen
 from tools.walkthrough.window import Window
 
-POLL_S = 0.05
+POLL_S, SELDOM_S = 0.05, 0.2
+"""Seconds between two looks: for a second, and after that."""
 PATIENCE_S = 60.0
 """How long anything may take: other work may share the computer."""
 
@@ -42,11 +43,12 @@ class OperatorAtScreen:
 
         :raises StageError: when it does not hold within ``seconds``.
         """
-        until = time.monotonic() + seconds
+        began = time.monotonic()
         while not (found := condition()):
-            if time.monotonic() > until:
+            waited = time.monotonic() - began
+            if waited > seconds:
                 raise StageError(f"{what} did not happen within {seconds:.0f} s; {self.desk()}")
-            time.sleep(POLL_S)
+            time.sleep(POLL_S if waited < 1.0 else SELDOM_S)
         return found
 
     def desk(self) -> dict[str, Any]:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from tools.walkthrough.gateway import Gateway
 from tools.walkthrough.scene import Scene
 
-TARGET = (28.0, 8.0)
+TARGET = (24.0, 8.0)
 """Ahead of r1 on the straight; site frame, metres."""
 LAYERS_WIDTH = 230
 """Pixels in which the names of the sample site's layers can be read."""

@@ -48,7 +48,7 @@ CARS_EXTENT = (240.0, 1560.0, 640.0, 1920.0)
 """What the second map shows: the platform on which the cars were recorded."""
 CARS = {str(number): f"car-{number}" for number in range(1, 7)}
 FIRST, SECOND = "carrier_1", "carrier_2"
-SPEEDS = {FIRST: 6.0, SECOND: 7.0}
+SPEEDS = {FIRST: 12.0, SECOND: 14.0}
 """m/s."""
 CONES = 6
 """Typed in three reference systems, and clicked on maps in the same three."""

@@ -197,7 +197,7 @@ def drive_route(session: Session) -> None:
     send(session, robot, lambda: operator.press("fleet_send"))
     session.happened("route", f"a click with the tool for routes on roads: {told}. Sent, and acknowledged")
     operator.wait_until_driving(robot, STEP)
-    operator.pause(8)
+    operator.pause(3)
     picture(session)
     seconds = reached(session, robot)
     session.happened("route ends", f"{robot} reached the end of its route {seconds:.1f} s after the picture")
