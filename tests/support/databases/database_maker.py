@@ -112,12 +112,8 @@ class DatabaseMaker:
         return self._used
 
     def _copied(self) -> str:
-        model, name = self._models["postgresql"], f"copy_{self._made}"
-        source = model.rsplit("/", 1)[1]
-        # By files: to log each page takes three times as long.
-        how = f'template "{source}" owner fleet strategy file_copy'
-        self._server("postgresql").sql(f'create database "{name}" {how}')
-        return model.removesuffix(source) + name
+        model = self._models["postgresql"].rsplit("/", 1)[1]
+        return str(self._server("postgresql").copied_database(model))
 
     def _emptied(self, url: str | None) -> str:
         if url is None or not _truncated(url):

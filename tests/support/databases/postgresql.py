@@ -28,6 +28,13 @@ class PostgreSql(DatabaseServer):
             [self._program("psql"), *options, *address], text, PGPASSWORD=self.admin_password
         ).strip()
 
+    def copied_database(self, model: str) -> str:
+        """Make a copy of the database named so, to which nobody is connected; return its owner's URL."""
+        name = f"copy_{next(self._numbers)}"
+        # By files: to log each page takes three times as long.
+        self.sql(f'create database "{name}" template "{model}" owner {OWNER} strategy file_copy')
+        return self.url(name, OWNER, self.owner_password)
+
     def _initialise(self) -> None:
         secret = self.folder / "password"
         secret.write_text(self.admin_password, encoding="utf-8")
