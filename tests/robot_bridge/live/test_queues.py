@@ -114,8 +114,7 @@ def _state(operator):
     return next(iter(operator.desk.commands.values()))["state"]
 
 
-def test_others_take_over_what_a_killed_robot_has_left(start_bridge, impatient_site):
-    bridge = start_bridge(impatient_site)
+def test_others_take_over_what_a_killed_robot_has_left(bridge):
     killed = bridge.start_robot("r1", (20.0, 20.0, 0.0))
     bridge.start_robot("r2", (20.0, 30.0, 0.0))
     bridge.start_robot("r3", (20.0, 40.0, 0.0), sql=True)
@@ -147,7 +146,6 @@ def test_others_take_over_what_a_killed_robot_has_left(start_bridge, impatient_s
     operator.desk.listen(1.0)
     assert abs(operator.desk.robots["r1"]["x"] - 22.0) < 0.2
     assert bridge.sql("select count(*) from placements") == [(4,)]
-    bridge.end()
 
 
 def _stands(operator, robot):

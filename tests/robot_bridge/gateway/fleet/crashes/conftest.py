@@ -4,8 +4,8 @@ Moments are the transactions that a scenario takes, or its seconds. One that sto
 each of them while they come to a stand, for every third of those in which they stand and nothing happens, and
 for each in which they go on again; what is driven before and then, and every other scenario, for every
 twelfth, beginning with the next one from scenario to scenario. In a run for a release it is for each of those
-in which they stand, and for every fourth. With EVERY_CRASH=1 in the environment all are played at each, before
-and after the commit, with all that robots may do meanwhile.
+in which they stand, and for every fourth. With EVERY_CRASH=1 in the environment all are played at each,
+before and after the commit, with all that robots may do meanwhile.
 """
 
 from __future__ import annotations
