@@ -117,6 +117,7 @@ NOT_CORE_PATHS = {ROOT / "tests" / name for name in NOT_CORE}
 MORE_THAN_CORE = {"start_bridge", "postgresql_server", "mariadb_server", "nats", "data"}
 """Fixtures that start programs, or read much."""
 SERVERS = {"postgresql", "mariadb", "nats"}
+KINDS = {"sqlite", *SERVERS}
 GIS = re.compile(r"^\s*(?:from|import) (?:qgis|osgeo|PyQt5)\b", re.MULTILINE)
 
 
@@ -195,30 +196,41 @@ IN_TURN = (
 )
 """Tests of what the gateway does with its database; what a server decides by itself is in storage."""
 IN_TURN_PATHS = {ROOT / "tests" / name for name in IN_TURN}
+SELDOM_ON_SERVERS = tuple(f"robot_bridge/gateway/{name}" for name in ("commands", "fleet", "plans", "queues"))
+"""Those of rules that are stored the same way wherever that is; they are run on SQLite as well."""
+SELDOM_PATHS = {ROOT / "tests" / name for name in SELDOM_ON_SERVERS}
 STOPS = re.compile(r"stop|abort|paus|emergency")
 """What is run on both servers, whatever it has to do with them."""
 
 
 def in_turn(items):
-    """Leave one of two tests that differ by their database server alone: half of them on each."""
-    pairs = defaultdict(dict)
+    """Leave one of two tests that differ by their database server alone: half of them on each.
+
+    Where it is seldom the server's doing, every second test that is run on SQLite is run on no server.
+    """
+    groups = defaultdict(dict)
     for item in items:
         values = getattr(item, "callspec", None)
-        servers = SERVERS.intersection(map(str, values.params.values())) if values is not None else ()
-        for server in servers if may_rest(item) else ():
-            pairs[item.nodeid.replace(server, "SERVER")][server] = item
-    resting = {
-        servers[sorted(servers)[crc32(name.encode()) % 2]]
-        for name, servers in pairs.items()
-        if servers.keys() == SERVERS
-    }
+        kinds = KINDS.intersection(map(str, values.params.values())) if values is not None else ()
+        for kind in kinds if may_rest(item) else ():
+            groups[item.nodeid.replace(kind, "KIND")][kind] = item
+    resting = set()
+    for name, on in groups.items():
+        turn, servers = crc32(name.encode()) % 4, sorted(on.keys() & SERVERS)
+        if len(servers) == 2:
+            seldom = "sqlite" in on and is_in(on["sqlite"], SELDOM_PATHS)
+            resting.update(on[kind] for kind in servers if kind != servers[turn % 2] or (seldom and turn > 1))
     return [item for item in items if item not in resting]
 
 
 def may_rest(item) -> bool:
     """Whether what a test shows on one database server it need not show on the other in each run."""
-    in_room = not IN_TURN_PATHS.isdisjoint((item.path, *item.path.parents))
-    return in_room and STOPS.search(item.nodeid) is None
+    return is_in(item, IN_TURN_PATHS) and STOPS.search(item.nodeid) is None
+
+
+def is_in(item, paths) -> bool:
+    """Whether a test is in one of the files or folders."""
+    return not paths.isdisjoint((item.path, *item.path.parents))
 
 
 @pytest.hookimpl(hookwrapper=True)

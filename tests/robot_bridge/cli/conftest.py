@@ -4,14 +4,7 @@ import shutil
 
 import pytest
 
-from robot_bridge.gateway.storage import revisions
-from robot_bridge.gateway.storage.database import read_address, run_once
-
-KINDS = ("sqlite", "postgresql", "mariadb")
-
-
-def empty_url(request, kind, folder) -> str:
-    return f"sqlite:///{folder}/fleet.db" if kind == "sqlite" else request.getfixturevalue(f"{kind}_url")
+from tests.support.databases.database_maker import KINDS
 
 
 @pytest.fixture(params=KINDS)
@@ -20,11 +13,9 @@ def kind(request) -> str:
 
 
 @pytest.fixture
-def url(request, kind, tmp_path) -> str:
+def url(kind, new_database) -> str:
     """A database of each kind with empty tables."""
-    found = empty_url(request, kind, tmp_path)
-    run_once(read_address(found), revisions.create)
-    return found
+    return new_database(kind)
 
 
 @pytest.fixture

@@ -59,7 +59,7 @@ def rows():
         "command_steps": [{**step, "state": "queued", "reason": text} for text in (None, ODD)],
         "trajectories": [
             {"robot": f"r{n % 7}", "received_at": 1.79e9 + n / 3, "x": n / 7, "y": -n / 11, **place}
-            for n in range(3000)
+            for n in range(300)
         ],
         "observations": [{**image, "received_at": 3.0, "state": "new"}],
         "operators": [{"name": ODD, "role": "viewer", "created_at": 1.0}],
@@ -98,12 +98,11 @@ def address(url):
 
 
 @pytest.fixture
-def other(request, kind, tmp_path):
+def other(request, kind, new_database, tmp_path):
     """Another database, on which robots have accounts where the server has accounts."""
     if kind == "sqlite":
         return read_address(f"sqlite:///{tmp_path}/other.db")
-    url = request.getfixturevalue(f"{kind}_server").new_database()
-    run_once(read_address(url), revisions.create)
+    url = new_database.another(kind)
     admin = read_address(request.getfixturevalue(f"{kind}_server").admin_url(url))
     run_once(admin, lambda c: role_manager_on(c).add_robot(f"bot{secrets.token_hex(4)}", "password"))
     return read_address(url)
@@ -114,7 +113,7 @@ def test_what_was_backed_up_is_what_is_restored(address, other, tmp_path, kind):
     assert back_up(address, file) == file.stat().st_size
     put_back(other, file)
     assert run_once(other, contents) == run_once(address, contents)
-    assert len(run_once(other, contents)["trajectories"]) == 3000
+    assert len(run_once(other, contents)["trajectories"]) == 300
     if kind == "postgresql":  # each of its day, so that days can be dropped
         left = run_once(other, lambda c: c.scalar(text("select count(*) from only trajectories_other")))
         assert left == 0

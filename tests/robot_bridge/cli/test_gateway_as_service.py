@@ -251,7 +251,7 @@ def start_program(tmp_path):
     with Processes(tmp_path / "logs") as processes:
 
         def start(options, pattern, env=None):
-            processes.start("program", [sys.executable, "-m", "robot_bridge", *map(str, options)], env=env)
+            processes.start_bridge("program", options, env=env)
             return processes.wait_for_line("program", pattern, START).group(1)
 
         start.processes = processes

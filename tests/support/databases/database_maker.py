@@ -51,6 +51,12 @@ select count(*) from pg_stat_activity
 """
 BEGIN_AT_ONE = "select setval(oid, 1, false) from pg_class where relkind = 'S'"
 
+MADE_LATER = (
+    "select 1 from information_schema.check_constraints where constraint_schema",
+    "select 1 from information_schema.triggers where trigger_schema",
+)
+"""What the tables of MariaDB have only where a test has made it."""
+
 
 class DatabaseMaker:
     """Makes databases; ``server`` returns the running server of a kind (see the fixtures)."""
@@ -77,6 +83,15 @@ class DatabaseMaker:
             self._models[kind] = self._first(kind)
         return self._copied_file() if kind == "sqlite" else self._copied_or_emptied()
 
+    def another(self, kind: str) -> str:
+        """Return the URL of one more, whether or not somebody is connected to the last."""
+        if kind == "mariadb":
+            return self._first(kind)
+        if kind not in self._models:
+            self._models[kind] = self._first(kind)
+        self._made += 1
+        return self._copied_file() if kind == "sqlite" else self._copied()
+
     def _first(self, kind: str) -> str:
         url = f"sqlite:///{self._folder}/model.db" if kind == "sqlite" else self._server(kind).new_database()
         run_once(url, revisions.create)
@@ -97,10 +112,8 @@ class DatabaseMaker:
         return self._used
 
     def _copied(self) -> str:
-        model, name = self._models["postgresql"], f"copy_{self._made}"
-        source = model.rsplit("/", 1)[1]
-        self._server("postgresql").sql(f'create database "{name}" template "{source}" owner fleet')
-        return model.removesuffix(source) + name
+        model = self._models["postgresql"].rsplit("/", 1)[1]
+        return str(self._server("postgresql").copied_database(model))
 
     def _emptied(self, url: str | None) -> str:
         if url is None or not _truncated(url):
@@ -143,9 +156,7 @@ def _truncated(url: str) -> bool:
         there = {name for (name,) in client.sql("show tables")}
         if there != {*metadata.tables, "alembic_version"}:
             return False
-        if client.sql(
-            "select 1 from information_schema.check_constraints where constraint_schema = database()"
-        ):
+        if any(client.sql(f"{look} = database()") for look in MADE_LATER):
             return False
         for table in metadata.tables:
             # What was deleted has used up numbers; only where rows come and go do tests look at them.

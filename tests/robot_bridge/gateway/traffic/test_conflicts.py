@@ -84,7 +84,7 @@ def random_fleet(seed: int) -> tuple[list[Movement], float]:
 @pytest.mark.parametrize("block", range(6))
 def test_what_is_found_quickly_is_exactly_what_every_pair_on_its_own_has(block):
     found = 0
-    for seed in range(50 * block, 50 * block + 50):
+    for seed in range(20 * block, 20 * block + 20):
         fleet, now = random_fleet(seed)
         pairs = [(a, b) for k, a in enumerate(fleet) for b in fleet[k + 1 :]]
         each = [one for a, b in pairs for one in conflicts_of(a, b, 0.5, now)]
@@ -149,7 +149,7 @@ def test_two_that_stand_are_no_conflict_and_what_is_over_is_none():
     assert find_conflicts(ways, 0.5, 12.0) == []
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(20))
 def test_who_gives_way_meets_nobody_in_a_simulation(seed):
     random = np.random.default_rng(1000 + seed)
     now, margin = 0.0, 0.5

@@ -1,10 +1,11 @@
 """Plays in which the gateway dies, a transaction fails, or links are cut: at each moment in turn.
 
 Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
-each of them from the order until all go on again, and a while longer; what is driven before and then, and
-every other scenario, for every eighth, beginning with the next one from scenario to scenario; in a run for a
-release for every fourth. With EVERY_CRASH=1 in the environment all are played at each, before and after the
-commit, with all that robots may do meanwhile.
+each of them while they come to a stand, for every third of those in which they stand and nothing happens, and
+for each in which they go on again; what is driven before and then, and every other scenario, for every
+twelfth, beginning with the next one from scenario to scenario. In a run for a release it is for each of those
+in which they stand, and for every fourth. With EVERY_CRASH=1 in the environment all are played at each,
+before and after the commit, with all that robots may do meanwhile.
 """
 
 from __future__ import annotations
@@ -23,9 +24,13 @@ from tests.support.bridge.mortal_database import Death
 
 STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once", "stopped"}
 """Scenarios in which operators stop robots."""
-EVERY, EVERY_FOR_RELEASE = 8, 4
+EVERY, EVERY_FOR_RELEASE = 12, 4
 """Of how many moments one is played, where no robot is stopped."""
-STILL_ALL = 10
+STANDING, STANDING_FOR_RELEASE = 3, 1
+"""Of how many moments one is played, while robots stand that were stopped."""
+COME_TO_STAND = 12
+"""For how many moments each is played after robots were told to stop; all stand by then."""
+STILL_ALL = 6
 """For how many transactions each is played after robots were told to go on."""
 
 
@@ -81,7 +86,9 @@ def play(crash, sqlite_url, quick_folder):
 @pytest.fixture
 def moments(request):
     """Pair moments with what happens then: ``moments(scenario, all_moments, ways, while_stopped)``."""
-    every = EVERY_FOR_RELEASE if request.config.getoption("--release") else EVERY
+    release = request.config.getoption("--release")
+    every = EVERY_FOR_RELEASE if release else EVERY
+    standing = STANDING_FOR_RELEASE if release else STANDING
 
     def moments(scenario, times, ways, while_stopped):
         if os.environ.get("EVERY_CRASH"):
@@ -89,7 +96,9 @@ def moments(request):
         first = list(SCENARIOS).index(scenario)
         stopped = [at for at in times if scenario in STOPS and at in while_stopped]
         driven = [at for at in times if at not in stopped]
-        some = sorted(stopped + driven[first % every :: every])
+        coming, going = stopped[:COME_TO_STAND], stopped[COME_TO_STAND:][-STILL_ALL:]
+        between = stopped[COME_TO_STAND:][:-STILL_ALL][first % standing :: standing]
+        some = sorted(coming + between + going + driven[first % every :: every])
         return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
 
     return moments

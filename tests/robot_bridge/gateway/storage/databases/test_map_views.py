@@ -109,13 +109,21 @@ def site(tmp_path_factory) -> Path:
     return folder
 
 
-@pytest.fixture
-def postgis(new_database, postgis_server):
-    """A PostgreSQL with PostGIS, rows and views, and the URL of its administrator."""
-    url = new_database("postgresql")
-    postgis_server.sql("create extension postgis", make_url(url).database)
+@pytest.fixture(scope="module")
+def model(new_database, postgis_server) -> str:
+    """The name of a database with PostGIS, rows and views, of which each test has a copy."""
+    url = new_database.another("postgresql")
+    name = make_url(url).database
+    postgis_server.sql("create extension postgis", name)
     run_once(url, fill)
     run_once(url, lambda connection: map_views_on(connection).make(FRAME))
+    return name
+
+
+@pytest.fixture
+def postgis(model, postgis_server):
+    """A PostgreSQL with PostGIS, rows and views, and the URL of its administrator."""
+    url = postgis_server.copied_database(model)
     return url, postgis_server.admin_url(url)
 
 
