@@ -30,7 +30,7 @@ STANDING, STANDING_FOR_RELEASE = 3, 1
 """Of how many moments one is played, while robots stand that were stopped."""
 COME_TO_STAND = 12
 """For how many moments each is played after robots were told to stop; all stand by then."""
-STILL_ALL = 6
+STILL_ALL = 10
 """For how many transactions each is played after robots were told to go on."""
 
 
