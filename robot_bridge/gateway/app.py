@@ -235,10 +235,8 @@ class Gateway:
             refusal = await self._gate.may_read(visitor, request)
             return refusal if refusal is not None else await self._queries.answer(request)
         if (document := served(path)) is not None:
-            response = visitor.respond(http.HTTPStatus.OK, document)
-            del response.headers["Content-Type"]
-            response.headers["Content-Type"] = "application/json"
-            return response
+            kind = ("Content-Type", "application/json")
+            return http_response(http.HTTPStatus.OK, document.encode(), [kind])
         if path not in ENDPOINTS:
             text = f"{path} is not served here; robots connect to /robot, operators to /desk, links to /link"
             return visitor.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
