@@ -88,9 +88,11 @@ class FleetPlugin:
         from .planning.plan_dock import PlansAction
         from .replay.replay_dock import ReplayAction
         from .tour.tour_panel import TourAction
-        from .ui.actions import MenuLetters, PluginMenu, Shortcuts
+        from .ui.actions import MenuLetters, PluginMenu, Shortcuts, keys_in
 
         main = iface.mainWindow()
+        # Before it has the plugin's own widgets, which are thousands.
+        taken = keys_in(main)
         # The first ones, so that they go last: everything else has left menu and project by then.
         self._add(PluginMenu(main, MENU))
         self._add(LiveLayers(project))
@@ -118,7 +120,7 @@ class FleetPlugin:
             self._add(part(*needs))
         others = [part.action for part in self._parts if hasattr(part, "action")]
         # The last ones, so that they go first: while every action is still there.
-        self._add(Shortcuts(main, [*window.actions.all(), *others]))
+        self._add(Shortcuts(main, [*window.actions.all(), *others], taken))
         for menu in ([*window.menu_entries(), *others], window.actions.for_drafts):
             # Letters may run out in a long menu: what has no key gets one first.
             self._add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))

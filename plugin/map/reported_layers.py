@@ -219,6 +219,9 @@ class RobotLayer(QObject):
         frame = frame_of(site)
         if self._layer is not None and frame == self._frame:
             return
+        if self._layer is not None and not sip.isdeleted(self._layer):
+            self._style = QgsMapLayerStyle()
+            self._style.readFromLayer(self._layer)
         self.remove()
         self._frame = frame
         was_dirty = self._project.isDirty()
@@ -291,7 +294,6 @@ class RobotLayer(QObject):
         layer, self._layer = self._layer, None
         self._forget()
         if not sip.isdeleted(layer):
-            self._keep_style(layer)
             layer.willBeDeleted.disconnect(self._gone)
             layer.selectionChanged.disconnect(self._selection_changed)
             self._project.removeMapLayer(layer.id())
@@ -339,10 +341,6 @@ class RobotLayer(QObject):
         self._layer.triggerRepaint(self._canvas.isDrawing())
         # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
         self._layer.dataChanged.emit()
-
-    def _keep_style(self, layer: QgsVectorLayer) -> None:
-        self._style = QgsMapLayerStyle()
-        self._style.readFromLayer(layer)
 
     def _selection_changed(self, selected: list[int]) -> None:
         if self._marking:

@@ -19,7 +19,7 @@ from ..gateway_client.command_cache import CommandCache, PathDeviations, command
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotStates, longest_word
 from ..gateway_client.robot_table import STATES
-from ..ui.glyphs import STATE_COLOURS, for_letters, state_icon
+from ..ui.glyphs import STATE_COLOURS, StateIcons, for_letters
 from ..ui.language import age_in_words, last_seen_in_words, tr
 from ..ui.tables import TO_THE_RIGHT
 
@@ -330,7 +330,7 @@ class RobotModel(QAbstractTableModel):
         self.which = RobotChoice.ALL
         self.text = ""
         self.troubled: set[str] = set()
-        self._icons = {state: state_icon(state) for state in STATES}
+        self._icons = StateIcons()
 
     def set_filter(self, text: str, which: RobotChoice) -> None:
         """Have only those robots listed, from the next renewal on, that ``text`` and ``which`` mean."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 from pathlib import Path
 
 from qgis.core import QgsSettings
@@ -456,10 +456,11 @@ class Shortcuts:
     has stays with that. The keys of the emergency stop are not in the list: nobody shall take them away.
     """
 
-    def __init__(self, window: QWidget, actions: Sequence[QAction]):
+    def __init__(self, window: QWidget, actions: Sequence[QAction], taken: Set[str]):
+        """``taken`` are the keys that :func:`keys_in` finds in ``window`` before the plugin is in it."""
         self._window, self._manager = window, QgsGui.shortcutsManager()
-        taken = _keys_in(window)
-        for action in actions:
+        self._actions = list(actions)
+        for action in self._actions:
             if action.objectName() not in KEPT:
                 key = KEYS.get(action.objectName(), "")
                 self._manager.registerAction(action, "" if key in taken else key)
@@ -470,12 +471,15 @@ class Shortcuts:
         QGIS lists actions of the window by itself when it starts, and does not notice that one is deleted:
         it would end abruptly when it looks through its list the next time.
         """
-        for action in self._window.findChildren(QAction):
+        # It lists the children of the window and not theirs.
+        listed = self._window.findChildren(QAction, options=Qt.FindChildOption.FindDirectChildrenOnly)
+        for action in (*self._actions, *listed):
             if action.objectName().startswith(OURS):
                 self._manager.unregisterAction(action)
+        self._actions = []
 
 
-def _keys_in(window: QWidget) -> set[str]:
+def keys_in(window: QWidget) -> set[str]:
     """Return the keys that something in ``window`` has."""
     # Both at once: PyQt makes an object for each child that it passes.
     having = window.findChildren((QAction, QShortcut))

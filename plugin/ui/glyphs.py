@@ -111,6 +111,14 @@ def state_icon(state: RobotState) -> QIcon:
     return QIcon(pixmap)
 
 
+class StateIcons(dict[RobotState, QIcon]):
+    """The icon of each state that is asked for, drawn once; to be asked in the thread of the window."""
+
+    def __missing__(self, state: RobotState) -> QIcon:
+        self[state] = state_icon(state)
+        return self[state]
+
+
 def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None:
     """Draw a robot that points along +x: full when fresh, hollow when stale, crossed out when lost, and a
     box when offline."""

@@ -83,7 +83,10 @@ def shrink_view(view: QAbstractItemView) -> None:
     font = view.font()
     font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
     view.setFont(font)
-    for header in view.findChildren(QHeaderView):
+    headers = [view.header()] if isinstance(view, QTreeView) else []
+    if isinstance(view, QTableView):
+        headers += [view.horizontalHeader(), view.verticalHeader()]
+    for header in headers:
         header.setFont(font)
 
 

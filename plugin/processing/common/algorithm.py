@@ -74,6 +74,8 @@ _AFTER_COMMA = re.compile(r"^(?P<label>.+?), (?P<note>.+?)(?P<unit> \[[^]]+\])?$
 
 def fit_label(parameter: QgsProcessingParameterDefinition) -> None:
     """Shorten the label of ``parameter`` where it is too long; what is left out begins its help."""
+    if len(parameter.description()) <= ROOM - OPTIONAL:  # nearly all: the rest is not asked for
+        return
     is_optional = bool(parameter.flags() & QgsProcessingParameterDefinition.Flag.FlagOptional)
     label, notes = shortened_label(parameter.description(), ROOM - OPTIONAL * is_optional)
     if notes:

@@ -373,7 +373,7 @@ def collect_again(operator, planner, iface, cones):
 def test_a_plan_into_a_keepout_is_sent_with_an_override_that_the_audit_log_keeps(
     loop, operator, planner, tmp_path
 ):
-    loop.start_robot("r1", (60.0, 42.0, 0.0), speed=4.0)
+    loop.start_robot("r1", (60.0, 42.0, 0.0), speed=8.0)
     operator.connect_to(loop, ["r1"])
     # In the sample site's water basin.
     planner.add_cones([(66.0, 32.0, "c1", 0)])
@@ -410,7 +410,7 @@ def test_no_cone_of_a_stage_is_begun_before_all_of_the_stage_before_are_placed(
 ):
     starts = {"r1": (24.0, 2.0, 0.0), "r2": (62.0, 2.0, 0.0)}
     for name, pose in starts.items():
-        loop.start_robot(name, pose, speed=4.0)
+        loop.start_robot(name, pose, speed=8.0)
     operator.connect_to(loop, list(starts))
     # The robot that is soon done with the first stage has the second one beside it.
     planner.add_cones([(42, 6, "long way", 1), (60, 6, "short way", 1), (65, 6, "next", 2)])

@@ -13,7 +13,9 @@ from xml.etree import ElementTree
 import msgspec
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from robot_bridge.__main__ import command_line
 from robot_bridge.reference_robot.localisation import experiment
 from robot_bridge.reference_robot.localisation.experiment import Carried, ExperimentSettings, Record
 from robot_bridge.reference_robot.localisation.experiment_report import csv_text, figures, table_text
@@ -177,8 +179,7 @@ def test_the_command_prints_the_table_and_writes_plots(root, tmp_path):
     ],
 )
 def test_what_cannot_be_driven_is_refused_by_name(root, words, said):
-    program = Path(sys.executable).with_name("robot-bridge")
-    words = ["experiment", *words, "--site", "resources/sample_site"]
-    done = subprocess.run([program, *words], cwd=root, capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert said in done.stderr
+    words = ["experiment", *words, "--site", str(root / "resources" / "sample_site")]
+    done = CliRunner().invoke(command_line(words), words)
+    assert done.exit_code == 1
+    assert said in str(done.exception)

@@ -48,7 +48,7 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_path": (FollowPath, lambda goal: goal.path.poses),
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
-TICK = 0.05
+TICK = 0.1
 LATE = 1.5
 """seconds in which a robot thinks about a goal, and a cancel that comes meanwhile finds none."""
 MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}

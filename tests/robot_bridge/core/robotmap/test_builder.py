@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import WindowError
@@ -203,7 +203,6 @@ def polygons(draw):
     return np.vstack([ring, ring[:1]])[:: draw(st.sampled_from([1, -1]))]
 
 
-@settings(max_examples=2 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(polygons(), min_size=1, max_size=4),
     coordinate,

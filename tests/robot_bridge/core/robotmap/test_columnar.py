@@ -11,7 +11,7 @@ import tracemalloc
 import cbor2
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import MapBinaryError, MissingCodecError, RobotMapError
@@ -275,7 +275,6 @@ def obstacles(draw):
     )
 
 
-@settings(max_examples=2 * settings.default.max_examples, deadline=None)
 @given(st.lists(obstacles(), max_size=5))
 def test_any_map_in_centimetres_comes_back(some):
     robot_map = a_map(*some, version="1")
@@ -402,7 +401,6 @@ SAMPLE = encode(
 SAMPLE_BODY = from_lzma(SAMPLE[48:], 100_000)
 
 
-@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(st.data())
 def test_no_altered_byte_of_the_columns_goes_unnoticed(data):
     body = bytearray(SAMPLE_BODY)
@@ -414,7 +412,6 @@ def test_no_altered_byte_of_the_columns_goes_unnoticed(data):
         assert decode_text(content) == decode_text(SAMPLE)
 
 
-@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(st.one_of(st.integers(-(2**64), 2**64 - 1), st.text(), st.binary()), min_size=22, max_size=22)
 )

@@ -7,7 +7,7 @@ import sys
 import numpy as np
 import pytest
 import shapely
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import MissingGeometryError, ShapingError
@@ -188,7 +188,6 @@ def test_lines_inside_and_along_a_building_go_and_the_rest_stays():
 boxes = st.tuples(*[st.integers(0, 12)] * 2, *[st.integers(1, 6)] * 2)
 
 
-@settings(max_examples=settings.default.max_examples, deadline=None)
 @given(st.lists(boxes, min_size=1, max_size=7))
 def test_dissolved_outlines_are_the_boundary_of_all_together(some):
     corners = [(x, y, x + w, y + h) for x, y, w, h in some]
@@ -206,7 +205,6 @@ corners = st.lists(st.tuples(coordinate, coordinate), min_size=3, max_size=14, u
 @example([(0.0, 0.0), (0.03, 0.0), (0.04, 0.0), (0.01, 0.01)], False, 0.03)
 # A ring whose first corner GEOS moves farther than it was told to.
 @example([(0.01, 0.02), (0.0, 0.03), (0.0, 0.0), (0.03, 0.0), (0.01, 0.01)], True, 0.02)
-@settings(max_examples=2 * settings.default.max_examples, deadline=None)
 @given(corners, st.booleans(), st.integers(1, 60).map(lambda n: n / 100))
 def test_a_simplified_outline_is_within_its_tolerance_and_never_crosses_itself(points, closed, tolerance):
     drawn = ring(points) if closed else row(points)

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.core.robotmap.builder import build_map
@@ -31,7 +31,6 @@ a_row = st.one_of(
 )
 
 
-@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(
     st.lists(a_row, max_size=12), st.lists(st.tuples(point, st.integers(2, 60_000)), min_size=1, max_size=3)
 )

@@ -201,6 +201,7 @@ def test_a_robot_that_will_not_stop_is_told_to_operators(desk, robot):
     assert "was not confirmed within 5 s" in reason(desk, f"stop-{name}")
 
 
+@pytest.mark.again("ros2/test_ros2_live.py, under the same name; of this wire test_rosbridge_goals.py")
 @pytest.mark.parametrize(
     ("odd", "words"), [("rejects", "rejected the goal"), ("fails", "a test asked for it (error 9003)")]
 )
@@ -218,6 +219,7 @@ def test_a_robot_without_actions_drives_to_what_is_published(desk, robot, nodes)
     assert events(nodes, name, "goal pose")[0]["points"] == [[25.0, 8.0]]
 
 
+@pytest.mark.again("ros2/test_ros2_live.py::test_what_is_wrong_with_one_robot_is_named_and_the_others_go_on")
 def test_positions_that_are_nan_are_named_and_the_others_go_on(desk, robot, adapter):
     name = robot("--odd", "nan", seen=False)
     wait_until(lambda: f"robot {name}: " in adapter.output() and "position.x is nan" in adapter.output(), 30)
@@ -225,6 +227,7 @@ def test_positions_that_are_nan_are_named_and_the_others_go_on(desk, robot, adap
     assert desk.robots[other]["state"] == "fresh" and name not in desk.robots
 
 
+@pytest.mark.again("ros2/test_ros2_live.py, under the same name; of this wire test_rosbridge_goals.py")
 def test_a_node_that_is_killed_and_started_anew_is_sent_again_what_is_open(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import ExportError
@@ -41,7 +41,6 @@ def text_of(obstacles) -> str:
 
 
 @pytest.mark.filterwarnings("error")
-@settings(max_examples=3 * settings.default.max_examples, deadline=None)
 @given(st.lists(obstacle, max_size=6))
 def test_any_map_is_exported_whole(obstacles):
     robot_map = read_text(text_of(obstacles))
