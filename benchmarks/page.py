@@ -59,6 +59,7 @@ BENCH = [
     "desk",
     "field_page",
     "appliance",
+    "cluster",
     "endurance",
 ]
 """What ``make bench`` measures: modules of benchmarks; each has ``measure(data)``."""

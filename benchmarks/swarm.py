@@ -108,7 +108,7 @@ class Onlooker:
         )
         self.pid = self._process.pid
 
-    def tell(self, **window: float) -> None:
+    def tell(self, **window: Any) -> None:
         """Tell of the next window."""
         assert self._process.stdin is not None
         self._process.stdin.write(json.dumps(window) + "\n")

@@ -33,8 +33,8 @@ from .api.site_queries import SiteQueries
 from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
+from .auth.authorisation import PATHS, AuthGate
 from .auth.client_connection import ClientConnection
-from .auth.gate import PATHS, AuthGate
 from .auth.port import ServerFiles, ServerTls, address_here, check_reach, host_fault, is_loopback, listen
 from .cluster.cluster import Cluster, ClusterSettings, join_cluster, lease_database
 from .cluster_relays import ClusterRelays

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.messages.administration import PROTOCOL_VERSION
-from ..core.messages.roads import MOST_OF_A_DESK, RouteReport, SurfaceAt
+from ..core.messages.roads import RouteReport, SurfaceAt
+from ..core.messages.validation import CRS_CODE, ROBOT_NAME
 from .json_schemas import Schema, definitions
 
 SURFACES, ROUTE = "/site/surfaces", "/site/route"
@@ -14,7 +15,11 @@ SITE_FRAME = "site"
 """What stands for ``crs`` where places are metres in the site frame."""
 DEGREES = "EPSG:4326"
 GEOJSON, PROBLEM = "application/geo+json", "application/problem+json"
-_PLACE = r"^\s*[-+0-9.eE]+\s*,\s*[-+0-9.eE]+\s*$"
+MOST_PLACES = 140
+"""points in an address, which may have 8 kB in all."""
+MOST_SURFACES = 20
+_NUMBER = r"[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]{1,2})?"
+PLACE = {"type": "string", "pattern": f"^{_NUMBER},{_NUMBER}$", "maxLength": 48}
 
 
 @dataclass(frozen=True)
@@ -37,7 +42,7 @@ class QueryParameter:
 
 CRS = QueryParameter(
     "crs",
-    {"type": "string", "default": DEGREES, "maxLength": 64},
+    {"type": "string", "default": DEGREES, "pattern": f"^({CRS_CODE.pattern}|{SITE_FRAME})$"},
     f"Coordinate reference system of the places, such as EPSG:32633; {SITE_FRAME} for metres in the site "
     "frame. x (longitude, easting) comes before y whatever the CRS.",
 )
@@ -47,23 +52,23 @@ PARAMETERS: dict[str, tuple[QueryParameter, ...]] = {
             "point",
             {
                 "type": "array",
-                "items": {"type": "string", "pattern": _PLACE},
+                "items": PLACE,
                 "minItems": 1,
-                "maxItems": MOST_OF_A_DESK,
+                "maxItems": MOST_PLACES,
             },
-            "A place as x,y. An address may have 8 kB, which holds some 200 places.",
+            "A place as x,y.",
             required=True,
         ),
         CRS,
     ),
     ROUTE: (
+        QueryParameter("start", PLACE, "Where the way begins, as x,y; or give robot."),
         QueryParameter(
-            "start", {"type": "string", "pattern": _PLACE}, "Where the way begins, as x,y; or give robot."
+            "robot",
+            {"type": "string", "pattern": f"^{ROBOT_NAME.pattern}$"},
+            "Whose way it is, from where that robot is now.",
         ),
-        QueryParameter("robot", {"type": "string"}, "Whose way it is, from where that robot is now."),
-        QueryParameter(
-            "goal", {"type": "string", "pattern": _PLACE}, "Where the way ends, as x,y.", required=True
-        ),
+        QueryParameter("goal", PLACE, "Where the way ends, as x,y.", required=True),
         CRS,
         QueryParameter(
             "fastest", {"type": "boolean", "default": False}, "The fastest way in place of the shortest."
@@ -71,7 +76,7 @@ PARAMETERS: dict[str, tuple[QueryParameter, ...]] = {
         QueryParameter("least_width", {"type": "number", "default": 0}, "Metres that a road has at least."),
         QueryParameter(
             "surface",
-            {"type": "array", "items": {"type": "string"}},
+            {"type": "array", "items": {"type": "string", "maxLength": 64}, "maxItems": MOST_SURFACES},
             "A class of road surface that may be used, such as asphalt; all where none is named.",
         ),
         QueryParameter(

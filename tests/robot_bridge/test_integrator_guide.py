@@ -16,7 +16,7 @@ from websockets.frames import CloseCode
 from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
 from robot_bridge.core.messages.robots import ANSWERS, PAYLOADS, REQUESTS
 from robot_bridge.gateway.api.robot_session import REPLACED
-from robot_bridge.gateway.auth.gate import REVOKED
+from robot_bridge.gateway.auth.authorisation import REVOKED
 from robot_bridge.protocol import jsonrpc
 from robot_bridge.protocol.asyncapi import documents
 from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_request

@@ -65,7 +65,7 @@ Ranges = Mapping[str, tuple[float, float]]
 Texts = Mapping[str, int]
 """The most characters of texts, by the name of the parameter."""
 
-_CRS = re.compile(r"EPSG:\d{4,6}")
+CRS_CODE = re.compile(r"EPSG:[0-9]{4,6}")
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 LARGEST_NUMBER = 2**63 - 1
 """What an integer column of a database holds."""
@@ -117,7 +117,7 @@ def check_robot_name(name: str) -> str:
 
 def check_crs(crs: str | None) -> None:
     """Refuse what is no code of a CRS; raises MessageError. None is the site frame."""
-    if crs is not None and _CRS.fullmatch(crs) is None:
+    if crs is not None and CRS_CODE.fullmatch(crs) is None:
         raise MessageError(f"crs is {crs[:40]!r}; give a code such as 'EPSG:4326', or none: the site frame")
 
 

@@ -38,8 +38,8 @@ from ...core.messages.safety import EmergencyStop
 from ...core.messages.validation import MessageError
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
+from ..auth.authorisation import AuthGate
 from ..auth.client_connection import ClientConnection
-from ..auth.gate import AuthGate
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..model.request_handlers import Answering

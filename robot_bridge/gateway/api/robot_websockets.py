@@ -33,8 +33,8 @@ from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, error_code
 from ..auth.accounts import speaks_for
+from ..auth.authorisation import ANY_LINK, AuthGate
 from ..auth.client_connection import ClientConnection
-from ..auth.gate import ANY_LINK, AuthGate
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
 from ..model.events import RobotLeft

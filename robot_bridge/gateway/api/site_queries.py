@@ -17,7 +17,16 @@ from ...core.errors import CrsError, RefusedError
 from ...core.messages.validation import MessageError
 from ...core.sites.transforms import lonlat_of
 from ...protocol.codec import decode_desk_request
-from ...protocol.openapi import DEGREES, GEOJSON, PARAMETERS, PROBLEM, ROUTE, SITE_FRAME, QueryParameter
+from ...protocol.openapi import (
+    DEGREES,
+    GEOJSON,
+    PARAMETERS,
+    PLACE,
+    PROBLEM,
+    ROUTE,
+    SITE_FRAME,
+    QueryParameter,
+)
 from ..auth.port import http_response
 from ..model.request_handlers import RequestHandlers
 from ..site.site_maps import SiteMaps
@@ -96,8 +105,12 @@ class SiteQueries:
         """
         pairs = [(x, y) for x, y in places]
         here = pairs if crs is None else self._maps.to_site(pairs, crs)
-        degrees: Places = lonlat_of(self._maps.site.frame)(np.array(here)).round(DIGITS).tolist()
-        return degrees
+        degrees = lonlat_of(self._maps.site.frame)(np.array(here))
+        if not np.isfinite(degrees).all():
+            raise RefusedError("a place lies nowhere on the earth; give places of this site")
+        # Without the sign of a zero.
+        found: Places = (degrees.round(DIGITS) + 0.0).tolist()
+        return found
 
 
 def read_query(text: str, parameters: Sequence[QueryParameter]) -> dict[str, Any]:
@@ -117,6 +130,8 @@ def read_query(text: str, parameters: Sequence[QueryParameter]) -> dict[str, Any
         key = _NAMES.get(name, name)
         if one.is_repeated:
             found.setdefault(key, []).append(_value(name, value, one.schema["items"]))
+            if len(found[key]) > (most := one.schema["maxItems"]):
+                raise MessageError(f"{name} is there more than {most} times; ask in parts")
         elif key in found:
             raise MessageError(f"{name} is there twice; give it once")
         else:
@@ -137,7 +152,10 @@ def _value(name: str, text: str, schema: Mapping[str, Any]) -> Any:
         return text == "true"
     if schema["type"] == "number":
         return _numbers(name, text, 1)[0]
-    return _numbers(name, text, 2) if "pattern" in schema else text
+    longest = schema.get("maxLength")
+    if longest is not None and len(text) > longest:
+        raise MessageError(f"{name} has {len(text)} characters; at most {longest} are taken")
+    return _numbers(name, text, 2) if schema is PLACE else text
 
 
 def _numbers(name: str, text: str, count: int) -> list[float]:

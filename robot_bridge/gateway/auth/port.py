@@ -29,8 +29,8 @@ from ...core.logs import log_unforeseen
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol.credentials import AccessError
 from .accounts import chosen_protocol
+from .authorisation import AuthGate
 from .client_connection import ClientConnection
-from .gate import AuthGate
 
 log = logging.getLogger(__name__)
 

@@ -98,6 +98,15 @@ def test_a_way_is_the_one_that_a_desk_is_shown_and_gdal_opens_it(ask, bridge, fr
     [
         (SURFACES, "", 400, "point is missing"),
         (SURFACES, "point=1,2,3", 400, "point is '1,2,3'; give x,y"),
+        (SURFACES, "point=1,2&" * 141, 400, "point is there more than 140 times; ask in parts"),
+        (SURFACES, f"point=1,2.{'0' * 50}", 400, "point has 54 characters; at most 48 are taken"),
+        (SURFACES, "point=.7e89,2&crs=site", 422, "a place lies nowhere on the earth"),
+        (
+            ROUTE,
+            "start=20,8&goal=30,8&crs=site&" + "surface=mud&" * 21,
+            400,
+            "surface is there more than 20 times",
+        ),
         (SURFACES, "point=nan,2&crs=site", 400, "give a finite number"),
         (SURFACES, "point=1,2&points=3,4", 400, "unknown parameter 'points'; known are point, crs"),
         (SURFACES, "point=1,2&crs=EPSG:1", 400, "crs is 'EPSG:1'"),

@@ -280,7 +280,7 @@ async def test_a_lost_robot_that_places_its_cone_all_the_same_has_the_proposal_r
     await drive.plans.replan(Replan("plan-1", (await drive.seen()).revision), "Bob")
     await drive.planned()
     await drive.drive_on(robots=["r2"], times=2)
-    with pytest.raises(RefusedError, match="placed since .*replan"):
+    with pytest.raises(RefusedError, match=r"placed since .*replan"):
         await drive.plans.confirm(ConfirmReplan("plan-1", (await drive.seen()).revision), "Bob")
     await drive.plans.replan(Replan("plan-1", (await drive.seen()).revision), "Bob")
     await drive.planned()

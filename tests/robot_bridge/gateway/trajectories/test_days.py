@@ -19,7 +19,7 @@ from robot_bridge.core.sites.settings_tables import LimitSettings, TrajectorySet
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
 from robot_bridge.gateway.api.site_queries import SiteQueries
-from robot_bridge.gateway.auth.gate import AuthGate
+from robot_bridge.gateway.auth.authorisation import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
