@@ -97,6 +97,14 @@ def polygon_wkb(rings: Sequence[bytes]) -> bytes:
     return b"".join(pieces)
 
 
+def polygon_heads(lengths: np.ndarray) -> list[bytes]:
+    """Return what comes before the points of polygons of one ring each, which has so many points."""
+    heads = np.empty(len(lengths), [("order", "u1"), ("kind", "<u4"), ("rings", "<u4"), ("points", "<u4")])
+    heads["order"], heads["kind"], heads["rings"], heads["points"] = 1, _POLYGON, 1, lengths
+    data, size = heads.tobytes(), heads.itemsize
+    return [data[at : at + size] for at in range(0, len(data), size)]
+
+
 # --- The polygons and lines of a QGIS geometry as plain arrays ---
 
 FARTHEST_M = 1e8

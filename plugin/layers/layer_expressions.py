@@ -6,6 +6,7 @@ import math
 import re
 import sys
 from collections.abc import Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from qgis.core import (
@@ -59,14 +60,11 @@ class TaggedFields:
                 field.setName(key)
                 self.fields.append(field)
 
-    def feature(self, feature: QgsFeature) -> QgsFeature:
-        """Return ``feature`` with its tags as attributes, where it has no values of its own.
-
-        The feature itself where the layer has no tags.
-        """
+    def values(self, feature: QgsFeature) -> list[Any]:
+        """Return the attributes of ``feature``, with its tags where it has no values of its own."""
+        values: list[Any] = feature.attributes()
         if not self._sources:
-            return feature
-        values = feature.attributes()
+            return values
         tags: dict[str, str] = {}
         for source in self._sources:
             tags.update(read_tags(values[source]))
@@ -74,8 +72,17 @@ class TaggedFields:
         for key, at in self._places.items():
             if values[at] is None or values[at] == NULL:
                 values[at] = tags.get(key)
+        return values
+
+    def feature(self, feature: QgsFeature, values: list[Any] | None = None) -> QgsFeature:
+        """Return ``feature`` with ``values``, or what :meth:`values` says, as its attributes.
+
+        The feature itself where the layer has no tags.
+        """
+        if not self._sources:
+            return feature
         tagged = QgsFeature(self.fields, feature.id())
-        tagged.setAttributes(values)
+        tagged.setAttributes(self.values(feature) if values is None else values)
         tagged.setGeometry(feature.geometry())
         return tagged
 
@@ -114,6 +121,66 @@ _FEET = re.compile(rf"""\s*(?:{_NUMBER}\s*(?:'|ft|feet))?\s*(?:{_NUMBER}\s*(?:"|
 FOOT_M, INCH_M = 0.3048, 0.0254
 
 
+_PURE = frozenset(
+    (
+        "abs", "ceil", "coalesce", "concat", "floor", "if", "left", "length", "lower", "max", "min", "nullif",
+        "regexp_match", "regexp_replace", "regexp_substr", "replace", "right", "round", "sqrt", "strpos",
+        "substr", "title", "to_int", "to_real", "to_string", "trim", "upper",
+    )
+)  # fmt: skip
+"""Functions that say the same of the same arguments, wherever and whenever they are asked."""
+_MOST_KNOWN = 10_000
+"""Values of one expression that are remembered: a city says few different things many times."""
+
+
+class Rule:
+    """An ``expression`` about ``fields``, prepared.
+
+    Where it is about nothing but fields, what it says of their values is remembered: to evaluate one takes
+    longer than all else that is done of most features.
+    """
+
+    def __init__(self, expression: QgsExpression, fields: QgsFields) -> None:
+        self.expression = expression
+        self._known: dict[Any, Any] = {}
+        columns = expression.referencedColumns()
+        self._places = sorted(fields.lookupField(name) for name in columns)
+        self.is_pure = (
+            bool(columns)
+            and QgsFeatureRequest.ALL_ATTRIBUTES not in columns
+            and min(self._places) >= 0
+            and not expression.needsGeometry()
+            and not expression.referencedVariables()
+            and expression.referencedFunctions() <= _PURE
+        )
+        """Whether it is about fields alone."""
+        self._chosen = itemgetter(*self._places) if self.is_pure else None
+
+    def known(self, attributes: list[Any]) -> tuple[Any, Any]:
+        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        if self._chosen is None:
+            return UNKNOWN, None
+        try:
+            chosen = self._chosen(attributes)
+            # 1, 1.0 and true are equal, and text of them is not.
+            key = (chosen, type(chosen)) if len(self._places) == 1 else (chosen, *map(type, chosen))
+            return self._known.get(key, UNKNOWN), key
+        except (IndexError, TypeError):
+            # Fewer values than fields, or lists.
+            return UNKNOWN, None
+
+    def keep(self, key: Any, value: Any) -> None:
+        """Remember ``value``; not by a key with a nought, which may be less than nought in text."""
+        if key is None or 0 in (key[:1] if len(self._places) == 1 else key[0]):
+            return
+        if len(self._known) >= _MOST_KNOWN:
+            self._known.clear()
+        self._known[key] = value
+
+
+UNKNOWN = object()
+
+
 class LayerRules:
     """Prepares and evaluates the expressions of ``layer``; ``warnings`` are about the layer as a whole."""
 
@@ -123,9 +190,11 @@ class LayerRules:
         self._fields = self._tagged.fields
         self._context = QgsExpressionContext(context)
         self._context.setFields(self._fields)
+        self._feature, self._is_set = QgsFeature(), True
+        self._values: list[Any] | None = None
         self.warnings: list[str] = []
 
-    def rule(self, what: str, text: str) -> QgsExpression | None:
+    def rule(self, what: str, text: str) -> Rule | None:
         """Return the prepared expression, None for an empty one or one about fields the layer lacks.
 
         :raises ExpressionError: when ``text`` is no expression.
@@ -147,9 +216,9 @@ class LayerRules:
             )
             return None
         expression.prepare(self._context)
-        return expression
+        return Rule(expression, self._fields)
 
-    def needed_rule(self, what: str, text: str) -> QgsExpression | None:
+    def needed_rule(self, what: str, text: str) -> Rule | None:
         """Return the prepared expression, None for an empty one.
 
         :raises ExpressionError: when ``text`` is no expression, or is about fields that the layer lacks.
@@ -171,42 +240,54 @@ class LayerRules:
                 )
             )
         expression.prepare(self._context)
-        return expression
+        return Rule(expression, self._fields)
 
     def at(self, feature: QgsFeature) -> None:
         """Let :meth:`value` speak of ``feature`` from now on."""
-        self._context.setFeature(self._tagged.feature(feature))
+        self._feature, self._values, self._is_set = feature, None, False
 
     def value(
         self,
         what: str,
-        expression: QgsExpression | None,
+        rule: Rule | None,
         notes: list[str],
         otherwise: str = DEFAULT_IS_USED,
     ) -> Any:
-        """Return what ``expression`` says of the feature, None for nothing; a failure becomes a note."""
-        if expression is None:
+        """Return what ``rule`` says of the feature, None for nothing; a failure becomes a note."""
+        if rule is None:
             return None
-        value = expression.evaluate(self._context)
-        if expression.hasEvalError():
+        key = None
+        if rule.is_pure:
+            if self._values is None:
+                self._values = self._tagged.values(self._feature)
+            known, key = rule.known(self._values)
+            if known is not UNKNOWN:
+                return known
+        if not self._is_set:
+            self._context.setFeature(self._tagged.feature(self._feature, self._values))
+            self._is_set = True
+        value = rule.expression.evaluate(self._context)
+        if rule.expression.hasEvalError():
             notes.append(
                 tr(
                     "the {what} expression fails: {error}; {otherwise}",
                     what=what,
-                    error=expression.evalErrorString(),
+                    error=rule.expression.evalErrorString(),
                     otherwise=otherwise,
                 )
             )
             return None
         # Numbers and texts first: to compare them with NULL takes longer than to evaluate most expressions.
-        return None if value is None or (not isinstance(value, _PLAIN) and value == NULL) else value
+        value = None if value is None or (not isinstance(value, _PLAIN) and value == NULL) else value
+        rule.keep(key, value)
+        return value
 
-    def metres(self, what: str, expression: QgsExpression | None, notes: list[str]) -> float | None:
-        """Return the metres above 0 that ``expression`` says of the feature, None where it says none.
+    def metres(self, what: str, rule: Rule | None, notes: list[str]) -> float | None:
+        """Return the metres above 0 that ``rule`` says of the feature, None where it says none.
 
         What is no such number becomes a note.
         """
-        value = self.value(what, expression, notes)
+        value = self.value(what, rule, notes)
         if value is None or value == "":
             return None
         metres = as_metres(value)
@@ -394,7 +475,7 @@ class FeatureValues:
             notes=notes,
         )
 
-    def _height_of(self, what: str, rule: QgsExpression | None, notes: list[str]) -> float | None:
+    def _height_of(self, what: str, rule: Rule | None, notes: list[str]) -> float | None:
         otherwise = self._no_height if rule is self._height else self._default_is_used
         value = self._rules.value(what, rule, notes, otherwise=otherwise)
         if value is None or value == "":

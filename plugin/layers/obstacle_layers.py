@@ -57,14 +57,14 @@ class PointObstacles:
 
         ``rotation`` turns it clockwise, so that a heading turns what faces north to face there.
         """
-        places = np.array([(point.x(), point.y()) for point in points.vertices()]).reshape(-1, 2)
-        if not np.isfinite(places).all():
+        places = [(point.x(), point.y()) for point in points.vertices()]
+        if not all(map(math.isfinite, chain.from_iterable(places))):
             return FeatureShapes([], [NO_PLACE])
         self._rules.at(feature)
         notes: list[str] = []
         made = self._named(notes) or self._round(notes)
         turned = -math.radians(self._degrees(notes))
-        rings = [made.at(x, y, turned) for x, y in places.tolist()]
+        rings = [made.at(x, y, turned) for x, y in places]
         return FeatureShapes([FeatureShape(ring, ShapeType.CLOSED_POLYGON) for ring in rings], notes)
 
     def _named(self, notes: list[str]) -> Template | None:
@@ -511,6 +511,8 @@ class _LayerReader:
     def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
         """Return the shapes of ``points``; nothing where none of them reaches into the window."""
         posts = self._posts.of(feature, points)
+        if self._window is None:
+            return posts
         reaching = any(self._reaches_in(self._placing.to_site(post.points)) for post in posts.shapes)
         return posts if reaching or not posts.shapes else FeatureShapes([], [])
 

@@ -9,7 +9,7 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from qgis.core import QgsAbstractGeometry, QgsExpression, QgsFeature, QgsFeedback, QgsGeometry, QgsPointXY
+from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry, QgsPointXY
 
 from ...robot_bridge.core.roads.centrelines import (
     BACKWARD,
@@ -33,7 +33,7 @@ from .geometry import (
     rings_of,
     shapes_of,
 )
-from .layer_expressions import FeatureFilter, LayerRules, as_flag, as_metres
+from .layer_expressions import FeatureFilter, LayerRules, Rule, as_flag, as_metres
 from .layer_source import FeatureReader, FeatureWarnings, ObstacleSource, SomeFeatures
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_transform import LayerToSiteTransform, SiteGeoreference
@@ -129,12 +129,12 @@ class RoadRules:
             level=self._level_of(notes),
         )
 
-    def _rule(self, what: str, given: str, *fields: str) -> QgsExpression | None:
+    def _rule(self, what: str, given: str, *fields: str) -> Rule | None:
         if given.strip():
             return self._rules.needed_rule(what, given)
         return self._rules.rule(what, self._rules.column(*fields))
 
-    def _direction_rule(self, given: str) -> QgsExpression | None:
+    def _direction_rule(self, given: str) -> Rule | None:
         if given.strip():
             return self._rules.needed_rule("direction", given)
         column = self._rules.own_column(*DIRECTION_FIELDS) or self._rules.column(*DIRECTION_TAGS)
@@ -147,7 +147,7 @@ class RoadRules:
             )
         return self._rules.rule("direction", column)
 
-    def _value(self, what: str, rule: QgsExpression | None, notes: list[str]) -> Any:
+    def _value(self, what: str, rule: Rule | None, notes: list[str]) -> Any:
         value = self._rules.value(what, rule, notes)
         return None if value is None or str(value).strip() == "" else value
 

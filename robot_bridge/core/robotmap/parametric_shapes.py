@@ -74,7 +74,7 @@ class Template:
 
         Raises ShapingError for what is not finite.
         """
-        if not np.isfinite([x, y, turned]).all():
+        if not all(map(math.isfinite, (x, y, turned))):
             raise ShapingError("a template needs a finite place and a finite angle; correct them")
         cos, sin = math.cos(turned), math.sin(turned)
         points: NDArray[Any] = np.array([x, y]) + self.ring @ np.array([[cos, sin], [-sin, cos]])

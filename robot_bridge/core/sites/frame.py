@@ -78,19 +78,16 @@ class SiteFrame:
         # Column by column: numpy takes five times as long to add a pair to each row.
         points[:, 0] -= self.origin[0]
         points[:, 1] -= self.origin[1]
-        return self._turned(points, self.axes().T)
+        # Most sites are not turned at all.
+        return points @ self.axes().T if self.rotation else points
 
     def to_crs(self, xy: Any) -> Points:
         """Return ``xy``, an (n, 2) array of metres in the site frame, as (n, 2) float64 CRS metres."""
-        points = self._turned(_points(xy).copy(), self.axes())
+        points = _points(xy)
+        points = points @ self.axes() if self.rotation else points.copy()
         points[:, 0] += self.origin[0]
         points[:, 1] += self.origin[1]
         return points
-
-    def _turned(self, points: Points, axes: Points) -> Points:
-        """Return ``points`` along ``axes``; most sites are not turned at all."""
-        turned: Points = points @ axes if self.rotation else points
-        return turned
 
     def theta_to_site(self, theta: float) -> float:
         """Return an angle counter-clockwise from the CRS's x axis, in radians, as a site theta in (-π, π]."""

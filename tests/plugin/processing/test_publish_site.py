@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import base64
 import json
+import sqlite3
+from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +20,7 @@ from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text, w
 from fleet_supervisor.robot_bridge.core.sites.site import read_site
 from qgis.core import (
     QgsExpressionContext,
+    QgsFeature,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProject,
@@ -156,6 +159,21 @@ def test_a_site_without_obstacles_has_a_layer_that_can_be_given_as_obstacles(pub
     layer = QgsVectorLayer(f"{publish(**yard).folder}/site.gpkg|layername=obstacles", "obstacles", "ogr")
     assert (layer.featureCount(), layer.crs().authid()) == (0, "EPSG:32633")
     obstacle_sources([layer], LayerExpressions(), QgsExpressionContext())
+
+
+def test_a_published_layer_and_its_index_are_changed_together(publish, yard, make_layer):
+    yard["OBSTACLES"] = [make_layer("house", "Polygon", features=[(RING, 9.5), (AREA, 3.0)])]
+    folder = publish(**yard).folder
+    layer = QgsVectorLayer(f"{folder}/site.gpkg|layername=obstacles", "obstacles", "ogr")
+    assert layer.dataProvider().deleteFeatures([1])
+    again = QgsFeature(layer.fields())
+    again.setGeometry(layer.getFeature(2).geometry())
+    assert layer.dataProvider().addFeatures([again])[0]
+    assert layer.featureCount() == 2
+    with closing(sqlite3.connect(f"{folder}/site.gpkg")) as database:
+        boxes = database.execute("SELECT id, minx, maxy FROM rtree_obstacles_geom ORDER BY id").fetchall()
+    box = layer.getFeature(2).geometry().boundingBox()
+    assert boxes == [(id, pytest.approx(box.xMinimum()), pytest.approx(box.yMaximum())) for id in (2, 3)]
 
 
 def test_layers_come_from_the_project_by_their_roles(publish, make_layer):
