@@ -35,7 +35,16 @@ from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.authorisation import PATHS, AuthGate
 from .auth.client_connection import ClientConnection
-from .auth.port import ServerFiles, ServerTls, address_here, check_reach, host_fault, is_loopback, listen
+from .auth.port import (
+    ServerFiles,
+    ServerTls,
+    address_here,
+    check_reach,
+    host_fault,
+    http_response,
+    is_loopback,
+    listen,
+)
 from .cluster.cluster import Cluster, ClusterSettings, join_cluster, lease_database
 from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
