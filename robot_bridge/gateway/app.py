@@ -244,8 +244,8 @@ class Gateway:
             refusal = await self._gate.may_read(visitor, request)
             return refusal if refusal is not None else await self._queries.answer(request)
         if (document := served(path)) is not None:
-            kind = ("Content-Type", "application/json")
-            return http_response(http.HTTPStatus.OK, document.encode(), [kind])
+            header = ("Content-Type", "application/json")
+            return http_response(http.HTTPStatus.OK, document.encode(), [header])
         if path not in ENDPOINTS:
             text = f"{path} is not served here; robots connect to /robot, operators to /desk, links to /link"
             return visitor.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
