@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import logging
-from collections.abc import Callable, Coroutine, Iterable, Sequence
+from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import Connection
@@ -253,21 +253,38 @@ class CommandService(CommandReader):
                 return
 
     async def save_progress(self) -> None:
-        """Store kept Aborts, how far robots have come along their paths, and late acknowledgements."""
+        """Store kept Aborts, how far robots have come along their paths, and late acknowledgements.
+
+        A robot that another gateway has by now keeps no other one's from being stored. Raises StoreError.
+        """
         await self.look_up()
         for robot in self._unstored.robots():
-            await to_its_end(self._issue_unstored(robot))
+            with contextlib.suppress(FencedError):
+                await to_its_end(self._issue_unstored(robot))
         for robot, sa_id in list(self._late):
             # One that is refused, or goes wrong otherwise, is forgotten: the others have their turn.
             what = f"a late acknowledgement of robot {robot!r}"
-            with log_and_continue(log, what, except_for=StoreError), contextlib.suppress(DataRefusedError):
+            refused = contextlib.suppress(DataRefusedError, FencedError)
+            with log_and_continue(log, what, except_for=StoreError), refused:
                 await self.acknowledged(robot, OpAck(id=sa_id))
             self._late.discard((robot, sa_id))
         driven = self._open.progress(DRIVEN_STEP)
         if driven:
-            driving = [name for command in driven if (name := self.robot_of(command)) is not None]
-            await self._held.run(driving, write_driven, driven)
-            self._open.note_progress(driven)
+            await self._save_driven(driven)
+
+    async def _save_driven(self, driven: Mapping[str, float]) -> None:
+        """Store metres driven by command; of robots that are another gateway's nothing."""
+        by_robot: dict[str, dict[str, float]] = {}
+        for command, metres in driven.items():
+            if (robot := self.robot_of(command)) is not None:
+                by_robot.setdefault(robot, {})[command] = metres
+        try:
+            await self._held.run(by_robot, write_driven, driven)
+        except FencedError:
+            for robot, theirs in by_robot.items():
+                with contextlib.suppress(FencedError):
+                    await self._held.run([robot], write_driven, theirs)
+        self._open.note_progress(driven)
 
     # --- what has to be done to its end, with the robots' locks held --------------------------------------
 
