@@ -32,7 +32,8 @@ STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
 """Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
 MOST_WAITING = 256
 """messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
-RETRY_S = 1.0
+RETRY_S, NATS_RETRY_S = 1.0, 0.25
+"""seconds from one attempt to connect to the next."""
 
 
 def own_subject(gateway: str) -> str:
@@ -216,7 +217,8 @@ class NatsBus:
         self._password = password
         self._client: Any = None
         self._outgoing = OutgoingMessages()
-        self._said = ""
+        self._said = set[str]()
+        """why there is no connection, since there was one."""
 
     @property
     def connected(self) -> bool:
@@ -284,7 +286,7 @@ class NatsBus:
                     with contextlib.suppress(Exception):
                         async with asyncio.timeout(FLUSH_S):
                             await client.close()
-            await asyncio.sleep(RETRY_S)
+            await asyncio.sleep(NATS_RETRY_S)
 
     async def _serve(self, receive: Receive) -> None:
         lost = asyncio.Event()
@@ -311,7 +313,7 @@ class NatsBus:
         for subject in self._subjects:
             # Each has a queue of its own: no stop waits behind positions.
             await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-        self._said = ""
+        self._said.clear()
         sending = asyncio.create_task(self._send(client))
         losing = asyncio.create_task(lost.wait())
         try:
@@ -366,9 +368,9 @@ class NatsBus:
         return ",".join(server.rpartition("@")[2].removeprefix("nats://") for server in self._servers)
 
     def _say(self, reason: str) -> None:
-        if reason != self._said:
+        if reason not in self._said:
             log.warning("bus %s: %s; connecting again until it works", self._where, reason)
-        self._said = reason
+        self._said.add(reason)
 
 
 def check_version(where: str, version: Any) -> None:

@@ -54,13 +54,15 @@ class PositionRelay:
 
     def send_changes(self) -> None:
         """Tell what changed since the last time, and everything once in a while."""
+        if not self._exchange.connected:
+            # Nobody heard of what was told last: once the bus is back, all is told at once.
+            self._told_all_at = -math.inf
+            return
         now = self._membership.database_time()
         everything = now - self._told_all_at >= IDLE_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
             self._told_all_at = now
-        if not self._exchange.connected:
-            return
         mine = [robot for robot in self._robots.changed(since) if robot.gateway is None]
         for begin in range(0, len(mine), self._most):
             some = mine[begin : begin + self._most]
