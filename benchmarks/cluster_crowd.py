@@ -22,7 +22,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMes
 
 from benchmarks.appliance_crowd import PLACES, Sayings
 
-ARRIVED_WITHIN, HEARD_WITHIN = 120.0, 60.0
+ARRIVED_WITHIN, HEARD_WITHIN = 120.0, 30.0
 """seconds until all robots have their maps, and until what is waited for is given up."""
 ROW, APART = 35, 5.5
 """robots in a row, and metres between them: the sample site holds a thousand."""

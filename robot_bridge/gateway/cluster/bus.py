@@ -20,6 +20,7 @@ from urllib.parse import urlsplit
 from sqlalchemy import URL, create_engine
 
 from ...core.errors import BridgeError
+from ...core.logs import log_unforeseen
 
 if TYPE_CHECKING:
     from psycopg import AsyncConnection
@@ -34,6 +35,8 @@ MOST_WAITING = 256
 """messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
 RETRY_S, NATS_RETRY_S = 1.0, 0.25
 """seconds from one attempt to connect to the next."""
+CONNECTED_LOOK_S = 0.2
+"""seconds after which a connection is looked at that did not say that it was lost."""
 
 
 def own_subject(gateway: str) -> str:
@@ -279,6 +282,9 @@ class NatsBus:
                 await self._serve(receive)
             except (self._nats.errors.Error, OSError, TimeoutError, BridgeError) as error:
                 self._say(str(error) or "no server answers")
+            except Exception:
+                # Whatever the library stumbles over: the bus is there again a moment later.
+                log_unforeseen(log, f"bus {self._where}")
             finally:
                 self._outgoing.clear()
                 client, self._client = self._client, None
@@ -315,7 +321,7 @@ class NatsBus:
             await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
         self._said.clear()
         sending = asyncio.create_task(self._send(client))
-        losing = asyncio.create_task(lost.wait())
+        losing = asyncio.create_task(_disconnection(client, lost))
         try:
             await asyncio.wait({sending, losing}, return_when=asyncio.FIRST_COMPLETED)
             if sending.done():
@@ -371,6 +377,17 @@ class NatsBus:
         if reason not in self._said:
             log.warning("bus %s: %s; connecting again until it works", self._where, reason)
         self._said.add(reason)
+
+
+async def _disconnection(client: Any, lost: asyncio.Event) -> None:
+    """Wait until ``client`` has lost its server, which it says by ``lost``.
+
+    It may not: a task of its own that fails as it closes the connection ends without a word.
+    """
+    while client.is_connected and not lost.is_set():
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(CONNECTED_LOOK_S):
+                await lost.wait()
 
 
 def check_version(where: str, version: Any) -> None:

@@ -187,6 +187,33 @@ async def test_what_is_said_while_the_server_is_away_is_not_sent_when_it_is_back
     await asyncio.gather(task, return_exceptions=True)
 
 
+@pytest.mark.parametrize("how", ["it says nothing of it", "what is sent fails"])
+async def test_a_client_that_fails_is_taken_for_lost_and_another_one_connects(nats, monkeypatch, how):
+    heard = []
+    bus = NatsBus([nats.url], "a", "test-lost")
+    running = asyncio.create_task(bus.run(lambda subject, content: heard.append(content)))
+    try:
+        await until(lambda: bus.connected)
+        first = bus._client
+
+        def fail(*_):
+            raise RuntimeError("the handler is closed")
+
+        if how == "it says nothing of it":
+            # As it is left where its own task fails as it closes the connection.
+            first._reading_task.cancel()
+            first._process_disconnect()
+        else:
+            monkeypatch.setattr(first, "publish", fail)
+            bus.publish(STOP, b"lost")
+        await until(lambda: bus.connected and bus._client is not first)
+        bus.publish(STOP, b"a stop")
+        await until(lambda: heard == [b"a stop"])
+    finally:
+        running.cancel()
+        await asyncio.gather(running, return_exceptions=True)
+
+
 async def test_a_server_that_is_not_there_is_named():
     with pytest.raises(BridgeError, match=r"^bus 127.0.0.1:1: .*check that NATS runs there"):
         await NatsBus(["nats://127.0.0.1:1"], "a", "fleet.f").check()
