@@ -26,6 +26,8 @@ ARRIVED_WITHIN, HEARD_WITHIN = 120.0, 30.0
 """seconds until all robots have their maps, and until what is waited for is given up."""
 ROW, APART = 35, 5.5
 """robots in a row, and metres between them: the sample site holds a thousand."""
+AGAIN_AFTER_S = 1.0
+"""seconds after which a robot whose Ready was refused says it again."""
 JITTER_S = 0.5
 """seconds within which a robot that lost its gateway goes to the next, at random."""
 GONE = (ConnectionClosed, InvalidHandshake, InvalidMessage, OSError, TimeoutError)
@@ -98,6 +100,10 @@ class Robot:
     async def _hear(self, socket: ClientConnection) -> None:
         async for text in socket:
             message = json.loads(text)
+            if message.get("id") == 1 and "error" in message:
+                # The database is away: it says Ready again until it is taken.
+                await asyncio.sleep(AGAIN_AFTER_S)
+                await socket.send(_call("Ready", {"magic": self.number + 1}, 1))
             if "method" not in message or "id" not in message:
                 continue
             self.heard.setdefault(message["id"], time.time())
