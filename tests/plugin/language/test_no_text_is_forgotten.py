@@ -42,7 +42,8 @@ EVERYWHERE = {
     r"^Fleet( Supervisor)?$": "a proper name",
     r"^\s*(Q\w+(#\w+)? \{)?[^{}]*\b(color|background|border|font-weight|padding):? ?[^{}]*;": "a style sheet",
     r"^ENGCRS\[": "a CRS in the words of its standard",
-    r"^(SELECT|INSERT( OR REPLACE)? INTO|UPDATE|PRAGMA|DROP TRIGGER) | SET data = | WHERE nodeno = | IS NULL( |$)": "SQL",
+    r"^(SELECT|INSERT( OR REPLACE)? INTO|UPDATE|PRAGMA|DROP TRIGGER) ": "SQL",
+    r" SET data = | WHERE nodeno = | IS NULL( |$)": "parts of SQL",
     r"<(svg|text|path|rect|span|img|p style)\b|^</b> &nbsp;<span": "markup without words of its own",
 }
 """What need not be translated in any file, as a pattern of the text, and why."""
