@@ -75,6 +75,8 @@ class Profile:
             "QGIS_CUSTOM_CONFIG_PATH": str(self._folder),
             "XDG_RUNTIME_DIR": str(self._folder / "run"),
             "PYTHONPATH": os.pathsep.join(paths),
+            # A QGIS that ends abruptly says what its Python was at.
+            "PYTHONFAULTHANDLER": "1",
         }
 
 

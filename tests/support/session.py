@@ -103,7 +103,8 @@ def follow(
         processes.require_running(but=("qgis", *killed))
         time.sleep(0.1)
     if ended != 0:
-        raise StageError(f"QGIS ended with status {ended}; its output: {processes.log('qgis')}")
+        output = processes.log("qgis").read_text(encoding="utf-8", errors="replace")
+        raise StageError(f"QGIS ended with status {ended}; its output ends:\n{output[-4000:]}")
 
 
 def _where_it_is(processes: Processes, qgis: subprocess.Popen[bytes], entries: Sequence[str]) -> str:
