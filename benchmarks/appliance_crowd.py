@@ -137,7 +137,7 @@ class Robot:
     async def arrive(cls, number: int, plan: Plan, context: ssl.SSLContext, sayings: Sayings) -> Robot:
         """Return a robot that has said Ready."""
         robot = cls(number, await _open(plan, f"/robot?robot=load-{number}", context), sayings)
-        await robot._socket.send(_call("Ready", {"magic": number + 1}, 1))
+        await robot._socket.send(rpc_call("Ready", {"magic": number + 1}, 1))
         return robot
 
     async def hear(self) -> None:
@@ -167,7 +167,7 @@ class Robot:
         theta, at = math.remainder(self._angle + math.pi / 2, 2 * math.pi), time.time()
         pose = {"x": place[0], "y": place[1], "theta": round(theta, 4), "v": speed, "t": at}
         self._sayings.note(self._name, place, at)
-        await self._socket.send(_call("SendPos", pose))
+        await self._socket.send(rpc_call("SendPos", pose))
 
 
 class Watcher:
@@ -192,8 +192,8 @@ class Watcher:
         """Return one that has asked for positions."""
         watcher = cls(await _open(plan, "/desk", context), sayings, watched)
         watcher.subscription = subscription
-        await watcher._socket.send(_call("hello", {"operator": "Ada"}, 1))
-        await watcher._socket.send(_call("subscribe", subscription, 2))
+        await watcher._socket.send(rpc_call("hello", {"operator": "Ada"}, 1))
+        await watcher._socket.send(rpc_call("subscribe", subscription, 2))
         return watcher
 
     async def look(self) -> None:
@@ -239,7 +239,7 @@ class Watcher:
         """
         number = next(self._ids)
         self._answers[number] = asyncio.get_running_loop().create_future()
-        await self._socket.send(_call(method, params, number))
+        await self._socket.send(rpc_call(method, params, number))
         return await self._answers[number]
 
     def _settle(self, message: dict[str, Any]) -> None:
@@ -353,7 +353,8 @@ class Crowd:
             robot.stands = False
 
 
-def _call(method: str, params: dict[str, Any], id: int | None = None) -> str:
+def rpc_call(method: str, params: dict[str, Any], id: int | None = None) -> str:
+    """Return a JSON-RPC call; a notification without ``id``."""
     message = {"jsonrpc": "2.0", "method": method, "params": params}
     return json.dumps(message if id is None else {**message, "id": id})
 

@@ -35,6 +35,7 @@ GATEWAYS = 4
 ROBOTS = size(800, 40)
 ROBOT_RATE, DESK_RATE = 1.0, 10.0
 SECONDS, SETTLE = size(20.0, 2.0), size(5.0, 1.0)
+"""seconds that are watched, and those before them, in which everybody has just come."""
 COMMANDS, STOPS, ROUNDS = size(100, 5), size(10, 1), size(3, 1)
 NATS_AWAY = 3.0
 """seconds that the bus is away."""
@@ -68,7 +69,7 @@ gateway and its robots hear when it wakes does not count.
 
 ### What dies
 
-Each {rounds} times. Robots whose gateway ended go to the next one after up to {jitter:g} s.
+NATS {rounds} times, a gateway once. Robots whose gateway ended go to the next one after up to {jitter:g} s.
 
 {third}
 """
@@ -116,7 +117,7 @@ class Fleet:
         cpu = sum(cpu_seconds(one.process.pid) for one in self._gateways) - cpu
         memory = [megabytes_of(one.process.pid) for one in self._gateways]
         commands = self._ask("command", desk=0, robots_of=1, count=COMMANDS)
-        stops = {"all is well": [self._stop() for _ in range(STOPS)]}
+        stops = {"all is well": [self._stop_while(contextlib.nullcontext()) for _ in range(STOPS)]}
         recovered: dict[str, list[float]] = {}
         if self._nats is not None:
             stops["NATS is dead"] = [self._stop_while(self._without_nats()) for _ in range(STOPS)]
@@ -132,18 +133,12 @@ class Fleet:
         self._crowd.tell(do=what, **how)
         return self._crowd.line()
 
-    def _stop(self, without: tuple[int, ...] | list[int] = ()) -> dict[str, Any]:
-        found: dict[str, Any] = self._ask("stop", desk=0, without=list(without))
-        time.sleep(STANDING)
-        self._ask("clear", stop=found["stop"])
-        return found
-
     def _stop_while(
         self, trouble: contextlib.AbstractContextManager[None], without: list[int] | None = None
     ) -> dict[str, Any]:
         with trouble:
             found: dict[str, Any] = self._ask("stop", desk=0, without=without or [])
-        self._ask("clear", stop=found["stop"])
+        self._ask("clear")
         time.sleep(STANDING)
         return found
 

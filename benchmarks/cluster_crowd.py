@@ -20,7 +20,7 @@ from typing import Any
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMessage
 
-from benchmarks.appliance_crowd import PLACES, Sayings
+from benchmarks.appliance_crowd import PLACES, Sayings, rpc_call
 
 ARRIVED_WITHIN, HEARD_WITHIN = 120.0, 30.0
 """seconds until all robots have their maps, and until what is waited for is given up."""
@@ -81,7 +81,7 @@ class Robot:
             try:
                 async with _open(f"{address}/robot?robot={self.name}") as self._socket:
                     self.since = time.time()
-                    await self._socket.send(_call("Ready", {"magic": self.number + 1}, 1))
+                    await self._socket.send(rpc_call("Ready", {"magic": self.number + 1}, 1))
                     await self._hear(self._socket)
             except GONE:
                 pass
@@ -95,7 +95,7 @@ class Robot:
         (x, y), at = self.place, time.time()
         self._sayings.note(self.name, (x, y), at)
         with contextlib.suppress(*GONE):
-            await self._socket.send(_call("SendPos", {"x": x, "y": y, "theta": 0.5, "v": 0.1, "t": at}))
+            await self._socket.send(rpc_call("SendPos", {"x": x, "y": y, "theta": 0.5, "v": 0.1, "t": at}))
 
     async def _hear(self, socket: ClientConnection) -> None:
         async for text in socket:
@@ -103,7 +103,7 @@ class Robot:
             if message.get("id") == 1 and "error" in message:
                 # The database is away: it says Ready again until it is taken.
                 await asyncio.sleep(AGAIN_AFTER_S)
-                await socket.send(_call("Ready", {"magic": self.number + 1}, 1))
+                await socket.send(rpc_call("Ready", {"magic": self.number + 1}, 1))
             if "method" not in message or "id" not in message:
                 continue
             self.heard.setdefault(message["id"], time.time())
@@ -134,9 +134,9 @@ class Desk:
         while True:
             try:
                 async with _open(f"{self._address}/desk") as self._socket:
-                    await self._socket.send(_call("hello", {"operator": "Ada"}, 1))
+                    await self._socket.send(rpc_call("hello", {"operator": "Ada"}, 1))
                     subscription = {"rate": self._plan.rate, "form": "columns"}
-                    await self._socket.send(_call("subscribe", subscription, 2))
+                    await self._socket.send(rpc_call("subscribe", subscription, 2))
                     self.up.set()
                     await self._hear(self._socket)
             except GONE:
@@ -151,7 +151,7 @@ class Desk:
             raise RuntimeError("not connected")
         number = next(self._ids)
         self._answers[number] = asyncio.get_running_loop().create_future()
-        await self._socket.send(_call(method, params, number))
+        await self._socket.send(rpc_call(method, params, number))
         return await self._answers[number]
 
     async def _hear(self, socket: ClientConnection) -> None:
@@ -222,13 +222,13 @@ class Crowd:
         for robot in [one for one in self._robots if one.home == robots_of][:count]:
             command, (x, y) = f"command-{next(self._numbers):08d}", robot.place
             began = robot.asked = time.time()
-            params: dict[str, Any] = {
+            params = {
                 "command": command,
                 "robot": robot.name,
                 "op": "SetPosEnd",
                 "params": {"x": x, "y": y},
+                "override": "robots of a benchmark stand anywhere",
             }
-            params["override"] = "robots of a benchmark stand anywhere"
             await self._desks[desk].ask("send", params)
             await _until(robot.is_told)
             found.append((robot.told_to_drive - began) * 1e3)
@@ -255,8 +255,8 @@ class Crowd:
         gateways = [(one.in_force[stop] - began) * 1e3 for one in desks]
         return {"stop": stop, "gateways": gateways, "robots": (heard - began) * 1e3}
 
-    async def do_clear(self, stop: str) -> float:
-        """Clear a stop as soon as that can be, and wait until no gateway has it any more."""
+    async def do_clear(self) -> None:
+        """Clear the stop as soon as that can be, and wait until no gateway has it any more."""
         async with asyncio.timeout(HEARD_WITHIN):
             while any(desk.emergency.get("in_force") for desk in self._desks):
                 try:
@@ -264,7 +264,6 @@ class Crowd:
                 except RuntimeError:
                     await asyncio.sleep(0.2)
                 await asyncio.sleep(0.05)
-        return 0.0
 
     async def do_heard(self, since: float, desk: int, homes: Sequence[int]) -> float:
         """Return the seconds from ``since`` until a desk was told what all robots of ``homes`` said later."""
@@ -298,11 +297,6 @@ async def _until(holds: Callable[[], bool]) -> None:
     async with asyncio.timeout(HEARD_WITHIN):
         while not holds():
             await asyncio.sleep(0.002)
-
-
-def _call(method: str, params: dict[str, Any], id: int | None = None) -> str:
-    message = {"jsonrpc": "2.0", "method": method, "params": params}
-    return json.dumps(message if id is None else {**message, "id": id})
 
 
 def _open(url: str) -> connect:

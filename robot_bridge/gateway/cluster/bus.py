@@ -21,6 +21,7 @@ from sqlalchemy import URL, create_engine
 
 from ...core.errors import BridgeError
 from ...core.logs import log_unforeseen
+from ..monitoring import wait_at_most
 
 if TYPE_CHECKING:
     from psycopg import AsyncConnection
@@ -385,9 +386,7 @@ async def _disconnection(client: Any, lost: asyncio.Event) -> None:
     It may not: a task of its own that fails as it closes the connection ends without a word.
     """
     while client.is_connected and not lost.is_set():
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(CONNECTED_LOOK_S):
-                await lost.wait()
+        await wait_at_most(lost, CONNECTED_LOOK_S)
 
 
 def check_version(where: str, version: Any) -> None:
