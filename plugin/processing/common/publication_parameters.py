@@ -24,7 +24,8 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
+from ....robot_bridge.core.sites.frame import SiteBounds
+from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteSettings, earlier_settings
 from ....robot_bridge.core.sites.settings_tables import LivenessLimits, value_text
 from ...layers.crs import crs_name, is_engineering
 from ...layers.layer_source import Setups, obstacle_sources

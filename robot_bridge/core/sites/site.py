@@ -22,7 +22,7 @@ from ..robotmap.outlines import Outlines
 from ..robotmap.text_format import write_text
 from ..robotmap.window_index import GroupText, OutlineIndex, group_texts, size_in_binary
 from .fences import Fences, KeepoutIndex
-from .frame import Points, SiteFrame
+from .frame import Points, SiteBounds, SiteFrame
 from .geopackage import (
     CENTRELINES,
     GEOPACKAGE_FILE,
@@ -39,7 +39,6 @@ from .geopackage import (
 )
 from .settings import (
     SETTINGS_FILE,
-    SiteBounds,
     SiteSettings,
     check_settings,
     earlier_settings,

@@ -15,7 +15,7 @@ from websockets.http11 import Request, Response
 
 from ...core.errors import CrsError, RefusedError
 from ...core.messages.validation import MessageError
-from ...core.sites.transforms import lonlat_of
+from ...core.sites.frame import lonlat_of
 from ...protocol.codec import decode_desk_request
 from ...protocol.openapi import (
     DEGREES,
