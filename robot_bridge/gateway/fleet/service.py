@@ -66,9 +66,8 @@ from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
 from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
-from .registration import Decommissioning, Registration
+from .registration import Decommissioning, Registration, Takeover
 from .robot_answers import MapSender, RobotAnswers
-from .takeover import Takeover
 
 log = logging.getLogger(__name__)
 
