@@ -26,11 +26,10 @@ from ..core.messages.validation import MessageError, check_robot_name
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
+from .api.http_pages import HEALTH, METRICS, SiteQueries, StatusPages
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
-from .api.site_queries import SiteQueries
-from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.authorisation import PATHS, AuthGate
