@@ -56,8 +56,7 @@ from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
-from .site_copy import LOOK_INTERVAL, SiteCopy
-from .site_watch import SiteWatch, stamp_of
+from .site_updates import FETCH_INTERVAL, SiteCopy, SiteWatch, stamp_of
 from .storage.database import Database
 from .storage.repositories import metadata
 from .storage.repositories.metadata import newest_time
@@ -397,7 +396,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             works = relays.works(works, fleet.tally)
         if (copy := settings.site_copy) is not None:
             stack.push_async_callback(copy.close)
-            works["site copy"] = lambda: every(LOOK_INTERVAL, copy.refresh, "site copy", fleet.tally)
+            works["site copy"] = lambda: every(FETCH_INTERVAL, copy.refresh, "site copy", fleet.tally)
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 
