@@ -3481,12 +3481,12 @@
             <translation>No hi ha res a desfer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Encara no se sabia el camí fins on heu fet l'últim clic, de manera que no és a la ruta.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Aquest tram no segueix les vies: {note}</translation>
         </message>
@@ -3506,42 +3506,42 @@
             <translation>Aquest és el primer vèrtex: se'n posa un altre davant d'un que ve després.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>Cap capa del projecte té el paper superfície de via: poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No road surface</source>
             <translation>Cap superfície de via</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Which road surface is here?</source>
             <translation>Quina superfície de via hi ha aquí?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no CRS</source>
             <translation>sense SRC</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no road surface</source>
             <translation>cap superfície de via</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>road surface without a class</source>
             <translation>superfície de via sense classe</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} a {where}</translation>
         </message>

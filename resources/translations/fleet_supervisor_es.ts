@@ -3481,12 +3481,12 @@
             <translation>No hay nada que deshacer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Aún no se conocía el camino hasta donde hizo el último clic, así que no está en la ruta.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Este tramo no sigue las vías: {note}</translation>
         </message>
@@ -3506,42 +3506,42 @@
             <translation>Este es el primer vértice: se pone otro delante de uno que viene después.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>Ninguna capa del proyecto tiene el papel superficie de vía: póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No road surface</source>
             <translation>Ninguna superficie de vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Which road surface is here?</source>
             <translation>¿Qué superficie de vía hay aquí?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no CRS</source>
             <translation>sin SRC</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no road surface</source>
             <translation>ninguna superficie de vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>road surface without a class</source>
             <translation>superficie de vía sin clase</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} en {where}</translation>
         </message>

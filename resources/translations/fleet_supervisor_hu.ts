@@ -3460,12 +3460,12 @@
             <translation>Nincs mit visszavonni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Még nem volt ismert, hogyan lehet eljutni oda, ahová utoljára kattintott, ezért az nincs benne az útvonalban.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Ez a szakasz nem követi az utakat: {note}</translation>
         </message>
@@ -3485,42 +3485,42 @@
             <translation>Ez az első töréspont: másikat csak egy későbbi elé lehet tenni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>A projekt egyik rétegének sem útfelület a szerepe: állítsa be a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>No road surface</source>
             <translation>Nincs útfelület</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
             <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>Which road surface is here?</source>
             <translation>Milyen útfelület van itt?</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no CRS</source>
             <translation>nincs vetület</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>no road surface</source>
             <translation>nincs útfelület</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>road surface without a class</source>
             <translation>osztály nélküli útfelület</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>{told} at {where}</source>
             <translation>{told} itt: {where}</translation>
         </message>
