@@ -14,7 +14,6 @@ from qgis.PyQt.QtCore import QObject, QThread
 from ...robot_bridge.core.clock import Clock, steady_time
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
-from ..vendored import websocket_library
 from .connection_status import (
     TOO_LARGE,
     ConnectionPhase,
@@ -25,6 +24,7 @@ from .connection_status import (
 )
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
+from .websocket_library import websocket_library
 
 
 class Backoff:

@@ -2216,12 +2216,12 @@
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>Falta el paquet de Python websockets, que necessita la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que el conté, o executeu 'python3 -m pip install websockets' amb el Python de QGIS, i reinicieu QGIS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>El paquet de Python websockets {version} a {path} és massa antic per a la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que en conté un de més nou, o executeu 'python3 -m pip install "websockets&gt;={oldest}"' amb el Python de QGIS, i reinicieu QGIS.</translation>
         </message>

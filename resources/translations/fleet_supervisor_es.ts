@@ -2216,12 +2216,12 @@
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>Falta el paquete de Python websockets, que necesita la conexión con la pasarela. Instale el complemento desde el zip publicado, que lo contiene, o ejecute 'python3 -m pip install websockets' con el Python de QGIS, y reinicie QGIS.</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>El paquete de Python websockets {version} en {path} es demasiado antiguo para la conexión con la pasarela. Instale el complemento desde el zip publicado, que contiene uno más nuevo, o ejecute 'python3 -m pip install "websockets&gt;={oldest}"' con el Python de QGIS, y reinicie QGIS.</translation>
         </message>

@@ -2207,12 +2207,12 @@
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>Hiányzik a websockets Python-csomag, amely az átjáróhoz való kapcsolódáshoz kell. Telepítse a modult a kiadott zipből, amely tartalmazza, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install websockets', és indítsa újra a QGIS-t.</translation>
         </message>
         <message>
-            <location filename="../../plugin/vendored.py" />
+            <location filename="../../plugin/gateway_client/websocket_library.py" />
             <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
             <translation>A websockets Python-csomag {version} verziója ({path}) túl régi az átjáróhoz való kapcsolódáshoz. Telepítse a modult a kiadott zipből, amely újabbat tartalmaz, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install "websockets&gt;={oldest}"', és indítsa újra a QGIS-t.</translation>
         </message>
