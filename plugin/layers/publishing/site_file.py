@@ -16,19 +16,8 @@ from qgis.core import QgsFeedback
 from ....robot_bridge.core.roads.centrelines import Surface
 from ....robot_bridge.core.robotmap.model import ShapeType
 from ....robot_bridge.core.robotmap.outlines import Outlines
+from ....robot_bridge.core.sites import geopackage
 from ....robot_bridge.core.sites.frame import SiteFrame
-from ....robot_bridge.core.sites.geopackage import (
-    CENTRELINES,
-    KEEPOUTS,
-    KNOWN_BEYOND,
-    OBSTACLES,
-    STAMP_KEY,
-    SURFACES,
-    Area,
-    Centreline,
-    LayerSpec,
-    extras_text,
-)
 from ....robot_bridge.core.sites.settings import SiteSettings
 from ....robot_bridge.core.sites.site_cache import CacheWriter
 from ....robot_bridge.core.sites.site_layers import outline_groups
@@ -44,7 +33,7 @@ from .spatial_index import BoxTree
 
 # --- Everything that a site publishes, on its way from QGIS layers into a publication ---
 
-LAYERS = (OBSTACLES, CENTRELINES, SURFACES, KEEPOUTS)
+LAYERS = (geopackage.OBSTACLES, geopackage.CENTRELINES, geopackage.SURFACES, geopackage.KEEPOUTS)
 """The layers of a site in the order in which they are read."""
 
 
@@ -64,7 +53,7 @@ class SiteSources:
 
 _TOGETHER = 1000
 """Roads or areas that are placed and written together."""
-Item = TypeVar("Item", bound="Centreline | Area | Surface")
+Item = TypeVar("Item", bound="geopackage.Centreline | geopackage.Area | Surface")
 
 
 class SiteContent:
@@ -84,12 +73,12 @@ class SiteContent:
         default_height: float,
         default_width: float,
     ) -> None:
-        near = widen_bounds(bounds, KNOWN_BEYOND) if bounds is not None else None
+        near = widen_bounds(bounds, geopackage.KNOWN_BEYOND) if bounds is not None else None
         self._sources, self._site, self._default_width = sources, site, default_width
         self._obstacles = ObstacleReader(sources.obstacles, site, near, default_height)
-        self._roads: GroundReading[Centreline] = GroundReading()
+        self._roads: GroundReading[geopackage.Centreline] = GroundReading()
         self._surfaces: GroundReading[Surface] = GroundReading()
-        self._keepouts: GroundReading[Area] = GroundReading()
+        self._keepouts: GroundReading[geopackage.Area] = GroundReading()
         self._low, self._high = np.full(2, np.inf), np.full(2, -np.inf)
         self.counts = dict.fromkeys((layer.name for layer in LAYERS), 0)
         """How many outlines, roads and areas were read so far, by the names of their layers."""
@@ -116,26 +105,28 @@ class SiteContent:
     def obstacles(self, feedback: QgsFeedback) -> Iterator[Outlines]:
         """Yield the obstacles, some at a time."""
         for some in self._obstacles.parts(feedback):
-            self._counted(OBSTACLES.name, some.coordinates, len(some))
+            self._counted(geopackage.OBSTACLES.name, some.coordinates, len(some))
             yield some
 
-    def centrelines(self, feedback: QgsFeedback) -> Iterator[list[Centreline]]:
+    def centrelines(self, feedback: QgsFeedback) -> Iterator[list[geopackage.Centreline]]:
         """Yield the roads, some at a time."""
         sources = self._sources.centrelines
         for some in _some(each_centreline(sources, self._site, self._default_width, self._roads, feedback)):
-            self._counted(CENTRELINES.name, np.concatenate([line.points for line in some]), len(some))
+            self._counted(
+                geopackage.CENTRELINES.name, np.concatenate([line.points for line in some]), len(some)
+            )
             yield some
 
     def surfaces(self, feedback: QgsFeedback) -> Iterator[list[Surface]]:
         """Yield the road surfaces, some at a time."""
         for some in _some(each_surface(self._sources.surfaces, self._site, self._surfaces, feedback)):
-            self._counted(SURFACES.name, np.concatenate([one.rings[0] for one in some]), len(some))
+            self._counted(geopackage.SURFACES.name, np.concatenate([one.rings[0] for one in some]), len(some))
             yield some
 
-    def keepouts(self, feedback: QgsFeedback) -> Iterator[list[Area]]:
+    def keepouts(self, feedback: QgsFeedback) -> Iterator[list[geopackage.Area]]:
         """Yield the keepouts, some at a time."""
         for some in _some(each_area(self._sources.keepouts, self._site, KEEPOUT, self._keepouts, feedback)):
-            self._counted(KEEPOUTS.name, np.concatenate([one.rings[0] for one in some]), len(some))
+            self._counted(geopackage.KEEPOUTS.name, np.concatenate([one.rings[0] for one in some]), len(some))
             yield some
 
     def _counted(self, layer: str, points: np.ndarray, count: int) -> None:
@@ -178,16 +169,16 @@ class SiteRows(NamedTuple):
 
 def site_rows(
     content: SiteContent, frame: SiteFrame, cache: CacheWriter, feedback: QgsFeedback
-) -> list[tuple[LayerSpec, Iterator[SiteRows]]]:
+) -> list[tuple[geopackage.LayerSpec, Iterator[SiteRows]]]:
     """Return the four layers of a site with the rows of each, which are read as they are asked for.
 
     ``cache`` gets the obstacles as they are read, for they are read once.
     """
     return [
-        (OBSTACLES, _obstacle_rows(content, frame, cache, feedback)),
-        (CENTRELINES, _centreline_rows(content, frame, feedback)),
-        (SURFACES, _surface_rows(content, frame, feedback)),
-        (KEEPOUTS, _keepout_rows(content, frame, feedback)),
+        (geopackage.OBSTACLES, _obstacle_rows(content, frame, cache, feedback)),
+        (geopackage.CENTRELINES, _centreline_rows(content, frame, feedback)),
+        (geopackage.SURFACES, _surface_rows(content, frame, feedback)),
+        (geopackage.KEEPOUTS, _keepout_rows(content, frame, feedback)),
     ]
 
 
@@ -216,9 +207,9 @@ def _rows_of(some: Outlines, frame: SiteFrame) -> SiteRows:
         "outdoor": some.outdoor[rows].astype(int).tolist(),
         "shape_type": some.shape_type[rows].tolist(),
         "base_m": some.bases[rows].tolist(),
-        "ext": [extras_text(extras[first]) for first, _ in groups],
+        "ext": [geopackage.extras_text(extras[first]) for first, _ in groups],
     }
-    return SiteRows(wkb, shapes.boxes()[rows], _in_order(OBSTACLES, values))
+    return SiteRows(wkb, shapes.boxes()[rows], _in_order(geopackage.OBSTACLES, values))
 
 
 def _risers(points: bytes) -> list[bytes]:
@@ -229,11 +220,11 @@ def _centreline_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedba
     for some in content.centrelines(feedback):
         shapes = _PlacedShapes.of([line.points for line in some], frame, closed=False)
         values: dict[str, Iterable[Any]] = {
-            name: [getattr(line, name) for line in some] for name in CENTRELINES.fields
+            name: [getattr(line, name) for line in some] for name in geopackage.CENTRELINES.fields
         }
         values["closed"] = map(int, values["closed"])
         wkb = shapes.wkb([(k, k + 1) for k in range(len(some))])
-        yield SiteRows(wkb, shapes.boxes(), _in_order(CENTRELINES, values))
+        yield SiteRows(wkb, shapes.boxes(), _in_order(geopackage.CENTRELINES, values))
 
 
 def _surface_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback) -> Iterator[SiteRows]:
@@ -243,17 +234,17 @@ def _surface_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback)
             "name": [one.name for one in some],
             "origin": [one.origin for one in some],
         }
-        yield _area_rows(SURFACES, [one.rings for one in some], values, frame)
+        yield _area_rows(geopackage.SURFACES, [one.rings for one in some], values, frame)
 
 
 def _keepout_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback) -> Iterator[SiteRows]:
     for some in content.keepouts(feedback):
         names = [one.label for one in some]
-        yield _area_rows(KEEPOUTS, [one.rings for one in some], {"name": names}, frame)
+        yield _area_rows(geopackage.KEEPOUTS, [one.rings for one in some], {"name": names}, frame)
 
 
 def _area_rows(
-    spec: LayerSpec,
+    spec: geopackage.LayerSpec,
     areas: Sequence[Sequence[np.ndarray]],
     values: Mapping[str, Iterable[Any]],
     frame: SiteFrame,
@@ -264,7 +255,7 @@ def _area_rows(
     return SiteRows(wkb, shapes.boxes()[edges[:-1]], _in_order(spec, values))
 
 
-def _in_order(spec: LayerSpec, values: Mapping[str, Iterable[Any]]) -> list[Iterable[Any]]:
+def _in_order(spec: geopackage.LayerSpec, values: Mapping[str, Iterable[Any]]) -> list[Iterable[Any]]:
     return [values[name] for name in spec.fields]
 
 
@@ -361,11 +352,13 @@ def stamp_in(file: Path) -> str:
     """Return which publication the GeoPackage ``file`` belongs to; nothing when it does not say."""
     with suppress(PublicationError), _named_failures(file) as gdal:
         source = _there(gdal.OpenEx(str(file), gdal.OF_VECTOR | gdal.OF_READONLY, ["GPKG"]))
-        return str(_there(source.GetLayer(0)).GetMetadataItem(STAMP_KEY) or "")
+        return str(_there(source.GetLayer(0)).GetMetadataItem(geopackage.STAMP_KEY) or "")
     return ""
 
 
-def _make_tables(gdal: Any, file: Path, specs: Sequence[LayerSpec], settings: SiteSettings) -> None:
+def _make_tables(
+    gdal: Any, file: Path, specs: Sequence[geopackage.LayerSpec], settings: SiteSettings
+) -> None:
     """Make the GeoPackage with its layers and their spatial indexes, all empty, and close it."""
     _, ogr, osr = _bindings()
     crs = osr.SpatialReference()
@@ -378,14 +371,14 @@ def _make_tables(gdal: Any, file: Path, specs: Sequence[LayerSpec], settings: Si
         for name, type_ in spec.fields.items():
             _done(layer.CreateField(_field(name, type_)))
         # On the layer, not the file: GDAL would put that into an .aux.xml file beside the site each time.
-        _done(layer.SetMetadataItem(STAMP_KEY, settings.stamp))
+        _done(layer.SetMetadataItem(geopackage.STAMP_KEY, settings.stamp))
     _done(target.FlushCache())
     for spec in specs:
         target.ExecuteSQL(f"SELECT CreateSpatialIndex('{spec.name}', '{_GEOMETRY}')")
     _done(target.FlushCache())
 
 
-def _insert(database: sqlite3.Connection, spec: LayerSpec, batches: Iterator[SiteRows]) -> None:
+def _insert(database: sqlite3.Connection, spec: geopackage.LayerSpec, batches: Iterator[SiteRows]) -> None:
     """Insert ``batches`` into the empty table of ``spec`` and its index, and note there what it holds."""
     find = "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?"
     (srs,) = database.execute(find, [spec.name]).fetchone()

@@ -25,16 +25,8 @@ from ....robot_bridge.core.robotmap.exporters.geometries import MapShape, obstac
 from ....robot_bridge.core.robotmap.findings import MapCheckLimits, MapFinding, SegmentTable, Severity
 from ....robot_bridge.core.robotmap.model import Border, RobotMap
 from ...ui.language import tr, tr_page
+from ..common import map_files
 from ..common.algorithm import FleetAlgorithm, Parameters, advanced, fields_of, shown_by_processing
-from ..common.map_files import (
-    MAP,
-    MapPlace,
-    file_problem,
-    map_parameters,
-    map_place,
-    obstacles_in_words,
-    read_map_file,
-)
 from ..common.outputs import fill_sink, line, lines, polygon
 
 # --- ``fleet:loadrobotmap``: a robot map in, layers with all that it says out ---
@@ -113,7 +105,7 @@ class LoadRobotMap(FleetAlgorithm):
     """)
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
-        for parameter in map_parameters():
+        for parameter in map_files.map_parameters():
             self.addParameter(parameter)
         for name, (title, kind, _) in _LAYERS.items():
             self.addParameter(
@@ -125,7 +117,7 @@ class LoadRobotMap(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        problem = file_problem(parameters)
+        problem = map_files.file_problem(parameters)
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(
@@ -138,16 +130,18 @@ class LoadRobotMap(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         with shown_by_processing(feedback):
-            robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
+            robot_map = map_files.read_map_file(
+                Path(self.parameterAsFile(parameters, map_files.MAP, context))
+            )
             feedback.setProgress(30)
-            place = map_place(self, parameters, context, robot_map.meta, feedback)
+            place = map_files.map_place(self, parameters, context, robot_map.meta, feedback)
             for warning in robot_map.warnings:
                 feedback.pushWarning(warning)
             made = self._write(parameters, context, layer_rows(robot_map, place), place, feedback)
             if feedback.isCanceled():
                 return {}
         self.remember(made)
-        feedback.pushInfo(obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
+        feedback.pushInfo(map_files.obstacles_in_words(len(robot_map.obstacles), robot_map.segment_count))
         figures = (len(robot_map.obstacles), robot_map.segment_count, len(robot_map.warnings))
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 
@@ -156,7 +150,7 @@ class LoadRobotMap(FleetAlgorithm):
         parameters: Parameters,
         context: QgsProcessingContext,
         rows: dict[str, list[Row]],
-        place: MapPlace,
+        place: map_files.MapPlace,
         feedback: QgsProcessingFeedback,
     ) -> dict[str, str]:
         made = {}
@@ -172,7 +166,7 @@ class LoadRobotMap(FleetAlgorithm):
         return made
 
 
-def layer_rows(robot_map: RobotMap, place: MapPlace) -> dict[str, list[Row]]:
+def layer_rows(robot_map: RobotMap, place: map_files.MapPlace) -> dict[str, list[Row]]:
     """Return geometry and values of every feature of each layer."""
     shapes = obstacle_shapes(robot_map)
     return {
@@ -183,7 +177,7 @@ def layer_rows(robot_map: RobotMap, place: MapPlace) -> dict[str, list[Row]]:
     }
 
 
-def border_polygon(border: Border, place: MapPlace) -> QgsGeometry:
+def border_polygon(border: Border, place: map_files.MapPlace) -> QgsGeometry:
     """Return the rectangle of a map in the CRS of its place."""
     x_min, y_min, x_max, y_max = border
     ring = np.array([[x_min, y_min], [x_max, y_min], [x_max, y_max], [x_min, y_max], [x_min, y_min]])
@@ -195,7 +189,7 @@ def _border_values(robot_map: RobotMap) -> list[Any]:
     return [robot_map.border.area, len(robot_map.obstacles), robot_map.segment_count, meta]
 
 
-def _row(shape: MapShape, place: MapPlace, columns: dict[str, str]) -> Row:
+def _row(shape: MapShape, place: map_files.MapPlace, columns: dict[str, str]) -> Row:
     parts = [place.points(part) for part in shape.parts]
     make = {"Polygon": polygon, "MultiLineString": lines}.get(shape.kind)
     geometry = make(parts) if make else line(parts[0])
@@ -254,7 +248,7 @@ class CheckRobotMap(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         defaults = MapCheckLimits()
-        for parameter in map_parameters():
+        for parameter in map_files.map_parameters():
             self.addParameter(parameter)
         for name, (title, key, least) in _LIMITS.items():
             kind = QgsProcessingParameterNumber.Type.Double
@@ -269,7 +263,7 @@ class CheckRobotMap(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        problem = file_problem(parameters)
+        problem = map_files.file_problem(parameters)
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def prepareAlgorithm(
@@ -282,8 +276,10 @@ class CheckRobotMap(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         with shown_by_processing(feedback):
-            robot_map = read_map_file(Path(self.parameterAsFile(parameters, MAP, context)))
-            place = map_place(self, parameters, context, robot_map.meta, feedback)
+            robot_map = map_files.read_map_file(
+                Path(self.parameterAsFile(parameters, map_files.MAP, context))
+            )
+            place = map_files.map_place(self, parameters, context, robot_map.meta, feedback)
             for warning in robot_map.warnings:
                 feedback.pushWarning(warning)
             numbers = {
@@ -313,7 +309,7 @@ def _findings(
     return findings
 
 
-def _finding_row(finding: MapFinding, place: MapPlace):
+def _finding_row(finding: MapFinding, place: map_files.MapPlace):
     values = [finding.kind.value, finding.severity.value, finding.obstacle, finding.text]
     return lines(place.points(finding.segments)), values
 

@@ -24,18 +24,9 @@ from ....robot_bridge.core.roads.network_checks import (
     find_road_defects,
 )
 from ...ui.language import tr, tr_count, tr_page
+from ..common import road_sources
 from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
 from ..common.outputs import fill_sink, line
-from ..common.road_sources import (
-    TOLERANCE,
-    WARNING_COUNT,
-    RoadReading,
-    RoadSource,
-    network_as_drawn,
-    network_of_roads,
-    repair_parameter,
-    road_parameters,
-)
 
 # --- ``fleet:buildroadnetwork``: road centrelines in, edges and nodes out ---
 
@@ -60,7 +51,7 @@ NUMBERS = {
     "NODE_COUNT": tr("Nodes"),
     "PART_COUNT": tr("Parts that are not connected"),
     "REPAIR_COUNT": tr("Repairs"),
-    WARNING_COUNT: tr("Warnings"),
+    road_sources.WARNING_COUNT: tr("Warnings"),
 }
 
 
@@ -88,8 +79,8 @@ class BuildRoadNetwork(FleetAlgorithm):
     """)
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
-        roads, tolerance, *others = road_parameters()
-        for parameter in (roads, repair_parameter(), tolerance, *others):
+        roads, tolerance, *others = road_sources.road_parameters()
+        for parameter in (roads, road_sources.repair_parameter(), tolerance, *others):
             self.addParameter(parameter)
         for name, title, kind in (
             (EDGES, tr("Edges"), QgsProcessing.SourceType.TypeVectorLine),
@@ -104,7 +95,7 @@ class BuildRoadNetwork(FleetAlgorithm):
     ):
         self._fields = fields_of(_EDGE), fields_of(_NODE)
         with shown_by_processing():
-            self._source = RoadSource(self, parameters, context)
+            self._source = road_sources.RoadSource(self, parameters, context)
         return True
 
     def processAlgorithm(
@@ -114,7 +105,7 @@ class BuildRoadNetwork(FleetAlgorithm):
             reading = self._source.read(feedback)
             if reading is None:
                 return {}
-            built = network_of_roads(self, parameters, context, reading, feedback)
+            built = road_sources.network_of_roads(self, parameters, context, reading, feedback)
             if built is None:
                 return {}
             network, repairs = built
@@ -143,7 +134,7 @@ class BuildRoadNetwork(FleetAlgorithm):
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 
 
-def _edge_rows(network: Network, reading: RoadReading):
+def _edge_rows(network: Network, reading: road_sources.RoadReading):
     edges = network.edges
     return [
         (
@@ -214,21 +205,21 @@ class CheckRoadNetwork(FleetAlgorithm):
     """)
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
-        for parameter in road_parameters():
+        for parameter in road_sources.road_parameters():
             self.addParameter(parameter)
         points = QgsProcessing.SourceType.TypeVectorPoint
         self.addParameter(QgsProcessingParameterFeatureSink(FINDINGS, tr("Findings"), points))
         self.addOutput(QgsProcessingOutputNumber("FINDING_COUNT", tr("Findings")))
         for kind, name in _COUNTS.items():
             self.addOutput(QgsProcessingOutputNumber(name, _TITLES[kind]))
-        self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, tr("Warnings")))
+        self.addOutput(QgsProcessingOutputNumber(road_sources.WARNING_COUNT, tr("Warnings")))
 
     def prepareAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         self._fields = fields_of(_FIELDS)
         with shown_by_processing():
-            self._source = RoadSource(self, parameters, context)
+            self._source = road_sources.RoadSource(self, parameters, context)
         return True
 
     def processAlgorithm(
@@ -240,8 +231,8 @@ class CheckRoadNetwork(FleetAlgorithm):
                 return {}
             for warning in reading.warnings:
                 feedback.pushWarning(warning)
-            tolerance = self.parameterAsDouble(parameters, TOLERANCE, context)
-            network = network_as_drawn(reading, feedback)
+            tolerance = self.parameterAsDouble(parameters, road_sources.TOLERANCE, context)
+            network = road_sources.network_as_drawn(reading, feedback)
             if network is None:
                 return {}
             findings = find_road_defects(network, tolerance)
@@ -264,7 +255,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             FINDINGS: source,
             "FINDING_COUNT": len(findings),
             **numbers,
-            WARNING_COUNT: len(reading.warnings),
+            road_sources.WARNING_COUNT: len(reading.warnings),
         }
 
 

@@ -1,4 +1,4 @@
-"""Site frame: the metres that robots use, as a place in a projected CRS; transforms into it; access to pyproj."""
+"""Site frame: the metres of robots as a place in a projected CRS; transforms into it; access to pyproj."""
 
 from __future__ import annotations
 

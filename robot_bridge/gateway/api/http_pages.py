@@ -23,17 +23,8 @@ from ...core.errors import BridgeError, CrsError, RefusedError
 from ...core.messages.safety import RobotState
 from ...core.messages.validation import MessageError
 from ...core.sites.frame import lonlat_of
+from ...protocol import openapi
 from ...protocol.codec import decode_desk_request
-from ...protocol.openapi import (
-    DEGREES,
-    GEOJSON,
-    PARAMETERS,
-    PLACE,
-    PROBLEM,
-    ROUTE,
-    SITE_FRAME,
-    QueryParameter,
-)
 from ..auth.port import http_response
 from ..fleet.service import Fleet
 from ..model.request_handlers import RequestHandlers
@@ -212,7 +203,7 @@ class SiteQueries:
 
     def serves(self, path: str) -> bool:
         """Tell whether ``path`` is one of theirs."""
-        return path in PARAMETERS
+        return path in openapi.PARAMETERS
 
     async def answer(self, request: Request) -> Response:
         """Return GeoJSON, or a problem that says what was wrong and what to do."""
@@ -225,8 +216,8 @@ class SiteQueries:
         parts = urlsplit(request.path)
         self._under_way += 1
         try:
-            query = read_query(parts.query, PARAMETERS[parts.path])
-            features = await (self._route if parts.path == ROUTE else self._surfaces)(query)
+            query = read_query(parts.query, openapi.PARAMETERS[parts.path])
+            features = await (self._route if parts.path == openapi.ROUTE else self._surfaces)(query)
         except MessageError as error:
             return _problem(http.HTTPStatus.BAD_REQUEST, _text(parts.path, error))
         except RefusedError as error:
@@ -237,7 +228,7 @@ class SiteQueries:
         finally:
             self._under_way -= 1
         content = {"type": "FeatureCollection", "features": features}
-        return _response(http.HTTPStatus.OK, GEOJSON, json.dumps(content, allow_nan=False).encode())
+        return _response(http.HTTPStatus.OK, openapi.GEOJSON, json.dumps(content, allow_nan=False).encode())
 
     async def _surfaces(self, query: dict[str, Any]) -> list[dict[str, Any]]:
         asked = decode_desk_request("get_surface", query)
@@ -273,7 +264,7 @@ class SiteQueries:
         return found
 
 
-def read_query(text: str, parameters: Sequence[QueryParameter]) -> dict[str, Any]:
+def read_query(text: str, parameters: Sequence[openapi.QueryParameter]) -> dict[str, Any]:
     """Return what stands behind the ``?`` of an address, by the names of the desk's requests.
 
     :raises MessageError: for what is unknown, missing, there twice or no value of its kind.
@@ -300,7 +291,7 @@ def read_query(text: str, parameters: Sequence[QueryParameter]) -> dict[str, Any
         one.name for one in parameters if one.required and _NAMES.get(one.name, one.name) not in found
     ]:
         raise MessageError(f"{missing[0]} is missing; give {missing[0]}=…")
-    if found.setdefault("crs", DEGREES) == SITE_FRAME:
+    if found.setdefault("crs", openapi.DEGREES) == openapi.SITE_FRAME:
         del found["crs"]
     return found
 
@@ -315,7 +306,7 @@ def _value(name: str, text: str, schema: Mapping[str, Any]) -> Any:
     longest = schema.get("maxLength")
     if longest is not None and len(text) > longest:
         raise MessageError(f"{name} has {len(text)} characters; at most {longest} are taken")
-    return _numbers(name, text, 2) if schema is PLACE else text
+    return _numbers(name, text, 2) if schema is openapi.PLACE else text
 
 
 def _numbers(name: str, text: str, count: int) -> list[float]:
@@ -343,7 +334,7 @@ def _text(path: str, error: Exception) -> str:
 
 def _problem(status: http.HTTPStatus, detail: str, headers: Sequence[tuple[str, str]] = ()) -> Response:
     content = {"title": status.phrase, "status": status.value, "detail": detail}
-    return _response(status, PROBLEM, json.dumps(content).encode(), headers)
+    return _response(status, openapi.PROBLEM, json.dumps(content).encode(), headers)
 
 
 def _response(
