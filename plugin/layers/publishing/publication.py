@@ -31,7 +31,8 @@ from ...ui.errors import PublicationError
 from ...ui.language import tr
 from .. import roles
 from ..live_layers import fleet_group
-from .site_file import SiteContent, stamp_in, write_site_file
+from .site_content import SiteContent
+from .site_file import stamp_in, write_site_file
 
 # --- One publication at a time into a folder, whichever processes publish ---
 

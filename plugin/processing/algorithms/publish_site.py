@@ -21,7 +21,7 @@ from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteSettings, ea
 from ....robot_bridge.core.sites.site_database import view_schema
 from ...layers.publishing.postgis import SiteDatabase, site_database
 from ...layers.publishing.publication import exclusive_publication, new_publication, next_version
-from ...layers.publishing.site_file import SiteContent
+from ...layers.publishing.site_content import SiteContent
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count, tr_page

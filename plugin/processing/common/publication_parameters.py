@@ -31,7 +31,7 @@ from ...layers.crs import crs_name, is_engineering
 from ...layers.layer_source import Setups, obstacle_sources
 from ...layers.publishing.postgis import check_site_id, database_address
 from ...layers.publishing.publication import check_publication_values, next_version
-from ...layers.publishing.site_file import SiteSources, check_content_sources
+from ...layers.publishing.site_content import SiteSources, check_content_sources
 from ...layers.road_layers import DEFAULT_WIDTH_M
 from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFACE, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
