@@ -9,19 +9,13 @@ from typing import Any
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
-from ...robot_bridge.core.messages import json_values
+from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
 from ...robot_bridge.core.messages.commands import GetCommands
 from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe
 from ...robot_bridge.core.messages.queues import GetQueue
 from ...robot_bridge.core.messages.roads import GetClosures
-from ...robot_bridge.core.messages.safety import (
-    ClearEmergencyStop,
-    EmergencyStop,
-    geofence_report,
-    nearness_report,
-)
 from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
@@ -41,8 +35,8 @@ NEWEST_COUNTS = {
     "emergency": json_values.emergency_report,
     "suspensions": json_values.suspensions_report,
     "links": json_values.links_report,
-    "geofence": geofence_report,
-    "nearness": nearness_report,
+    "geofence": safety.geofence_report,
+    "nearness": safety.nearness_report,
     "closures": json_values.closures_report,
     "conflicts": json_values.conflicts_report,
 }
@@ -322,7 +316,7 @@ class GatewayProtocol:
                 )
             return []
         result = message.get("result") or {}
-        if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
+        if order.method in (safety.EmergencyStop.method, safety.ClearEmergencyStop.method):
             self._buffer.add(emergency=json_values.emergency_report(result))
         if order.method == GetClosures.method:
             self._buffer.add(closures=json_values.closures_report(result))
