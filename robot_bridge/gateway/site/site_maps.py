@@ -184,7 +184,8 @@ def _encoded(drawn: MapContent) -> bytes | None:
     content = None if drawn.objects or drawn.objects.missing else site.whole_binary()
     if content is not None:
         return content if len(content) <= limit else None
-    if site.is_too_large(limit):
+    # The size of a small one is known sooner than estimated.
+    if site.segment_count > AT_ONCE and site.is_too_large(limit):
         return None
     try:
         content = encode(_whole(drawn))
