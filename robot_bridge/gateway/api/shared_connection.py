@@ -16,7 +16,7 @@ from ...core.messages.json_values import to_json
 from ...core.messages.links import Released
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
-from ..auth.rate_limit import RateLimit
+from ..auth.client_connection import RateLimit
 from ..fleet.service import Fleet
 from .robot_session import RobotSession, RobotSessions
 

@@ -20,10 +20,8 @@ from numpy.typing import NDArray
 from websockets.http11 import Request, Response
 
 from ...core.errors import CrsError
-from ...core.sites.frame import Points, SiteFrame
-from ...core.sites.settings import SiteBounds
+from ...core.sites.frame import Points, SiteBounds, SiteFrame, lonlat_of
 from ...core.sites.site import Site
-from ...core.sites.transforms import lonlat_of
 from ..auth.port import http_response
 from ..monitoring import gateway_version
 from ..site.site_maps import SiteMaps
