@@ -32,6 +32,7 @@ from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
+from .auth.audit import AuditJournal
 from .auth.authorisation import PATHS, AuthGate
 from .auth.client_connection import ClientConnection
 from .auth.port import (
@@ -301,7 +302,7 @@ class Gateway:
 
 
 def request_handlers(
-    fleet: Fleet, plans: PlanService, database: Database, sites: SiteWatch
+    fleet: Fleet, plans: PlanService, database: Database, sites: SiteWatch, journal: AuditJournal
 ) -> RequestHandlers:
     """Return who answers which request of operators; those that concern a connection alone, that does."""
     handlers = RequestHandlers(
@@ -319,7 +320,7 @@ def request_handlers(
         fleet.removals,
         fleet.links,
         TrajectoryPages(database),
-        AccountAdministration(database),
+        AccountAdministration(database, journal),
         sites,
     )
     handlers.check_complete(except_for=OWN)
@@ -370,7 +371,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
-        handlers = request_handlers(fleet, plans, database, watch)
+        handlers = request_handlers(fleet, plans, database, watch, gate.journal)
         relays = None if cluster is None else _relays(settings, cluster, fleet, handlers)
         answering = handlers if relays is None else relays.requests
         queries = SiteQueries(maps, handlers)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
+from ...core.errors import StoreError
 from ...core.messages.administration import (
     AddOperator,
     Audit,
@@ -31,7 +33,7 @@ from ..model.request_handlers import handles
 from ..storage.database import Database
 from . import accounts, audit
 from .accounts import Grant, Operator
-from .audit import SessionRow
+from .audit import AuditJournal, SessionRow
 
 # --- Does what supervisors ask about operators' accounts at the desk, as the command line does it ---
 # Nobody can lock everybody out from here: what would leave no supervisor with a token that holds is
@@ -43,8 +45,9 @@ T = TypeVar("T")
 class AccountAdministration:
     """Operators' accounts, sessions and the audit log, as supervisors see and change them."""
 
-    def __init__(self, database: Database) -> None:
+    def __init__(self, database: Database, journal: AuditJournal) -> None:
         self._database = database
+        self._journal = journal
 
     @handles(GetOperators)
     async def operators(self) -> Operators:
@@ -77,6 +80,7 @@ class AccountAdministration:
     @handles(GetSessions)
     async def sessions(self, request: GetSessions) -> Sessions:
         """Return the operators' connections."""
+        await self._write_noted()
         found = await self._database.run(_listed, request.ended, request.limit)
         return Sessions([_session_report(session) for session in found])
 
@@ -88,9 +92,15 @@ class AccountAdministration:
 
     @handles(GetAudit)
     async def audit_log(self, request: GetAudit) -> Audit:
-        """Return who did what."""
+        """Return who did what, up to now."""
+        await self._write_noted()
         found = await self._database.run(_entries, request)
         return Audit([AuditReport(**vars(entry)) for entry in found])
+
+    async def _write_noted(self) -> None:
+        # What cannot be written yet keeps nobody from reading what is.
+        with suppress(StoreError):
+            await self._journal.flush()
 
     async def _new_token(
         self, request: AddOperator | RotateToken, make: Callable[..., str], *arguments: Any

@@ -8,11 +8,13 @@ import gc
 import pytest
 
 from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages.administration import GetAudit, GetSessions
 from robot_bridge.core.messages.operator_requests import Role
 from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.auth import accounts, audit
 from robot_bridge.gateway.auth import audit as session_rows
 from robot_bridge.gateway.auth.accounts import AccountCache, TokenKind, digest
+from robot_bridge.gateway.auth.administration import AccountAdministration
 from robot_bridge.gateway.auth.audit import AuditEntry, AuditJournal, SessionRow
 from robot_bridge.gateway.storage.schema import metadata
 from robot_bridge.protocol.credentials import AccessError
@@ -304,3 +306,16 @@ async def test_what_an_earlier_gateway_left_open_is_ended_and_old_ones_are_forgo
     assert (session.ended_at, session.reason) == (5.0, "the gateway ended")
     await database.run(session_rows.forget_ended_sessions, 6.0, 9)
     assert await database.run(lambda c: session_rows.list_sessions(c, everything=True, limit=9)) == []
+
+
+async def test_who_reads_the_log_reads_what_has_just_happened(database):
+    journal = AuditJournal(database)
+    administration = AccountAdministration(database, journal)
+    journal.began(SessionRow("0" * 32, "Ada", None, "operator", "127.0.0.1", 100.0))
+    journal.note("Ada", "clear_emergency_stop", done=False)
+    assert [session.operator for session in (await administration.sessions(GetSessions())).sessions] == [
+        "Ada"
+    ]
+    journal.note("Ada", "abort_all")
+    entries = (await administration.audit_log(GetAudit())).entries
+    assert [entry.action for entry in entries] == ["abort_all", "clear_emergency_stop"]
