@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import itertools
 import signal
+import time
 
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.errors import StageError
+from tests.support.patience import BUSY
+from tests.support.processes import free_port
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
@@ -147,6 +150,36 @@ def test_a_gateway_that_dies_is_replaced(pair, name):
     assert pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)]
 
 
+def told_gateways(bridge, name):
+    """Connect as a robot; return the gateways that it is told of."""
+    with bridge.robot(name) as robot:
+        return robot.wait_for("Start")["params"].get("gateways", [])
+
+
+def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, tmp_path):
+    """They were given the address of one, and that says which others there are."""
+    both = [bridge.address for bridge in (pair.a, pair.b)]
+    wait_until(lambda: told_gateways(pair.a, f"{name}-probe") == [f"{one}/robot" for one in both])
+    phones = tmp_path / f"{name}.toml"
+    tracker = f'[tracker]\nhttp = "127.0.0.1:{free_port()}"\n[tracker.names]\n845213 = "phone"'
+    phones.write_text(f'[gateway]\nurl = "{both[0]}/link"\n{tracker}\n', encoding="utf-8")
+    started = [pair.a.start_robot(name, (20.0, 8.0, 0.0)), pair.a.start_link("tracker", phones)]
+    at_a, desk = desk_at(pair.a), desk_at(pair.b)
+    at_a.until(lambda: phones.stem in str(at_a.links))
+    desk.wait_for_robots(name)
+    assert desk.robots[name]["link"] == "gateway a"
+    pair.a.kill_gateway()
+    began = time.monotonic()
+    desk.until(lambda: desk.robots[name]["link"] == "websocket" and desk.robots[name]["state"] == "fresh")
+    assert time.monotonic() - began < 4 * BUSY
+    desk.until(lambda: phones.stem in str(desk.links))
+    # The one that was killed may be back soon, and comes behind those that live.
+    assert told_gateways(pair.b, f"{name}-probe") == [f"{one}/robot" for one in both[::-1]]
+    for process in started:
+        process.kill()
+    pair.a.start_gateway()
+
+
 def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
     robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
     desk.wait_for_robots(name)
@@ -235,7 +268,13 @@ def test_a_gateway_that_wants_the_database_alone_is_refused(pair, start_bridge, 
         (["--gateway-name", "a"], "sqlite", "on PostgreSQL only"),
         (["--gateway-name", "a b"], "postgresql", "gateway name 'a b' cannot be"),
         (["--gateway-name", "c", "--bus", "kafka://x"], "postgresql", "bus 'kafka://x' is none of these"),
-        (["--bus", "none"], "sqlite", "give this one a name"),
+        (["--bus", "none"], "sqlite", "--bus is for gateways with names"),
+        (["--public-address", "ws://a:1"], "sqlite", "--public-address is for gateways with names"),
+        (
+            ["--gateway-name", "c", "--public-address", "a.example.org:8765"],
+            "postgresql",
+            "public address 'a.example.org:8765' cannot be told to robots",
+        ),
     ],
 )
 def test_what_cannot_be_is_named(start_bridge, site, fleet_url, new_database, options, database, why):
@@ -254,6 +293,12 @@ def test_two_gateways_need_no_further_server(start_bridge, site, new_database, t
     stop(desk, name)
     assert robot.wait_for("Abort")["params"]["emergency"]
     desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
+    # Gateways that come and go are told of with the next acknowledgement.
+    here = pair.robot(pair.b, f"{name}-b")
+    gateways = [f"{pair.b.address}/robot", f"{pair.a.address}/robot"]
+    wait_until(lambda: told_gateways(pair.b, f"{name}-probe") == gateways)
     # The desk of the gateway that takes its leave goes on at the other: its robots are free at once.
     pair.a.end()
+    wait_until(lambda: here.ask("Stopped").get("gateways") == gateways[:1])
+    assert "gateways" not in here.ask("Stopped")
     wait_until(lambda: pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)])
