@@ -110,6 +110,26 @@ def test_a_robot_at_one_is_seen_commanded_and_stopped_at_the_other(pair, name):
     at_a.until(lambda: not at_a.emergency["in_force"])
 
 
+def test_what_a_robot_declares_and_says_of_itself_is_seen_at_the_other_gateway(pair, name):
+    robot, desk = pair.a.robot(name), desk_at(pair.b)
+    robot.plug_in(1, asks_path=True, abilities=["targets", "map"])
+    said = {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0, "battery": 0.824, "status": "brush is worn"}
+    robot.tell("SendPos", said)
+    desk.until(lambda: (desk.robots.get(name) or {}).get("battery") == 0.82)
+    seen = desk.robots[name]
+    assert (seen["status"], seen["paths"], seen["abilities"]) == ("brush is worn", "asks", "map targets")
+    # It stays while newer positions come without, until it says something else.
+    robot.tell("SendPos", {**said, "x": 20.5})
+    desk.until(lambda: desk.robots[name]["x"] == 20.5)
+    assert desk.robots[name]["battery"] == 0.82
+    robot.tell("SendPos", {**said, "x": 21.0, "battery": 0.5, "status": None})
+    desk.until(lambda: desk.robots[name]["battery"] == 0.5)
+    assert desk.robots[name].get("status") is None
+    # A place that cannot be is doubted there, too.
+    robot.tell("SendPos", {**said, "x": 1e7})
+    desk.until(lambda: "km" in (desk.robots[name].get("status") or ""))
+
+
 def test_the_newest_connection_counts(pair, name):
     """A robot that connects to the other gateway is commanded there, and the old connection is closed."""
     old = pair.robot(pair.a, name)
