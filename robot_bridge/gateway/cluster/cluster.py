@@ -87,6 +87,7 @@ class Cluster:
         elif not everywhere:
             self.membership.reached_at(address)
         else:
+            self.membership.reached_at("")
             log.warning(
                 "gateway %s listens on all addresses and does not know by which one robots reach it; they "
                 "are not told of it unless you give --public-address wss://HOST:PORT",

@@ -68,7 +68,7 @@ class Membership:
         return self._clock.time() + self.clock_offset
 
     def reached_at(self, address: str) -> None:
-        """Note where robots reach this gateway, ``ws://host:port``; the next renewal tells the others."""
+        """Note where robots reach this gateway, ``ws://host:port``, or that nobody knows (empty)."""
         self.me = self.me._replace(address=address)
 
     def addresses(self) -> list[str]:
@@ -78,7 +78,7 @@ class Membership:
         """
         others = [member for member in self.members if member.gw != self.name]
         known = [self.me, *sorted(others, key=lambda member: (not member.alive, member.since, member.gw))]
-        return [member.address for member in known if member.address is not None]
+        return [member.address for member in known if member.address]
 
     async def join(self) -> None:
         """Enter the fleet; raises BridgeError where another gateway has this name, or has the database alone.

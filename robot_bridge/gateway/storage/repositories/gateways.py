@@ -21,7 +21,7 @@ class Member(NamedTuple):
     """A gateway of the fleet; ``since`` is when it joined, ``left`` the seconds that its lease has left.
 
     Who joins later has a later ``since``, also where the database's clock was set back. ``address`` is where
-    robots reach it, None where that is not known, or not yet.
+    robots reach it: empty where that is not known, None where it is not known yet and the one before holds.
     """
 
     gw: str
@@ -72,7 +72,7 @@ _JOIN = text(
     from gateways
     on conflict (gw) do update set run = excluded.run, version = excluded.version, host = excluded.host,
         process = excluded.process, since = excluded.since, lease_until = excluded.lease_until,
-        address = excluded.address
+        address = coalesce(excluded.address, gateways.address)
     where gateways.run = excluded.run or gateways.lease_until <= {_NOW}
     returning run
     """  # nosec B608 # names of ours
@@ -80,7 +80,7 @@ _JOIN = text(
 _ONE_JOINS = text("lock table gateways in share row exclusive mode")
 _RENEW = text(
     f"""
-    update gateways set lease_until = {_NOW} + :lease, address = :address
+    update gateways set lease_until = {_NOW} + :lease, address = coalesce(:address, address)
     where gw = :gw and run = :run and lease_until > {_NOW} returning since
     """  # nosec B608 # names of ours
 )

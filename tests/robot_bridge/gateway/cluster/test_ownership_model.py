@@ -279,6 +279,10 @@ def test_a_gateway_of_the_version_before_is_a_member_without_an_address(engine):
         # Where it is reached may be known only after it has joined.
         assert gateways.renew(connection, new._replace(address="ws://10.0.0.2:1"), LEASE_S, 51.0)
         assert gateways.members(connection, 51.0)[1].address == "ws://10.0.0.2:1"
+        # One that starts again and does not listen yet is where it was.
+        assert gateways.renew(connection, new._replace(address=None), LEASE_S, 52.0)
+        assert gateways.join(connection, Member("new", "run-2"), LEASE_S, 53.0)
+        assert gateways.members(connection, 53.0)[1].address == "ws://10.0.0.2:1"
 
 
 @pytest.fixture
