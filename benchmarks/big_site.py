@@ -24,7 +24,8 @@ from benchmarks.swarm import cpu_seconds, megabytes_of
 from benchmarks.trial import size
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import PART_OF
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import cache_writer, read_site, write_site, write_site_cache
 from robot_bridge.core.sites.site_cache import CACHE_FILE
 from robot_bridge.gateway.site.site_maps import STORED_AT_ONCE, SiteMaps

@@ -20,7 +20,8 @@ from robot_bridge.core.robotmap.model import Window
 from robot_bridge.core.robotmap.outlines import Outlines
 from robot_bridge.core.robotmap.text_format import write_text
 from robot_bridge.core.robotmap.window_index import OutlineIndex
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import Site, read_site, write_site
 from robot_bridge.gateway.site.site_maps import SiteMaps
 

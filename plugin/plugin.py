@@ -80,7 +80,7 @@ class FleetPlugin:
         from .layers.role_editor.roles_dialog import RolesAction
         from .locator import RobotLocator
         from .map.site_project import SiteDropHandler
-        from .map.tools.surface_tool import SurfaceAction
+        from .map.tools.road_tools import SurfaceAction
         from .observations.observation_dock import ObservationsAction
         from .options_page import OptionsFactory
         from .panel.window import MENU, FleetWindow, WindowAlarms

@@ -34,7 +34,7 @@ COMMANDS = {
     "experiment": "Drive a simulated robot that finds itself on its map, and tell how far it is off.",
 }
 """The commands with what each says of itself: a group or a function of its name in a module of ``cli``."""
-_IN_ACCOUNTS = ("operators", "links", "sessions")
+_IN_ACCOUNTS = ("robots", "operators", "links", "sessions")
 """The commands that are in one module; every other one has a module of its name."""
 
 

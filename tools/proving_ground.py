@@ -24,9 +24,9 @@ import shapely
 
 from robot_bridge.core.roads.centrelines import GENERATED, Surface
 from robot_bridge.core.robotmap.outlines import Outlines
-from robot_bridge.core.sites.frame import SiteFrame, projections
+from robot_bridge.core.sites.frame import SiteBounds, SiteFrame, projections
 from robot_bridge.core.sites.geopackage import Centreline
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import write_site
 
 ROOT = Path(__file__).resolve().parents[1]

@@ -19,18 +19,9 @@ from ...robot_bridge.core.messages.roads import Closures, Conflicts, ReplannedRo
 from ...robot_bridge.core.messages.safety import EmergencyReport, Geofence, Nearness
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
+from . import report_caches
 from .command_cache import CommandCache
 from .connection_status import ConnectionPhase, ConnectionStatus
-from .report_caches import (
-    GeofenceState,
-    KnownPlan,
-    NearnessState,
-    ObservationCache,
-    PlacedConeCache,
-    PlanCache,
-    QueueCache,
-    newer_plan,
-)
 from .robot_states import RobotStates, RobotView
 from .robot_table import RobotTable
 
@@ -94,7 +85,7 @@ class StateUpdate:
     commands: dict[str, CommandReport] = field(default_factory=dict)
     queues: dict[str, QueueReport] = field(default_factory=dict)
     are_all_queues: bool = False
-    plans: dict[str, KnownPlan] = field(default_factory=dict)
+    plans: dict[str, report_caches.KnownPlan] = field(default_factory=dict)
     is_driving: bool | None = None
     placed_cones: dict[int, PlacementReport] = field(default_factory=dict)
     observations: dict[int, ObservationReport] = field(default_factory=dict)
@@ -119,7 +110,9 @@ class StateUpdate:
             if topic == "robots":
                 self._add_robots(report)
             elif topic == "plans":
-                self.plans.update({one.plan: newer_plan(self.plans.get(one.plan), one) for one in report})
+                self.plans.update(
+                    {one.plan: report_caches.newer_plan(self.plans.get(one.plan), one) for one in report}
+                )
             elif topic in KEYS:
                 self._add_keyed(topic, report)
             elif topic == "replanned":
@@ -237,14 +230,14 @@ class FleetState(QObject):
         self.site: SiteReport | None = None
         self.robots = RobotStates()
         self.commands = CommandCache()
-        self.queues = QueueCache()
-        self.plans = PlanCache()
-        self.placed_cones = PlacedConeCache()
-        self.observations = ObservationCache()
+        self.queues = report_caches.QueueCache()
+        self.plans = report_caches.PlanCache()
+        self.placed_cones = report_caches.PlacedConeCache()
+        self.observations = report_caches.ObservationCache()
         self.closures: tuple = ()
         self.conflicts = Conflicts(0.0)
-        self.geofence = GeofenceState(clock)
-        self.nearness = NearnessState(clock)
+        self.geofence = report_caches.GeofenceState(clock)
+        self.nearness = report_caches.NearnessState(clock)
         self.suspensions = Suspensions()
         self.links = Links()
         self.emergency: EmergencyReport | None = None

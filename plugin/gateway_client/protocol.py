@@ -9,31 +9,13 @@ from typing import Any
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
+from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
 from ...robot_bridge.core.messages.commands import GetCommands
-from ...robot_bridge.core.messages.json_values import (
-    closures_report,
-    conflicts_report,
-    emergency_report,
-    links_report,
-    observation_report,
-    placement_report,
-    queue_report,
-    replanned_robot,
-    site_report,
-    suspensions_report,
-    to_json,
-)
 from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe
 from ...robot_bridge.core.messages.queues import GetQueue
 from ...robot_bridge.core.messages.roads import GetClosures
-from ...robot_bridge.core.messages.safety import (
-    ClearEmergencyStop,
-    EmergencyStop,
-    geofence_report,
-    nearness_report,
-)
 from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
@@ -50,22 +32,22 @@ OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
 
 NEWEST_COUNTS = {
-    "emergency": emergency_report,
-    "suspensions": suspensions_report,
-    "links": links_report,
-    "geofence": geofence_report,
-    "nearness": nearness_report,
-    "closures": closures_report,
-    "conflicts": conflicts_report,
+    "emergency": json_values.emergency_report,
+    "suspensions": json_values.suspensions_report,
+    "links": json_values.links_report,
+    "geofence": safety.geofence_report,
+    "nearness": safety.nearness_report,
+    "closures": json_values.closures_report,
+    "conflicts": json_values.conflicts_report,
 }
 """Notifications of which only the newest counts, each a topic of its name: what decodes it."""
 EACH_COUNTS = {
     "command": ("commands", command_in),
-    "queue": ("queues", queue_report),
+    "queue": ("queues", json_values.queue_report),
     "plan": ("plans", plan_in),
-    "placement": ("placed_cones", placement_report),
-    "observation": ("observations", observation_report),
-    "replanned": ("replanned", replanned_robot),
+    "placement": ("placed_cones", json_values.placement_report),
+    "observation": ("observations", json_values.observation_report),
+    "replanned": ("replanned", json_values.replanned_robot),
 }
 """Notifications of one thing among many: the topic, and what decodes it."""
 
@@ -149,7 +131,7 @@ class GatewayProtocol:
         self.ready = False
         # A name that the gateway would refuse must not keep its operator away.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
-        return [self._request(OperatorRequest("hello", Hello.method, to_json(Hello(name))))]
+        return [self._request(OperatorRequest("hello", Hello.method, json_values.to_json(Hello(name))))]
 
     def submit(self, order: OperatorRequest) -> list[str]:
         """Return the texts to send now for a new order: none while the link is not ready."""
@@ -227,7 +209,7 @@ class GatewayProtocol:
         if method == "positions":
             self._buffer.add(robots=table_from_rows(params["robots"], self._clock.steady(), params))
         elif method == "site":
-            self._buffer.add(site=checked_site(site_report(params)))
+            self._buffer.add(site=checked_site(json_values.site_report(params)))
         elif method in NEWEST_COUNTS:
             self._buffer.add(**{method: NEWEST_COUNTS[method](params)})
         elif method in EACH_COUNTS:
@@ -295,10 +277,10 @@ class GatewayProtocol:
                 final=True,
             )
         database = str(result.get("database") or "")
-        self._buffer.add(site=checked_site(site_report(result["site"])), greeting_of=database)
+        self._buffer.add(site=checked_site(json_values.site_report(result["site"])), greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
-            self._buffer.add(emergency=emergency_report(result["emergency"]))
+            self._buffer.add(emergency=json_values.emergency_report(result["emergency"]))
         self.ready = True
         orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
@@ -307,12 +289,14 @@ class GatewayProtocol:
             )
         first = [
             OperatorRequest(
-                "subscribe", Subscribe.method, to_json(Subscribe(self._rate, PositionForm.COLUMNS))
+                "subscribe",
+                Subscribe.method,
+                json_values.to_json(Subscribe(self._rate, PositionForm.COLUMNS)),
             ),
-            OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
+            OperatorRequest("get_commands", GetCommands.method, json_values.to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
-            OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
-            OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
+            OperatorRequest(ALL_QUEUES, GetQueue.method, json_values.to_json(GetQueue())),
+            OperatorRequest(ALL_PLANS, GetPlans.method, json_values.to_json(GetPlans())),
         ]
         return [self._request(order) for order in (*first, *orders)]
 
@@ -332,10 +316,10 @@ class GatewayProtocol:
                 )
             return []
         result = message.get("result") or {}
-        if order.method in (EmergencyStop.method, ClearEmergencyStop.method):
-            self._buffer.add(emergency=emergency_report(result))
+        if order.method in (safety.EmergencyStop.method, safety.ClearEmergencyStop.method):
+            self._buffer.add(emergency=json_values.emergency_report(result))
         if order.method == GetClosures.method:
-            self._buffer.add(closures=closures_report(result))
+            self._buffer.add(closures=json_values.closures_report(result))
         self._buffer.add(
             queues=queues_in(result),
             are_all_queues=order.key == ALL_QUEUES,

@@ -155,12 +155,19 @@ class Rule:
         )
         """Whether it is about fields alone."""
         self._chosen = itemgetter(*self._places) if self.is_pure else None
+        self._field = self._places[0] if self.is_pure and expression.isField() else None
 
     def known(self, attributes: list[Any]) -> tuple[Any, Any]:
-        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by.
+
+        The field itself where the expression is no more than its name.
+        """
         if self._chosen is None:
             return UNKNOWN, None
         try:
+            if self._field is not None:
+                value = attributes[self._field]
+                return (value, None) if isinstance(value, _PLAIN) else (UNKNOWN, None)
             chosen = self._chosen(attributes)
             # 1, 1.0 and true are equal, and text of them is not.
             key = (chosen, type(chosen)) if len(self._places) == 1 else (chosen, *map(type, chosen))

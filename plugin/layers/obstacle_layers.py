@@ -445,7 +445,7 @@ class _LayerReader:
             self._warn(feature, doubts)
             return
         geometry = feature.geometry()
-        if geometry.isNull() or geometry.isEmpty():
+        if geometry.isEmpty():
             self._warn(feature, [NO_GEOMETRY])
             return
         if self._area is not None and not self._may_touch(geometry):

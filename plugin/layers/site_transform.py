@@ -159,7 +159,7 @@ class LayerToSiteTransform:
     def of_feature(self, feature: QgsFeature, notes: list[str]) -> QgsGeometry | None:
         """Return the geometry of ``feature`` in metres; None, with a note of why, where it has none there."""
         geometry = feature.geometry()
-        if geometry.isNull() or geometry.isEmpty():
+        if geometry.isEmpty():
             notes.append(tr("has no geometry; it is left out"))
             return None
         try:

@@ -39,16 +39,7 @@ from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import ROBOT_STATES, RobotStates
 from ..gateway_client.robot_table import STATES
-from ..layers.live_layers import (
-    Row,
-    RowLayer,
-    fleet_group,
-    give_style,
-    label,
-    leave_clean,
-    make_live,
-    remove_if_empty,
-)
+from ..layers import live_layers
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import STATE_COLOURS
 from ..ui.language import date_and_time, time_of_day, tr
@@ -226,16 +217,16 @@ class RobotLayer(QObject):
         self._frame = frame
         was_dirty = self._project.isDirty()
         self._layer = made_layer(QgsCoordinateReferenceSystem(site.crs))
-        make_live(self._layer, KIND)
+        live_layers.make_live(self._layer, KIND)
         if self._style is not None:
             self._style.writeToLayer(self._layer)
         else:
-            give_style(self._project, self._layer)
+            live_layers.give_style(self._project, self._layer)
         self._layer.willBeDeleted.connect(self._gone)
         self._layer.selectionChanged.connect(self._selection_changed)
         self._project.addMapLayer(self._layer, False)
-        fleet_group(self._project).insertLayer(0, self._layer)
-        leave_clean(self._project, was_dirty)
+        live_layers.fleet_group(self._project).insertLayer(0, self._layer)
+        live_layers.leave_clean(self._project, was_dirty)
 
     def begin(self, robots: int) -> None:
         """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
@@ -297,8 +288,8 @@ class RobotLayer(QObject):
             layer.willBeDeleted.disconnect(self._gone)
             layer.selectionChanged.disconnect(self._selection_changed)
             self._project.removeMapLayer(layer.id())
-        remove_if_empty(self._project)
-        leave_clean(self._project, was_dirty)
+        live_layers.remove_if_empty(self._project)
+        live_layers.leave_clean(self._project, was_dirty)
 
     def _write(self, features: list[RobotFeature]) -> None:
         """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
@@ -376,10 +367,10 @@ class RoadLayers(QObject):
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._state = state
-        self._closures = RowLayer(
+        self._closures = live_layers.RowLayer(
             project, "closed_roads", tr("Closed roads"), "LineString", CLOSED_FIELDS, _style_closures
         )
-        self._conflicts = RowLayer(
+        self._conflicts = live_layers.RowLayer(
             project, "conflicts", tr("Conflicts"), "Point", CONFLICT_FIELDS, _style_conflicts
         )
         state.closures_changed.connect(self._show_closures)
@@ -430,7 +421,7 @@ def _style_closures(layer: QgsVectorLayer) -> None:
         f"{closed} || if(reason != '', ': ' || reason, '')"
         f" || if(until != '', ', ' || {until} || ' ' || until, '')"
     )
-    label(layer, words, QgsPalLayerSettings.Placement.Line, LABEL_MM)
+    live_layers.label(layer, words, QgsPalLayerSettings.Placement.Line, LABEL_MM)
 
 
 def _style_conflicts(layer: QgsVectorLayer) -> None:
@@ -443,7 +434,7 @@ def _style_conflicts(layer: QgsVectorLayer) -> None:
     }
     layer.setRenderer(QgsSingleSymbolRenderer(QgsMarkerSymbol.createSimple(mark)))
     words = "robot || ' × ' || other || ' ' || nearest_at"
-    label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, LABEL_MM)
+    live_layers.label(layer, words, QgsPalLayerSettings.Placement.OrderedPositionsAroundPoint, LABEL_MM)
 
 
 PLACED_CONE_FIELDS = "robot:string,label:string,placed_at:string,deviation_m:double"
@@ -460,7 +451,7 @@ class StandingCones(QObject):
         super().__init__(parent)
         self._state = state
         self._reached: dict[str, CommandReport] = {}
-        self._layer = RowLayer(
+        self._layer = live_layers.RowLayer(
             project, "standing_cones", tr("Cones put down"), "Point", PLACED_CONE_FIELDS, _style_cones
         )
         state.commands_changed.connect(self._add_reached)
@@ -489,7 +480,7 @@ class StandingCones(QObject):
     def _show(self, *_: object) -> None:
         self._layer.show(list(self._rows())[-MOST:], self._state.site)
 
-    def _rows(self) -> Iterator[Row]:
+    def _rows(self) -> Iterator[live_layers.Row]:
         known = set()
         for cone in self._state.placed_cones:
             known.add(cone.command)

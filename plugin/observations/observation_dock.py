@@ -31,15 +31,7 @@ from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText, ScrollingText
-from .observation_views import (
-    ICON,
-    NUMBER,
-    STATES,
-    ObservationFeed,
-    ObservationLayer,
-    ObservationModel,
-    Thumbnails,
-)
+from . import observation_views
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
 """Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
@@ -193,7 +185,7 @@ def _about(report: ObservationReport) -> str:
 def _state_in_words(report: ObservationReport) -> str:
     if is_pending(report):
         return tr("Look at it: is it of use?") if report.media_type else tr("It waits for your review.")
-    state = STATES[report.state]
+    state = observation_views.STATES[report.state]
     if report.reviewed_by:
         return tr(
             "State: {state}, by {by}. A new review takes the place of that.",
@@ -230,19 +222,19 @@ class ObservationDock(ActionDock):
         super().__init__(tr("Observations"), parent)
         self.setObjectName("fleet_observation_dock")
         self._desk = desk
-        self.thumbnails = Thumbnails(self)
-        self.feed = ObservationFeed(desk, self.thumbnails, self)
-        self.layer = ObservationLayer(desk.project, self.thumbnails)
-        self.model = ObservationModel(self.thumbnails, self)
+        self.thumbnails = observation_views.Thumbnails(self)
+        self.feed = observation_views.ObservationFeed(desk, self.thumbnails, self)
+        self.layer = observation_views.ObservationLayer(desk.project, self.thumbnails)
+        self.model = observation_views.ObservationModel(self.thumbnails, self)
         self.head = ElidedText("fleet_observation_head")
         self.reviewed = QCheckBox(tr("Show reviewed ones, too"))
         self.reviewed.setObjectName("fleet_observation_reviewed")
         self.list = QListView()
         self.list.setObjectName("fleet_observation_list")
         self.list.setModel(self.model)
-        self.list.setIconSize(ICON)
+        self.list.setIconSize(observation_views.ICON)
         self.list.setUniformItemSizes(True)
-        self.list.setMinimumHeight(ROWS * ICON.height())
+        self.list.setMinimumHeight(ROWS * observation_views.ICON.height())
         self.form = ReviewForm()
         self._lay_out()
         self._timer = QTimer(self)
@@ -283,7 +275,7 @@ class ObservationDock(ActionDock):
     def chosen(self) -> int | None:
         """The number of the observation that is looked at, None for none."""
         index = self.list.currentIndex()
-        return index.data(NUMBER) if index.isValid() else None
+        return index.data(observation_views.NUMBER) if index.isValid() else None
 
     def choose(self, number: int) -> None:
         """Look at an observation, if it is in the list."""
@@ -310,7 +302,7 @@ class ObservationDock(ActionDock):
         self.thumbnails.made.connect(self._refresh_later)
         self.reviewed.toggled.connect(self.refresh)
         self.list.selectionModel().currentChanged.connect(lambda *_: self._show_chosen())
-        self.list.doubleClicked.connect(lambda index: self.go_to(index.data(NUMBER)))
+        self.list.doubleClicked.connect(lambda index: self.go_to(index.data(observation_views.NUMBER)))
         self.form.place_requested.connect(self.go_to)
         self.form.requested.connect(self._review)
         self.feed.reviewed.connect(self._reviewed)

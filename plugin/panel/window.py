@@ -20,7 +20,7 @@ from ..map.overlay.task_painter import QueueMarks
 from ..map.reported_layers import RoadLayers, StandingCones
 from ..map.site_project import ProjectMatch
 from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
-from ..map.tools.road_route_tool import RoadRouteTool
+from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RouteTool
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all

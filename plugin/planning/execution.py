@@ -10,20 +10,7 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.assignment.plan import ConePlan, document_of
-from ...robot_bridge.core.messages.plans import (
-    ClearPlan,
-    ConfirmReplan,
-    DiscardReplan,
-    GetPlans,
-    PausePlan,
-    PlanCone,
-    PlanProblemKind,
-    PlanReport,
-    PlanState,
-    Replan,
-    ResumePlan,
-    SubmitPlan,
-)
+from ...robot_bridge.core.messages import plans
 from ...robot_bridge.core.messages.queues import GetQueue, QueueState, TaskState
 from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, GetPlacements
 from ...robot_bridge.core.messages.validation import MessageError
@@ -52,7 +39,7 @@ class RefusedPlan:
     ``plan`` is what it is about, as the operator saw it.
     """
 
-    request: SubmitPlan | ConfirmReplan
+    request: plans.SubmitPlan | plans.ConfirmReplan
     words: str
     found: tuple[str, ...]
     plan: ConePlan | None
@@ -94,7 +81,7 @@ class PlanExecution(QObject):
         """What this desk submitted last: it is shown until the gateway has sent it back."""
         self._went: tuple[str, Sequence[str]] | None = None
         """What was asked after robots were let go on, by its key, and these robots."""
-        self._reports: dict[str, PlanReport] = {}
+        self._reports: dict[str, plans.PlanReport] = {}
         desk.state.plans_changed.connect(self._take_plans)
         desk.state.queues_changed.connect(self._take_queues)
         desk.orders.answered.connect(self._answered)
@@ -112,7 +99,7 @@ class PlanExecution(QObject):
         known = self.known
         if known is None:
             return None if self._drafts.draft is None else self._drafts.draft.plan
-        if known.report.state is PlanState.PROPOSED and known.proposal is not None:
+        if known.report.state is plans.PlanState.PROPOSED and known.proposal is not None:
             return known.proposal
         own = self._submitted_here
         if known.document is None and own is not None and own.name == known.plan:
@@ -128,7 +115,7 @@ class PlanExecution(QObject):
     @property
     def asking(self) -> bool:
         """Whether something was asked of the gateway that it has not answered yet; pauses do not count."""
-        return any(not isinstance(one.request, PausePlan) for one in self._pending.values())
+        return any(not isinstance(one.request, plans.PausePlan) for one in self._pending.values())
 
     @property
     def busy(self) -> bool:
@@ -148,9 +135,9 @@ class PlanExecution(QObject):
         Not those that are away or whose cone failed: it takes a new plan to let these go on.
         """
         known = self.known
-        if known is None or known.report.state is not PlanState.DRIVEN:
+        if known is None or known.report.state is not plans.PlanState.DRIVEN:
             return []
-        away = {one.robot for one in known.report.problems if one.kind is PlanProblemKind.AWAY}
+        away = {one.robot for one in known.report.problems if one.kind is plans.PlanProblemKind.AWAY}
         queues = [self._desk.state.queues.get(robot) for robot in known.report.robots if robot not in away]
         return [
             one.robot
@@ -170,7 +157,7 @@ class PlanExecution(QObject):
         if known is None:
             return []
         report, robots = known.report, {}
-        if report.state is PlanState.PAUSED:
+        if report.state is plans.PlanState.PAUSED:
             robots[": ".join(text for text in (report.by, report.reason) if text)] = report.robots
         for robot in self.paused:
             queue = self._desk.state.queues.get(robot)
@@ -219,43 +206,43 @@ class PlanExecution(QObject):
             raise PlanningError(
                 tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
             )
-        done = self._submitted if isinstance(refusal.request, SubmitPlan) else self._went_on
+        done = self._submitted if isinstance(refusal.request, plans.SubmitPlan) else self._went_on
         self._ask(replace(refusal.request, override=why), refusal.words, refusal.plan, done)
 
     def pause(self) -> None:
         """Have the plan's robots sent nothing more; raises PlanningError when none is driven."""
-        self._ask(PausePlan(self._open().plan), tr("Pause of the cone plan"))
+        self._ask(plans.PausePlan(self._open().plan), tr("Pause of the cone plan"))
 
     def resume(self) -> None:
         """Let the plan's robots go on; raises PlanningError when none is driven."""
         report = self._open().report
-        request = ResumePlan(report.plan, report.revision)
+        request = plans.ResumePlan(report.plan, report.revision)
         self._ask(request, tr("Going on with the cone plan"), done=self._went_on)
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Have the robots held and what is left planned; raises PlanningError when no plan is driven."""
         report = self._open().report
-        self._ask(Replan(report.plan, report.revision, try_again), tr("Plan of what is left"))
+        self._ask(plans.Replan(report.plan, report.revision, try_again), tr("Plan of what is left"))
 
     def confirm(self) -> None:
         """Have the new plan for what is left driven; raises PlanningError when it is not there to be seen."""
         known = self._open()
         if known.proposal is None or not known.is_whole:
             raise PlanningError(tr("There is no new plan to confirm."))
-        request = ConfirmReplan(known.plan, known.report.revision)
+        request = plans.ConfirmReplan(known.plan, known.report.revision)
         self._ask(request, tr("The new cone plan"), known.proposal, self._went_on)
 
     def discard(self) -> None:
         """Give up the new plan, or its making; robots that were held go on as before."""
         report = self._open().report
-        self._ask(DiscardReplan(report.plan, report.revision), tr("Going on as before"))
+        self._ask(plans.DiscardReplan(report.plan, report.revision), tr("Going on as before"))
 
     def clear(self) -> None:
         """Have the plan that is shown followed no more, or show no longer what ended; drop the draft."""
         known = self.known
         if known is not None and known.is_open:
             self._cleared_here.add(known.plan)
-            self._ask(ClearPlan(known.plan), tr("Clearing the cone plan"))
+            self._ask(plans.ClearPlan(known.plan), tr("Clearing the cone plan"))
             return
         self._show_nothing(wants_draft=True)
 
@@ -276,15 +263,15 @@ class PlanExecution(QObject):
             raise PlanningError(tr("No plan is being driven, or something is still being sent."))
         return known
 
-    def _submission(self, draft: PlanProposal) -> SubmitPlan:
+    def _submission(self, draft: PlanProposal) -> plans.SubmitPlan:
         settings, ground = self._drafts.settings, draft.ways.settings
         driving = [one.robot.id for one in draft.plan.robots if one.stops]
         try:
-            return SubmitPlan(
+            return plans.SubmitPlan(
                 draft.name,
                 document_of(draft.plan),
                 [
-                    PlanCone(target, one.cone, one.layout, one.placement, one.theta)
+                    plans.PlanCone(target, one.cone, one.layout, one.placement, one.theta)
                     for target, one in draft.facts.items()
                 ],
                 {robot: self._desk.state.queues.revision(robot) for robot in driving},
@@ -306,7 +293,7 @@ class PlanExecution(QObject):
         plan: ConePlan | None = None,
         done: Callable[[dict[str, Any]], None] = lambda result: None,
     ) -> None:
-        if self.asking and not isinstance(request, PausePlan):
+        if self.asking and not isinstance(request, plans.PausePlan):
             raise PlanningError(tr("No plan is being driven, or something is still being sent."))
         key = self._desk.orders.ask(request, words, PLAN_SENT)
         # Only now: what could not be asked leaves what was refused to be overridden.
@@ -328,7 +315,7 @@ class PlanExecution(QObject):
             # One text that says where it is decided, in place of the one that every refusal brings.
             self._desk.messages.withdraw(f"{pending.words}: {answer.error}")
             self._fail(_in_words(self._refusal))
-        if isinstance(pending.request, ClearPlan):
+        if isinstance(pending.request, plans.ClearPlan):
             self._cleared_here.discard(pending.request.plan)
         self.changed.emit()
 
@@ -370,7 +357,7 @@ class PlanExecution(QObject):
             self._notice(name)
         self._submitted_before()
         known = self.known
-        if known is not None and known.report.state is PlanState.CLEARED:
+        if known is not None and known.report.state is plans.PlanState.CLEARED:
             self._leave_cleared(known.report)
         elif known is None:
             self._show_newest()
@@ -392,7 +379,7 @@ class PlanExecution(QObject):
         if newest is not None and self._drafts.draft is None and not (self._drafts.busy or self._wants_draft):
             self.shown = newest.plan
 
-    def _leave_cleared(self, report: PlanReport) -> None:
+    def _leave_cleared(self, report: plans.PlanReport) -> None:
         self.shown, self._wants_draft = None, True
         if report.plan not in self._cleared_here:
             text = tr(
@@ -408,7 +395,7 @@ class PlanExecution(QObject):
             return
         is_another = self._fetched is None or self._fetched[0] != known.plan
         try:
-            self._desk.orders.inquire(GetPlans(known.plan, documents=True))
+            self._desk.orders.inquire(plans.GetPlans(known.plan, documents=True))
             if is_another:
                 self._desk.orders.inquire(GetPlacements(plan=known.plan, limit=MOST_PLACEMENTS))
         except NotSentError:
@@ -436,12 +423,12 @@ class PlanExecution(QObject):
             if report.by == GATEWAY and report.reason and STOPPED_BY not in report.reason:
                 self._notice_gateway(before.state, report, by_itself)
 
-    def _notice_gateway(self, before: PlanState, report: PlanReport, topic: Topic) -> None:
+    def _notice_gateway(self, before: plans.PlanState, report: plans.PlanReport, topic: Topic) -> None:
         """Tell what the gateway did with a plan by itself."""
         why = report.reason
-        if report.state is PlanState.PAUSED:
+        if report.state is plans.PlanState.PAUSED:
             self._desk.report_failure(tr("The cone plan is paused: {why}.", why=why), topic)
-        elif report.state is PlanState.DRIVEN and not report.problems:
+        elif report.state is plans.PlanState.DRIVEN and not report.problems:
             self.remarked.emit(tr("A new plan was sent by itself, as was switched on: {why}", why=why))
         elif report.state is before:
             self._desk.report_failure(tr("No new cone plan was sent by itself: {why}.", why=why), topic)

@@ -27,14 +27,7 @@ from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
-from .plan_settings import (
-    PlanSettings,
-    have_position,
-    participating_robots,
-    read_cones,
-    read_settings,
-    read_stores,
-)
+from . import plan_settings
 from .proposal import ClosureCheck, PlanProposal, PlanTask, PlanTravel
 
 # --- The plan as it is planned and edited at the desk; nothing of it is known to any robot ---
@@ -54,13 +47,13 @@ class PlanEditor(QObject):
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
-        self.settings: PlanSettings = read_settings(desk.project)
+        self.settings: plan_settings.PlanSettings = plan_settings.read_settings(desk.project)
         self.draft: PlanProposal | None = None
         self.task: PlanTask | None = None
         self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
-    def plan_with(self, settings: PlanSettings) -> None:
+    def plan_with(self, settings: plan_settings.PlanSettings) -> None:
         """Make plans by ``settings`` from now on."""
         self.settings = settings
 
@@ -75,7 +68,7 @@ class PlanEditor(QObject):
         :raises FleetError: naming what is missing.
         """
         frame = self._frame()
-        targets, facts = read_cones(self._desk.project, self.settings, frame)
+        targets, facts = plan_settings.read_cones(self._desk.project, self.settings, frame)
         self._make(targets, facts, frame, preview)
 
     def make_collecting(self, tasks: Sequence[QueueTask], *, preview: bool) -> None:
@@ -165,7 +158,7 @@ class PlanEditor(QObject):
     def _make(
         self, targets: tuple[ConeTarget, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
     ) -> None:
-        stores = read_stores(self._desk.project, self.settings, frame)
+        stores = plan_settings.read_stores(self._desk.project, self.settings, frame)
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
             objective = Objective(
@@ -244,7 +237,7 @@ class PlanEditor(QObject):
 
     def _robots(self) -> tuple[PlanRobot, ...]:
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
-        used = participating_robots(robots, self.settings)
+        used = plan_settings.participating_robots(robots, self.settings)
         if not used.any():
             raise PlanningError(
                 tr("No robot that is there is chosen: tick robots in the table, or connect some.")
@@ -267,7 +260,9 @@ class PlanEditor(QObject):
     def _standing_robots(self) -> dict[str, tuple[float, float]]:
         """Return where robots are that do not take part."""
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
-        stand = have_position(robots) & ~participating_robots(robots, self.settings)
+        stand = plan_settings.have_position(robots) & ~plan_settings.participating_robots(
+            robots, self.settings
+        )
         return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}
 
 

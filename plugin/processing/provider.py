@@ -7,21 +7,17 @@ from qgis.PyQt.QtGui import QIcon
 
 from .algorithms.as_placed_report import AsPlacedReport
 from .algorithms.assign_cones import AssignCones
-from .algorithms.build_road_network import BuildRoadNetwork
-from .algorithms.build_road_surfaces import BuildRoadSurfaces
-from .algorithms.check_road_network import CheckRoadNetwork
-from .algorithms.check_robot_map import CheckRobotMap
-from .algorithms.cone_layout import ConeLayout
+from .algorithms.cone_layouts import ConeLayout, ImportConeLayout
 from .algorithms.export_navigation_map import ExportNavigationMap
 from .algorithms.export_road_network import ExportRoadNetwork
 from .algorithms.export_robot_map import ExportRobotMap
 from .algorithms.export_robot_map_tiles import ExportRobotMapTiles
 from .algorithms.find_route import FindRoute
-from .algorithms.import_cone_layout import ImportConeLayout
 from .algorithms.import_navigation_map import ImportNavigationMap
-from .algorithms.load_robot_map import LoadRobotMap
 from .algorithms.publish_site import PublishSite
-from .algorithms.surface_at_point import SurfaceAtPoint
+from .algorithms.read_robot_maps import CheckRobotMap, LoadRobotMap
+from .algorithms.road_network import BuildRoadNetwork, CheckRoadNetwork
+from .algorithms.road_surfaces import BuildRoadSurfaces, SurfaceAtPoint
 from .algorithms.trajectories import Trajectories
 
 ICON = Path(__file__).parents[2] / "resources" / "icons" / "fleet.svg"

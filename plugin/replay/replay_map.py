@@ -24,15 +24,7 @@ from qgis.PyQt.QtWidgets import QWidget
 
 from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..layers.live_layers import (
-    MARK,
-    fleet_group,
-    give_style,
-    leave_clean,
-    live_layers,
-    make_live,
-    remove_if_empty,
-)
+from ..layers import live_layers
 from ..layers.site_transform import SiteToMapTransform, frame_of
 from ..map.live_view import FRAME_MS
 from ..map.overlay.fleet_overlay import FleetOverlay
@@ -117,8 +109,14 @@ class ReplayMap(QgsMapCanvas):
         """Take over the live map's layers, CRS and rotation; what was driven lies above the layers."""
         self.setDestinationCrs(self._live.mapSettings().destinationCrs())
         self.setRotation(self._live.rotation())
-        own = [one for one in live_layers(QgsProject.instance()) if one.customProperty(MARK) == OWN_LAYER]
-        layers = own + [layer for layer in self._live.layers() if layer.customProperty(MARK) is None]
+        own = [
+            one
+            for one in live_layers.live_layers(QgsProject.instance())
+            if one.customProperty(live_layers.MARK) == OWN_LAYER
+        ]
+        layers = own + [
+            layer for layer in self._live.layers() if layer.customProperty(live_layers.MARK) is None
+        ]
         if layers != self.layers():
             self.setLayers(layers)
 
@@ -235,8 +233,8 @@ class ReplayLayer(QObject):
         if self.layer is not None:
             dirty = self._project.isDirty()
             self._out.append((self._project.takeMapLayer(self.layer), self._lines))
-            remove_if_empty(self._project)
-            leave_clean(self._project, dirty)
+            live_layers.remove_if_empty(self._project)
+            live_layers.leave_clean(self._project, dirty)
             self._freeing.begin_soon(self._free())
         self._id, self._lines = None, []
         self.changed.emit()
@@ -262,14 +260,14 @@ class ReplayLayer(QObject):
         dirty = self._project.isDirty()
         layer = QgsVectorLayer(f"LineString?{FIELDS}", tr("Trajectories (replay)"), "memory")
         layer.setCrs(crs)
-        make_live(layer, OWN_LAYER)
-        if not give_style(self._project, layer):
+        live_layers.make_live(layer, OWN_LAYER)
+        if not live_layers.give_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)
         # What was has no place among what is: only who ticks the layer has it on the live map.
-        fleet_group(self._project).addLayer(layer).setItemVisibilityChecked(False)
+        live_layers.fleet_group(self._project).addLayer(layer).setItemVisibilityChecked(False)
         self._id = layer.id()
-        leave_clean(self._project, dirty)
+        live_layers.leave_clean(self._project, dirty)
         self.changed.emit()
         return layer
 

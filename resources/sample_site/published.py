@@ -13,8 +13,9 @@ from robot_bridge.core.roads.centrelines import Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.robotmap.parametric_shapes import ramp_normal
+from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.geopackage import Area, Centreline
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import write_site
 
 SETTINGS = SiteSettings(

@@ -3481,14 +3481,54 @@
             <translation>No hi ha res a desfer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>Cap capa del projecte té el paper superfície de via: poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No road surface</source>
+            <translation>Cap superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Encara no se sabia el camí fins on heu fet l'últim clic, de manera que no és a la ruta.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Aquest tram no segueix les vies: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Which road surface is here?</source>
+            <translation>Quina superfície de via hi ha aquí?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no CRS</source>
+            <translation>sense SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no road surface</source>
+            <translation>cap superfície de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>road surface without a class</source>
+            <translation>superfície de via sense classe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} a {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
@@ -3504,46 +3544,6 @@
             <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Aquest és el primer vèrtex: se'n posa un altre davant d'un que ve després.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
-            <translation>Cap capa del projecte té el paper superfície de via: poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No road surface</source>
-            <translation>Cap superfície de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
-            <translation>Diu la superfície de via sota el cursor; un clic la diu amb les coordenades, Esc acaba</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Which road surface is here?</source>
-            <translation>Quina superfície de via hi ha aquí?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no CRS</source>
-            <translation>sense SRC</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no road surface</source>
-            <translation>cap superfície de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>road surface without a class</source>
-            <translation>superfície de via sense classe</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} a {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -6547,348 +6547,223 @@
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name} {given} no es pot obrir: comproveu el fitxer i el nom de la capa.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n edges</source>
-            <translation>
-                <numerusform>%n aresta</numerusform>
-                <numerusform>%n arestes</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n nodes</source>
-            <translation>
-                <numerusform>%n node</numerusform>
-                <numerusform>%n nodes</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n parts</source>
-            <translation>
-                <numerusform>%n part</numerusform>
-                <numerusform>%n parts</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n repairs</source>
-            <translation>
-                <numerusform>%n reparació</numerusform>
-                <numerusform>%n reparacions</numerusform>
-            </translation>
-        </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Talla els eixos de via on s'encreuen o es toquen, i fa una capa d'arestes i una de nodes.&lt;/p&gt; &lt;p&gt;Les vies de &lt;b&gt;nivells&lt;/b&gt; diferents només es troben on una d'elles acaba en un punt de l'altra: a un pont s'hi entra pels extrems i passa per sobre del que hi ha entremig. El &lt;b&gt;sentit&lt;/b&gt;, la velocitat, l'amplada, la superfície i si una via és tancada passen a les seves arestes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Reparar&lt;/b&gt; porta fins a una via els extrems que s'hi aturen dins de la tolerància, talla els que la sobrepassen per menys, i deixa fora el que és dibuixat dues vegades; el registre anomena cada reparació. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; mostra què està trencat sense canviar res.&lt;/p&gt; &lt;p&gt;Els camps de les arestes són els que aquest algorisme i &lt;i&gt;fleet:route&lt;/i&gt; llegeixen sols. docs/roads.md en diu més.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Build road network</source>
-            <translation>Construeix la xarxa de vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Edges</source>
-            <translation>Arestes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Nodes</source>
-            <translation>Nodes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Parts that are not connected</source>
-            <translation>Parts no connectades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Repairs</source>
-            <translation>Reparacions</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Roads</source>
-            <translation>Vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
-            <translation>Divideix els eixos de via on es troben, passa per sobre i per sota als ponts, i repara si es demana.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>
-                <numerusform>%n de les superfícies donades com a dibuixades diu que es va generar (camp origin); s'omet i es torna a fer</numerusform>
-                <numerusform>%n de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Eixampla els eixos de via la meitat de la seva amplada a cada banda: els extrems es tallen rectes i les cantonades es fan en punta, dins d'una via i on diverses vies acaben en un punt. El que és d'una classe, com ara asfalt, esdevé una superfície; els trossos que no es toquen són entitats pròpies.&lt;/p&gt; &lt;p&gt;Cap terreny no és en dues superfícies. Les &lt;b&gt;dibuixades a mà&lt;/b&gt; conserven el seu i es copien al resultat. Entre les generades conserva el terreny la classe que va primer a la &lt;b&gt;precedència&lt;/b&gt;; de les que no hi són anomenades, la que té menys terreny, i el que no té classe va l'últim.&lt;/p&gt; &lt;p&gt;Una via d'amplada desconeguda és tan ampla com diu l'&lt;b&gt;amplada per defecte&lt;/b&gt;, i surt a la capa de &lt;b&gt;troballes&lt;/b&gt;. Els extrems que s'aturen just abans d'una altra via queden separats: arregleu-los amb &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; i doneu-ne les arestes.&lt;/p&gt; &lt;p&gt;Doneu al resultat el paper de superfície de via per publicar-lo. docs/roads.md en diu més.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Area [m²]</source>
-            <translation>Àrea [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Build road surfaces</source>
-            <translation>Construeix les superfícies de via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Classes that keep their ground, the first before the second</source>
-            <translation>Classes que conserven el seu sòl, la primera abans que la segona</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Generated ones</source>
-            <translation>Generades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Roads without a width</source>
-            <translation>Vies sense amplada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Surfaces drawn by hand, which keep their ground</source>
-            <translation>Superfícies dibuixades a mà, que conserven el seu terreny</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>The width of this road is not known; {width:g} m is used.</source>
-            <translation>L'amplada d'aquesta via no es coneix; s'hi posa {width:g} m.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
-            <translation>Eixampla els eixos en superfícies, una per classe; les dibuixades a mà conserven el seu terreny.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>without a class</source>
-            <translation>sense classe</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>{label}: {area:.1f} m²</source>
-            <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Comprova la xarxa que fan els eixos de via, i fa una capa de punts que mostren què és estrany, cadascun amb l'entitat que cal mirar. No es canvia res.&lt;/p&gt; &lt;p&gt;El que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;buit&lt;/b&gt; (gap), un extrem que s'atura dins de la tolerància d'una altra via; &lt;b&gt;excés&lt;/b&gt; (overshoot), un extrem que sobrepassa una via per menys que això; &lt;b&gt;duplicat&lt;/b&gt; (duplicate), un tram dibuixat dues vegades.&lt;/p&gt; &lt;p&gt;El que només poden jutjar les persones: &lt;b&gt;atzucac&lt;/b&gt; (dead end); &lt;b&gt;part desconnectada&lt;/b&gt; (disconnected part), vies connectades entre elles però no amb la part més llarga; &lt;b&gt;sentit únic&lt;/b&gt; (one-way), vies de les quals no es pot tornar a causa dels sentits.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Check road network</source>
-            <translation>Comprova la xarxa de vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Dead ends</source>
-            <translation>Carrerons sense sortida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Edges without a way back</source>
-            <translation>Arestes sense camí de tornada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Findings</source>
-            <translation>Troballes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
-            <translation>Troba forats, sobrepassaments, duplicats, carrerons sense sortida, parts separades i trampes de sentit únic als eixos de via.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Gaps</source>
-            <translation>Forats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Nothing is odd in this network.</source>
-            <translation>No hi ha res estrany en aquesta xarxa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Overshoots</source>
-            <translation>Sobrepassaments</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Parts of their own</source>
-            <translation>Parts separades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Roads drawn twice</source>
-            <translation>Vies dibuixades dues vegades</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Comprova un mapa de robots, de text o binari, i fa una capa de línies que mostren què és estrany, cadascuna amb un tipus, una gravetat, l'obstacle que cal mirar i què cal fer.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: contorns, patis, segments o graons que van en el sentit equivocat. &lt;b&gt;gap&lt;/b&gt;: anells que no es tanquen, i línies que s'aturen just abans d'un altre obstacle. &lt;b&gt;sliver&lt;/b&gt;: anells gairebé sense amplada, segments sense longitud. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles que es repeteixen, s'encreuen o es cobreixen, o són dins d'un altre. &lt;b&gt;shared wall&lt;/b&gt;: on dos contorns es toquen d'esquena. &lt;b&gt;pocket&lt;/b&gt;: espai lliure on no pot arribar un robot de l'amplada donada; els patis en són. &lt;b&gt;height&lt;/b&gt;: alçades de 0 o menys, o superiors a 0 on no n'hi pot haver. &lt;b&gt;outside&lt;/b&gt;: segments més enllà de la vora. &lt;b&gt;id&lt;/b&gt;: identificadors fets servir dues vegades.&lt;/p&gt; &lt;p&gt;Gravetats: &lt;i&gt;error&lt;/i&gt; enganya un robot, &lt;i&gt;warning&lt;/i&gt; probablement no és volgut, &lt;i&gt;info&lt;/i&gt; val la pena saber-ho. El mapa mateix no es canvia.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Check robot map</source>
-            <translation>Comprova el mapa de robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Errors</source>
-            <translation>Errors</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
-            <translation>Troba contorns girats, forats, estelles, repeticions, encavalcaments i racons inaccessibles en un mapa de robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Longest gap that was not meant [m]</source>
-            <translation>Forat més llarg que no és volgut [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Narrowest ring that is an obstacle [m]</source>
-            <translation>Anell més estret que és un obstacle [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Nothing is odd in this map.</source>
-            <translation>No hi ha res estrany en aquest mapa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Smallest unreachable pocket [m²]</source>
-            <translation>Racó inaccessible més petit [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Width of the robot, for unreachable pockets [m]</source>
-            <translation>Amplada del robot, per als racons inaccessibles [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Worth knowing</source>
-            <translation>Val la pena saber-ho</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Col·loca una disposició de cons de trànsit, o bé en un &lt;b&gt;punt&lt;/b&gt;, girada cap a un &lt;b&gt;rumb&lt;/b&gt; (graus en sentit horari des del nord), o bé al llarg d'una &lt;b&gt;línia&lt;/b&gt; com ara un eix de via, a partir de &lt;b&gt;start&lt;/b&gt; metres del seu començament. La capa té de cada con un identificador, l'ordre de col·locació, el rumb de circulació, el color i el paper.&lt;/p&gt; &lt;p&gt;Les &lt;b&gt;dimensions&lt;/b&gt; canvien les de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registre llista les de la disposició amb els seus valors. Un nom o valor equivocat es refusa dient què hi ha.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt;: en una de les superfícies (de les classes permeses), lluny d'obstacles i d'altres cons. El que no està bé va a una capa de troballes amb l'identificador del con i el motiu; els cons es col·loquen igualment.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Llegeix cons d'un &lt;b&gt;fitxer CSV&lt;/b&gt; en UTF-8, d'una &lt;b&gt;pista&lt;/b&gt; de Formula Student o d'una &lt;b&gt;capa&lt;/b&gt;. Les pistes són YAML amb &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; i &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF amb models de cons, CSV amb columnes com &lt;i&gt;blue_x&lt;/i&gt; i &lt;i&gt;blue_y&lt;/i&gt; per a cada color, o CSV sense línia de capçalera: color, x, y. De les altres taules, les columnes s'anomenen amb paràmetres; només calen les de x i y, i ni tan sols aquestes per a una capa de punts amb SRC, que es pren tal com és. Un fitxer o una capa amb diverses disposicions en dona una, amb &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; i &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Els metres d'una taula es giren segons &lt;b&gt;rotation&lt;/b&gt; (graus, en sentit antihorari) i després es mouen a l'&lt;b&gt;origen&lt;/b&gt;. Una fila que no es pot llegir s'anomena amb la seva columna, i no es col·loca res.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt; com els de &lt;i&gt;Disposició de cons&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Against the direction of the line</source>
             <translation>En sentit contrari a la línia</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Begin so far along the line [m]</source>
             <translation>Comença a aquesta distància al llarg de la línia [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>S'han donat FILE i INPUT alhora</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Both POINT and LINE are</source>
             <translation>S'han donat POINT i LINE alhora</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>Fitxer CSV o pista de Formula Student (YAML, SDF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of colours</source>
+            <translation>Columna dels colors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Columna dels rumbs, des de l'eix y en sentit horari [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of ids</source>
+            <translation>Columna dels ids</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of roles</source>
+            <translation>Columna dels papers</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of the order of placing</source>
+            <translation>Columna de l'ordre de col·locació</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of x [m]</source>
+            <translation>Columna de x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of y [m]</source>
+            <translation>Columna de y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>Columna de la disposició</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Cone layout</source>
             <translation>Disposició de cons</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Disposicions de cons ({kinds});;Tots els fitxers (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
             <translation>DIMENSIONS té {part!r}, que no és nom=valor amb un nombre: escriviu per exemple spacing=15.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Dimensions other than the standard's, as name=value; ...</source>
             <translation>Dimensions diferents de les de la norma, com a nom=valor; ...</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: {file} no és de cap tipus que es llegeixi: doneu-ne un de {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Heading, clockwise from north [degrees]</source>
             <translation>Rumb, des del nord en sentit horari [graus]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Id of the line's feature (default: the only one)</source>
             <translation>Id de l'entitat de la línia (per defecte: l'única)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Ids begin with (default: the layout)</source>
             <translation>Els ids comencen amb (per defecte: la disposició)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Import cone layout</source>
+            <translation>Importa una disposició de cons</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Capa, en lloc d'un fitxer</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Layout</source>
             <translation>Disposició</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Line to lie along, instead of a place</source>
             <translation>Línia per on s'estén, en lloc d'un punt</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Nom (per defecte: el de la disposició, si no el del fitxer)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>No s'ha donat ni FILE ni INPUT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Neither POINT nor LINE is</source>
             <translation>No s'ha donat ni POINT ni LINE</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>No s'ha donat ORIGIN: digueu on va el 0,0 de la taula.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Place of the layout's origin</source>
             <translation>Lloc de l'origen de la disposició</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
             <translation>Col·loca una disposició de cons normalitzada en un punt i rumb o al llarg d'una línia, i comprova cada con.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Col·loca els cons d'un fitxer CSV o d'una capa, girats i moguts al seu lloc, i els comprova.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Rotació, en sentit antihorari [graus]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
             <translation>L'entitat {id} de {layer} no té cap línia amb longitud i amb lloc en el SRC del lloc: corregiu-la, o trieu-ne una altra.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>L'entitat {id} de {sourcename} té {lines} línies: dividiu-la, o trieu-ne una que en tingui una.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>La capa {sourcename} té {found}: trieu una línia amb LINE_ID, o seleccioneu-la i marqueu «Només les entitats seleccionades».</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>L'única disposició que s'agafa, segons aquesta columna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>On va el 0,0 de la taula</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>no feature {wanted}</source>
             <translation>cap entitat {wanted}</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>not exactly one feature</source>
             <translation>no exactament una entitat</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: doneu un fitxer CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: doneu el lloc de la disposició, o una línia per on s'estengui.</translation>
         </message>
@@ -7047,10 +6922,23 @@
             <source>{target}: {content} bytes</source>
             <translation>{target}: {content} bytes</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n aresta</numerusform>
+                <numerusform>%n arestes</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Escriu la xarxa d'eixos de via tal com la llegeixen altres robots.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, diversos alhora:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graf per al servidor de rutes de Nav2 (GeoJSON). Nav2 circula recte de node a node, per això cada punt d'una via es converteix en un node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: Layout Interchange Format 1.0 de la VDMA, per a controls de vehicles VDA 5050 (JSON). Les vies que no són rectes tenen una trajectòria.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: carrils amb vores per a Lanelet2 i Autoware (OSM). Es circula per la dreta, o per l'esquerra si es demana.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Les vies de dos sentits es converteixen en dues arestes; les de sentit únic, en una. Les vies tancades queden fora, i també les arestes que passen per un polígon de les &lt;b&gt;àrees per on no s'ha de circular&lt;/b&gt;. Les velocitats hi passen com a límits.&lt;/p&gt; &lt;p&gt;Les coordenades són metres en el &lt;b&gt;marc del recinte&lt;/b&gt;, com als mapes de robots: &lt;i&gt;ORIGIN&lt;/i&gt; i &lt;i&gt;ROTATION&lt;/i&gt;, si no el del projecte. Nav2 conserva 32 bits d'una coordenada: doneu un origen al recinte, o un avís dirà quant es mouen els llocs.&lt;/p&gt; &lt;p&gt;Els fitxers existents se substitueixen, cadascun d'un sol cop, quan tots s'han pogut fer. docs/navigation-maps.md diu què hi ha a cadascun.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Edges</source>
+            <translation>Arestes</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7091,6 +6979,11 @@
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Nav2 route graph (GeoJSON)</source>
             <translation>Graf de rutes de Nav2 (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Roads</source>
+            <translation>Vies</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7469,121 +7362,6 @@
             <translation>{metres:.1f} m, {seconds:.1f} s, {points}, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Llegeix cons d'un &lt;b&gt;fitxer CSV&lt;/b&gt; en UTF-8, d'una &lt;b&gt;pista&lt;/b&gt; de Formula Student o d'una &lt;b&gt;capa&lt;/b&gt;. Les pistes són YAML amb &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; i &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF amb models de cons, CSV amb columnes com &lt;i&gt;blue_x&lt;/i&gt; i &lt;i&gt;blue_y&lt;/i&gt; per a cada color, o CSV sense línia de capçalera: color, x, y. De les altres taules, les columnes s'anomenen amb paràmetres; només calen les de x i y, i ni tan sols aquestes per a una capa de punts amb SRC, que es pren tal com és. Un fitxer o una capa amb diverses disposicions en dona una, amb &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; i &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Els metres d'una taula es giren segons &lt;b&gt;rotation&lt;/b&gt; (graus, en sentit antihorari) i després es mouen a l'&lt;b&gt;origen&lt;/b&gt;. Una fila que no es pot llegir s'anomena amb la seva columna, i no es col·loca res.&lt;/p&gt; &lt;p&gt;Cada con es &lt;b&gt;comprova&lt;/b&gt; com els de &lt;i&gt;Disposició de cons&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Both FILE and INPUT are</source>
-            <translation>S'han donat FILE i INPUT alhora</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
-            <translation>Fitxer CSV o pista de Formula Student (YAML, SDF)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of colours</source>
-            <translation>Columna dels colors</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of headings, clockwise from the y axis [degrees]</source>
-            <translation>Columna dels rumbs, des de l'eix y en sentit horari [graus]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of ids</source>
-            <translation>Columna dels ids</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of roles</source>
-            <translation>Columna dels papers</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of the order of placing</source>
-            <translation>Columna de l'ordre de col·locació</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of x [m]</source>
-            <translation>Columna de x [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of y [m]</source>
-            <translation>Columna de y [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column that names the layout of each row</source>
-            <translation>Columna de la disposició</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Cone layouts ({kinds});;All files (*)</source>
-            <translation>Disposicions de cons ({kinds});;Tots els fitxers (*)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>FILE {file} is none that is read: give one of {kinds}.</source>
-            <translation>FILE: {file} no és de cap tipus que es llegeixi: doneu-ne un de {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Import cone layout</source>
-            <translation>Importa una disposició de cons</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Layer, instead of a file</source>
-            <translation>Capa, en lloc d'un fitxer</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Name (default: the layout's, else the file's)</source>
-            <translation>Nom (per defecte: el de la disposició, si no el del fitxer)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Neither FILE nor INPUT is</source>
-            <translation>No s'ha donat ni FILE ni INPUT</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
-            <translation>No s'ha donat ORIGIN: digueu on va el 0,0 de la taula.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
-            <translation>Col·loca els cons d'un fitxer CSV o d'una capa, girats i moguts al seu lloc, i els comprova.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Rotation, counter-clockwise [degrees]</source>
-            <translation>Rotació, en sentit antihorari [graus]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>The one layout to take, by that column</source>
-            <translation>L'única disposició que s'agafa, segons aquesta columna</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Where the table's 0,0 goes</source>
-            <translation>On va el 0,0 de la taula</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>{how} given: give a CSV file, or a layer.</source>
-            <translation>{how}: doneu un fitxer CSV o una capa.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Llegeix un mapa de Nav2: el &lt;b&gt;YAML&lt;/b&gt; i la imatge que anomena (PGM, PNG, BMP o JPEG), en els modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; i &lt;i&gt;raw&lt;/i&gt;, amb els seus llindars, &lt;i&gt;negate&lt;/i&gt; i l’origen amb el gir.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ràster&lt;/b&gt;: un valor per a cada cel·la, de 0 lliure a 100 ocupada, -1 desconeguda. &lt;b&gt;Obstacles&lt;/b&gt;: un polígon per a cada clapa de cel·les d’almenys &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, al llarg de les vores de les cel·les.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lloc&lt;/b&gt;: els metres del mapa són els del marc del recinte. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; i &lt;i&gt;ROTATION&lt;/i&gt; diuen on és; els fitxers de &lt;i&gt;Exporta el mapa de navegació&lt;/i&gt; ho diuen ells mateixos. Si no ho diu ningú, les capes són en metres locals i un avís ho diu.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
@@ -7657,36 +7435,6 @@
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>Unknown cells</source>
             <translation>Cel·les desconegudes</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Llegeix un mapa de robots, de text o binari, i en fa capes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles que són àrees&lt;/b&gt;: contorns que es tanquen, amb els patis com a forats. &lt;b&gt;Obstacles que són línies&lt;/b&gt;: parets, escales, i el que talla la vora del mapa. &lt;b&gt;Segments&lt;/b&gt;: cadascun de a a b, amb espai lliure a la dreta; l'estil mostra aquest costat amb ratlletes i l'alçada amb el color. Camps: identificador, forma, etiquetes, alçada, interior o exterior, extres (&lt;i&gt;ext&lt;/i&gt;, com a JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lloc&lt;/b&gt;: un mapa pot dir el seu SRC, l'origen i la rotació a les línies inicials; els paràmetres passen per davant. On no ho diu cap, les capes són en metres locals, amb un avís.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Border of the map</source>
-            <translation>Límit del mapa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Load robot map</source>
-            <translation>Carrega un mapa de robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are areas</source>
-            <translation>Obstacles que són àrees</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are lines</source>
-            <translation>Obstacles que són línies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
-            <translation>Converteix un mapa de robots, text o binari, en capes amb tot el que diu el mapa.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7772,8 +7520,205 @@
             <source>the database, schema {schema}</source>
             <translation>la base de dades, esquema {schema}</translation>
         </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Comprova un mapa de robots, de text o binari, i fa una capa de línies que mostren què és estrany, cadascuna amb un tipus, una gravetat, l'obstacle que cal mirar i què cal fer.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: contorns, patis, segments o graons que van en el sentit equivocat. &lt;b&gt;gap&lt;/b&gt;: anells que no es tanquen, i línies que s'aturen just abans d'un altre obstacle. &lt;b&gt;sliver&lt;/b&gt;: anells gairebé sense amplada, segments sense longitud. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles que es repeteixen, s'encreuen o es cobreixen, o són dins d'un altre. &lt;b&gt;shared wall&lt;/b&gt;: on dos contorns es toquen d'esquena. &lt;b&gt;pocket&lt;/b&gt;: espai lliure on no pot arribar un robot de l'amplada donada; els patis en són. &lt;b&gt;height&lt;/b&gt;: alçades de 0 o menys, o superiors a 0 on no n'hi pot haver. &lt;b&gt;outside&lt;/b&gt;: segments més enllà de la vora. &lt;b&gt;id&lt;/b&gt;: identificadors fets servir dues vegades.&lt;/p&gt; &lt;p&gt;Gravetats: &lt;i&gt;error&lt;/i&gt; enganya un robot, &lt;i&gt;warning&lt;/i&gt; probablement no és volgut, &lt;i&gt;info&lt;/i&gt; val la pena saber-ho. El mapa mateix no es canvia.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Llegeix un mapa de robots, de text o binari, i en fa capes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles que són àrees&lt;/b&gt;: contorns que es tanquen, amb els patis com a forats. &lt;b&gt;Obstacles que són línies&lt;/b&gt;: parets, escales, i el que talla la vora del mapa. &lt;b&gt;Segments&lt;/b&gt;: cadascun de a a b, amb espai lliure a la dreta; l'estil mostra aquest costat amb ratlletes i l'alçada amb el color. Camps: identificador, forma, etiquetes, alçada, interior o exterior, extres (&lt;i&gt;ext&lt;/i&gt;, com a JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lloc&lt;/b&gt;: un mapa pot dir el seu SRC, l'origen i la rotació a les línies inicials; els paràmetres passen per davant. On no ho diu cap, les capes són en metres locals, amb un avís.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Border of the map</source>
+            <translation>Límit del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Check robot map</source>
+            <translation>Comprova el mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Errors</source>
+            <translation>Errors</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Findings</source>
+            <translation>Troballes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Troba contorns girats, forats, estelles, repeticions, encavalcaments i racons inaccessibles en un mapa de robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Load robot map</source>
+            <translation>Carrega un mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>Forat més llarg que no és volgut [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>Anell més estret que és un obstacle [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>No hi ha res estrany en aquest mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Obstacles que són àrees</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Obstacles que són línies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>Racó inaccessible més petit [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Converteix un mapa de robots, text o binari, en capes amb tot el que diu el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>Amplada del robot, per als racons inaccessibles [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Worth knowing</source>
+            <translation>Val la pena saber-ho</translation>
+        </message>
         <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n node</numerusform>
+                <numerusform>%n nodes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n part</numerusform>
+                <numerusform>%n parts</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n reparació</numerusform>
+                <numerusform>%n reparacions</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Comprova la xarxa que fan els eixos de via, i fa una capa de punts que mostren què és estrany, cadascun amb l'entitat que cal mirar. No es canvia res.&lt;/p&gt; &lt;p&gt;El que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;buit&lt;/b&gt; (gap), un extrem que s'atura dins de la tolerància d'una altra via; &lt;b&gt;excés&lt;/b&gt; (overshoot), un extrem que sobrepassa una via per menys que això; &lt;b&gt;duplicat&lt;/b&gt; (duplicate), un tram dibuixat dues vegades.&lt;/p&gt; &lt;p&gt;El que només poden jutjar les persones: &lt;b&gt;atzucac&lt;/b&gt; (dead end); &lt;b&gt;part desconnectada&lt;/b&gt; (disconnected part), vies connectades entre elles però no amb la part més llarga; &lt;b&gt;sentit únic&lt;/b&gt; (one-way), vies de les quals no es pot tornar a causa dels sentits.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Talla els eixos de via on s'encreuen o es toquen, i fa una capa d'arestes i una de nodes.&lt;/p&gt; &lt;p&gt;Les vies de &lt;b&gt;nivells&lt;/b&gt; diferents només es troben on una d'elles acaba en un punt de l'altra: a un pont s'hi entra pels extrems i passa per sobre del que hi ha entremig. El &lt;b&gt;sentit&lt;/b&gt;, la velocitat, l'amplada, la superfície i si una via és tancada passen a les seves arestes.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Reparar&lt;/b&gt; porta fins a una via els extrems que s'hi aturen dins de la tolerància, talla els que la sobrepassen per menys, i deixa fora el que és dibuixat dues vegades; el registre anomena cada reparació. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; mostra què està trencat sense canviar res.&lt;/p&gt; &lt;p&gt;Els camps de les arestes són els que aquest algorisme i &lt;i&gt;fleet:route&lt;/i&gt; llegeixen sols. docs/roads.md en diu més.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Build road network</source>
+            <translation>Construeix la xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Check road network</source>
+            <translation>Comprova la xarxa de vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Dead ends</source>
+            <translation>Carrerons sense sortida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Arestes sense camí de tornada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Troba forats, sobrepassaments, duplicats, carrerons sense sortida, parts separades i trampes de sentit únic als eixos de via.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Gaps</source>
+            <translation>Forats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nodes</source>
+            <translation>Nodes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>No hi ha res estrany en aquesta xarxa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Overshoots</source>
+            <translation>Sobrepassaments</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Parts separades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Parts no connectades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Repairs</source>
+            <translation>Reparacions</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Vies dibuixades dues vegades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Divideix els eixos de via on es troben, passa per sobre i per sota als ponts, i repara si es demana.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n de les superfícies donades com a dibuixades diu que es va generar (camp origin); s'omet i es torna a fer</numerusform>
+                <numerusform>%n de les superfícies donades com a dibuixades diuen que es van generar (camp origin); s'ometen i es tornen a fer</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>%n points are on a surface, {off} on none.</source>
             <translation>
                 <numerusform>%n punt és sobre una superfície, {off} sobre cap.</numerusform>
@@ -7781,59 +7726,114 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Copia punts i hi afegeix &lt;b&gt;surface&lt;/b&gt;, la classe de la superfície de via on és cadascun, el seu &lt;b&gt;surface_name&lt;/b&gt;, i &lt;b&gt;surface_origin&lt;/b&gt;: si la superfície és dibuixada o generada dels eixos. Són buits on no hi ha superfície.&lt;/p&gt; &lt;p&gt;Les superfícies són capes d'àrees amb un camp &lt;i&gt;surface&lt;/i&gt;, o la classe que diu el seu paper; si no se'n dona cap, les capes del projecte amb el paper de superfície de via. Els punts i les capes poden ser en qualsevol SRC.&lt;/p&gt; &lt;p&gt;Un punt a la vora és a la superfície. On les superfícies se superposen compta abans una de dibuixada que una de generada, i després la més petita abans que la més gran. L'expressió &lt;i&gt;road_surface(x, y)&lt;/i&gt; diu el mateix. docs/roads.md en diu més.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Eixampla els eixos de via la meitat de la seva amplada a cada banda: els extrems es tallen rectes i les cantonades es fan en punta, dins d'una via i on diverses vies acaben en un punt. El que és d'una classe, com ara asfalt, esdevé una superfície; els trossos que no es toquen són entitats pròpies.&lt;/p&gt; &lt;p&gt;Cap terreny no és en dues superfícies. Les &lt;b&gt;dibuixades a mà&lt;/b&gt; conserven el seu i es copien al resultat. Entre les generades conserva el terreny la classe que va primer a la &lt;b&gt;precedència&lt;/b&gt;; de les que no hi són anomenades, la que té menys terreny, i el que no té classe va l'últim.&lt;/p&gt; &lt;p&gt;Una via d'amplada desconeguda és tan ampla com diu l'&lt;b&gt;amplada per defecte&lt;/b&gt;, i surt a la capa de &lt;b&gt;troballes&lt;/b&gt;. Els extrems que s'aturen just abans d'una altra via queden separats: arregleu-los amb &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; i doneu-ne les arestes.&lt;/p&gt; &lt;p&gt;Doneu al resultat el paper de superfície de via per publicar-lo. docs/roads.md en diu més.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
             <translation>Afegeix a punts, en qualsevol SRC, la classe de la superfície de via on són.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Àrea [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Construeix les superfícies de via</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>Classes que conserven el seu sòl, la primera abans que la segona</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Feature {id} has points on several surfaces; none is given for it</source>
             <translation>L'entitat {id} té punts sobre diverses superfícies; no se'n dona cap</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Generades</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>No s'han donat superfícies de via, i cap capa del projecte té el paper superfície de via: doneu SURFACES, o poseu el paper a Connectors &gt; Fleet Supervisor &gt; Papers de les capes.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
             <translation>POINTS {name} és una taula sense llocs: feu primer punts de les seves columnes amb native:createpointslayerfromtable.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points</source>
             <translation>Punts</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on a surface</source>
             <translation>Punts sobre una superfície</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on none</source>
             <translation>Punts sobre cap</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points with surface</source>
             <translation>Punts amb superfície</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Road surfaces (default: the project's layers with that role)</source>
             <translation>Superfícies de via (per defecte: les capes del projecte amb aquest paper)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Vies sense amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Surface at point</source>
             <translation>Superfície al punt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Superfícies dibuixades a mà, que conserven el seu terreny</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>L'amplada d'aquesta via no es coneix; s'hi posa {width:g} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Eixampla els eixos en superfícies, una per classe; les dibuixades a mà conserven el seu terreny.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>without a class</source>
+            <translation>sense classe</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/trajectories.py" />

@@ -3481,14 +3481,54 @@
             <translation>No hay nada que deshacer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>Ninguna capa del proyecto tiene el papel superficie de vía: póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No road surface</source>
+            <translation>Ninguna superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Aún no se conocía el camino hasta donde hizo el último clic, así que no está en la ruta.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Este tramo no sigue las vías: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Which road surface is here?</source>
+            <translation>¿Qué superficie de vía hay aquí?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no CRS</source>
+            <translation>sin SRC</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no road surface</source>
+            <translation>ninguna superficie de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>road surface without a class</source>
+            <translation>superficie de vía sin clase</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} en {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
@@ -3504,46 +3544,6 @@
             <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Este es el primer vértice: se pone otro delante de uno que viene después.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
-            <translation>Ninguna capa del proyecto tiene el papel superficie de vía: póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No road surface</source>
-            <translation>Ninguna superficie de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
-            <translation>Decir la superficie de vía bajo el cursor; un clic la dice con sus coordenadas, Esc termina</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Which road surface is here?</source>
-            <translation>¿Qué superficie de vía hay aquí?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no CRS</source>
-            <translation>sin SRC</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no road surface</source>
-            <translation>ninguna superficie de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>road surface without a class</source>
-            <translation>superficie de vía sin clase</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} en {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -6547,348 +6547,223 @@
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name} {given} no se puede abrir: compruebe el archivo y el nombre de la capa.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n edges</source>
-            <translation>
-                <numerusform>%n arista</numerusform>
-                <numerusform>%n aristas</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n nodes</source>
-            <translation>
-                <numerusform>%n nodo</numerusform>
-                <numerusform>%n nodos</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n parts</source>
-            <translation>
-                <numerusform>%n parte</numerusform>
-                <numerusform>%n partes</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n repairs</source>
-            <translation>
-                <numerusform>%n reparación</numerusform>
-                <numerusform>%n reparaciones</numerusform>
-            </translation>
-        </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Corta los ejes de vía donde se cruzan o se tocan, y hace una capa de aristas y una de nodos.&lt;/p&gt; &lt;p&gt;Las vías de &lt;b&gt;niveles&lt;/b&gt; distintos solo se encuentran donde una de ellas acaba en un punto de la otra: a un puente se entra por los extremos y pasa por encima de lo que hay en medio. El &lt;b&gt;sentido&lt;/b&gt;, la velocidad, la anchura, la superficie y si una vía está cerrada pasan a sus aristas.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Reparar&lt;/b&gt; lleva hasta una vía los extremos que se detienen dentro de la tolerancia, corta los que la sobrepasan por menos, y deja fuera lo que está dibujado dos veces; el registro nombra cada reparación. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; muestra qué está roto sin cambiar nada.&lt;/p&gt; &lt;p&gt;Los campos de las aristas son los que este algoritmo y &lt;i&gt;fleet:route&lt;/i&gt; leen por sí solos. docs/roads.md dice más.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Build road network</source>
-            <translation>Construir red de vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Edges</source>
-            <translation>Aristas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Nodes</source>
-            <translation>Nodos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Parts that are not connected</source>
-            <translation>Partes no conectadas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Repairs</source>
-            <translation>Reparaciones</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Roads</source>
-            <translation>Vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
-            <translation>Divide los ejes de vía donde se encuentran, pasa por encima y por debajo en los puentes, y repara si se pide.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>
-                <numerusform>%n de las superficies dadas como dibujadas dice que se generó (campo origin); se omite y se vuelve a hacer</numerusform>
-                <numerusform>%n de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Ensancha los ejes de vía la mitad de su anchura a cada lado: los extremos se cortan rectos y las esquinas se hacen en punta, dentro de una vía y donde varias vías acaban en un punto. Lo que es de una clase, como asfalto, se convierte en una superficie; los trozos que no se tocan son objetos espaciales propios.&lt;/p&gt; &lt;p&gt;Ningún terreno está en dos superficies. Las &lt;b&gt;dibujadas a mano&lt;/b&gt; conservan el suyo y se copian al resultado. Entre las generadas conserva el terreno la clase que va primero en la &lt;b&gt;precedencia&lt;/b&gt;; de las que no se nombran allí, la que tiene menos terreno, y lo que no tiene clase va lo último.&lt;/p&gt; &lt;p&gt;Una vía de anchura desconocida es tan ancha como dice la &lt;b&gt;anchura por defecto&lt;/b&gt;, y sale en la capa de &lt;b&gt;hallazgos&lt;/b&gt;. Los extremos que se detienen justo antes de otra vía quedan separados: arréglelos con &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; y dé sus aristas.&lt;/p&gt; &lt;p&gt;Dé al resultado el papel de superficie de vía para publicarlo. docs/roads.md dice más.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Area [m²]</source>
-            <translation>Área [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Build road surfaces</source>
-            <translation>Construir superficies de vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Classes that keep their ground, the first before the second</source>
-            <translation>Clases que conservan su suelo, la primera antes que la segunda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Generated ones</source>
-            <translation>Generadas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Roads without a width</source>
-            <translation>Vías sin anchura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Surfaces drawn by hand, which keep their ground</source>
-            <translation>Superficies dibujadas a mano, que conservan su terreno</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>The width of this road is not known; {width:g} m is used.</source>
-            <translation>La anchura de esta vía no se conoce; se usa {width:g} m.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
-            <translation>Ensancha los ejes en superficies, una por clase; las dibujadas a mano conservan su terreno.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>without a class</source>
-            <translation>sin clase</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>{label}: {area:.1f} m²</source>
-            <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Comprueba la red que hacen los ejes de vía, y hace una capa de puntos que muestran qué es extraño, cada uno con el objeto espacial que hay que mirar. No se cambia nada.&lt;/p&gt; &lt;p&gt;Lo que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;hueco&lt;/b&gt; (gap), un extremo que se detiene dentro de la tolerancia de otra vía; &lt;b&gt;exceso&lt;/b&gt; (overshoot), un extremo que sobrepasa una vía por menos que eso; &lt;b&gt;duplicado&lt;/b&gt; (duplicate), un tramo dibujado dos veces.&lt;/p&gt; &lt;p&gt;Lo que solo pueden juzgar las personas: &lt;b&gt;callejón sin salida&lt;/b&gt; (dead end); &lt;b&gt;parte desconectada&lt;/b&gt; (disconnected part), vías conectadas entre sí pero no con la parte más larga; &lt;b&gt;sentido único&lt;/b&gt; (one-way), vías de las que no se puede volver a causa de los sentidos.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Check road network</source>
-            <translation>Comprobar red de vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Dead ends</source>
-            <translation>Callejones sin salida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Edges without a way back</source>
-            <translation>Aristas sin camino de vuelta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Findings</source>
-            <translation>Hallazgos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
-            <translation>Encuentra huecos, sobrepasos, duplicados, callejones sin salida, partes separadas y trampas de sentido único en los ejes de vía.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Gaps</source>
-            <translation>Huecos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Nothing is odd in this network.</source>
-            <translation>No hay nada extraño en esta red.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Overshoots</source>
-            <translation>Sobrepasos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Parts of their own</source>
-            <translation>Partes separadas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Roads drawn twice</source>
-            <translation>Vías dibujadas dos veces</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Comprueba un mapa de robots, de texto o binario, y hace una capa de líneas que muestran qué es extraño, cada una con un tipo, una gravedad, el obstáculo que hay que mirar y qué hay que hacer.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: contornos, patios, segmentos o escalones que van en el sentido equivocado. &lt;b&gt;gap&lt;/b&gt;: anillos que no se cierran, y líneas que se detienen justo antes de otro obstáculo. &lt;b&gt;sliver&lt;/b&gt;: anillos casi sin anchura, segmentos sin longitud. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstáculos que se repiten, se cruzan o se cubren, o están dentro de otro. &lt;b&gt;shared wall&lt;/b&gt;: donde dos contornos se tocan de espaldas. &lt;b&gt;pocket&lt;/b&gt;: espacio libre al que no puede llegar un robot de la anchura dada; los patios lo son. &lt;b&gt;height&lt;/b&gt;: alturas de 0 o menos, o superiores a 0 donde no puede haberlas. &lt;b&gt;outside&lt;/b&gt;: segmentos más allá del borde. &lt;b&gt;id&lt;/b&gt;: identificadores usados dos veces.&lt;/p&gt; &lt;p&gt;Gravedades: &lt;i&gt;error&lt;/i&gt; engaña a un robot, &lt;i&gt;warning&lt;/i&gt; probablemente no es intencionado, &lt;i&gt;info&lt;/i&gt; vale la pena saberlo. El mapa mismo no se cambia.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Check robot map</source>
-            <translation>Comprobar mapa de robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Errors</source>
-            <translation>Errores</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
-            <translation>Encuentra contornos girados, huecos, astillas, repeticiones, solapes y rincones inaccesibles en un mapa de robots.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Longest gap that was not meant [m]</source>
-            <translation>Hueco más largo que no es intencionado [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Narrowest ring that is an obstacle [m]</source>
-            <translation>Anillo más estrecho que es un obstáculo [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Nothing is odd in this map.</source>
-            <translation>No hay nada extraño en este mapa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Smallest unreachable pocket [m²]</source>
-            <translation>Rincón inaccesible más pequeño [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Width of the robot, for unreachable pockets [m]</source>
-            <translation>Anchura del robot, para los rincones inaccesibles [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Worth knowing</source>
-            <translation>Conviene saberlo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Coloca una disposición de conos de tráfico, o bien en un &lt;b&gt;punto&lt;/b&gt;, girada hacia un &lt;b&gt;rumbo&lt;/b&gt; (grados en sentido horario desde el norte), o bien a lo largo de una &lt;b&gt;línea&lt;/b&gt; como un eje de vía, a partir de &lt;b&gt;start&lt;/b&gt; metros de su comienzo. La capa tiene de cada cono un identificador, el orden de colocación, el rumbo de circulación, el color y el papel.&lt;/p&gt; &lt;p&gt;Las &lt;b&gt;dimensiones&lt;/b&gt; cambian las de la norma: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. El registro lista las de la disposición con sus valores. Un nombre o valor equivocado se rechaza diciendo qué hay.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt;: en una de las superficies (de las clases permitidas), lejos de obstáculos y de otros conos. Lo que no está bien va a una capa de hallazgos con el identificador del cono y el motivo; los conos se colocan de todos modos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Lee conos de un &lt;b&gt;archivo CSV&lt;/b&gt; en UTF-8, de una &lt;b&gt;pista&lt;/b&gt; de Formula Student o de una &lt;b&gt;capa&lt;/b&gt;. Las pistas son YAML con &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; y &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF con modelos de conos, CSV con columnas como &lt;i&gt;blue_x&lt;/i&gt; y &lt;i&gt;blue_y&lt;/i&gt; para cada color, o CSV sin línea de cabecera: color, x, y. De las demás tablas, las columnas se nombran con parámetros; solo hacen falta las de x e y, y ni siquiera esas para una capa de puntos con SRC, que se toma tal como está. Un archivo o una capa con varias disposiciones da una de ellas, con &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; y &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Los metros de una tabla se giran según &lt;b&gt;rotation&lt;/b&gt; (grados, en sentido antihorario) y después se mueven al &lt;b&gt;origen&lt;/b&gt;. Una fila que no se puede leer se nombra con su columna, y no se coloca nada.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt; como los de &lt;i&gt;Disposición de conos&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Against the direction of the line</source>
             <translation>En sentido contrario a la línea</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Begin so far along the line [m]</source>
             <translation>Empezar a esta distancia a lo largo de la línea [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>Se han dado FILE e INPUT a la vez</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Both POINT and LINE are</source>
             <translation>Se han dado POINT y LINE a la vez</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>Archivo CSV o pista de Formula Student (YAML, SDF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of colours</source>
+            <translation>Columna de los colores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Columna de los rumbos, desde el eje y en sentido horario [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of ids</source>
+            <translation>Columna de los ids</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of roles</source>
+            <translation>Columna de los papeles</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of the order of placing</source>
+            <translation>Columna del orden de colocación</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of x [m]</source>
+            <translation>Columna de x [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of y [m]</source>
+            <translation>Columna de y [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>Columna de la disposición</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Cone layout</source>
             <translation>Disposición de conos</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Disposiciones de conos ({kinds});;Todos los archivos (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
             <translation>DIMENSIONS tiene {part!r}, que no es nombre=valor con un número: escriba por ejemplo spacing=15.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Dimensions other than the standard's, as name=value; ...</source>
             <translation>Dimensiones distintas de las de la norma, como nombre=valor; ...</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: {file} no es de ningún tipo que se lea: dé uno de {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Heading, clockwise from north [degrees]</source>
             <translation>Rumbo, desde el norte en sentido horario [grados]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Id of the line's feature (default: the only one)</source>
             <translation>Id del objeto de la línea (por defecto: el único)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Ids begin with (default: the layout)</source>
             <translation>Los ids empiezan por (por defecto: la disposición)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Import cone layout</source>
+            <translation>Importar disposición de conos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Capa, en lugar de un archivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Layout</source>
             <translation>Disposición</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Line to lie along, instead of a place</source>
             <translation>Línea por la que se extiende, en lugar de un punto</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Nombre (por defecto: el de la disposición, si no el del archivo)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>No se ha dado ni FILE ni INPUT</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Neither POINT nor LINE is</source>
             <translation>No se ha dado ni POINT ni LINE</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>No se ha dado ORIGIN: diga adónde va el 0,0 de la tabla.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Place of the layout's origin</source>
             <translation>Lugar del origen de la disposición</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
             <translation>Coloca una disposición de conos normalizada en un punto y rumbo o a lo largo de una línea, y comprueba cada cono.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Coloca los conos de un archivo CSV o de una capa, girados y movidos a su lugar, y los comprueba.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Rotación, en sentido antihorario [grados]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
             <translation>El objeto {id} de {layer} no tiene ninguna línea con longitud y con lugar en el SRC del sitio: corríjalo, o elija otro.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>El objeto {id} de {sourcename} tiene {lines} líneas: divídalo, o elija uno que tenga una.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>La capa {sourcename} tiene {found}: elija una línea con LINE_ID, o selecciónela y marque «Solo objetos seleccionados».</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>La única disposición que se toma, según esa columna</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>Adónde va el 0,0 de la tabla</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>no feature {wanted}</source>
             <translation>ningún objeto espacial {wanted}</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>not exactly one feature</source>
             <translation>no exactamente un objeto espacial</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: dé un archivo CSV o una capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: dé el lugar de la disposición, o una línea por la que se extienda.</translation>
         </message>
@@ -7047,10 +6922,23 @@
             <source>{target}: {content} bytes</source>
             <translation>{target}: {content} bytes</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n arista</numerusform>
+                <numerusform>%n aristas</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Escribe la red de ejes de vía tal como la leen otros robots.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formatos&lt;/b&gt;, varios a la vez:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: grafo para el servidor de rutas de Nav2 (GeoJSON). Nav2 circula recto de nodo a nodo, por eso cada punto de una vía se convierte en un nodo.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: Layout Interchange Format 1.0 de la VDMA, para controles de vehículos VDA 5050 (JSON). Las vías que no son rectas tienen una trayectoria.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: carriles con bordes para Lanelet2 y Autoware (OSM). Se circula por la derecha, o por la izquierda si se pide.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Las vías de dos sentidos se convierten en dos aristas; las de sentido único, en una. Las vías cerradas quedan fuera, y también las aristas que pasan por un polígono de las &lt;b&gt;áreas por donde no se debe circular&lt;/b&gt;. Las velocidades pasan como límites.&lt;/p&gt; &lt;p&gt;Las coordenadas son metros en el &lt;b&gt;marco del recinto&lt;/b&gt;, como en los mapas de robots: &lt;i&gt;ORIGIN&lt;/i&gt; y &lt;i&gt;ROTATION&lt;/i&gt;, si no el del proyecto. Nav2 conserva 32 bits de una coordenada: dé un origen en el recinto, o un aviso dirá cuánto se mueven los lugares.&lt;/p&gt; &lt;p&gt;Los archivos existentes se sustituyen, cada uno de una vez, cuando todos se han podido hacer. docs/navigation-maps.md dice qué hay en cada uno.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Edges</source>
+            <translation>Aristas</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7091,6 +6979,11 @@
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Nav2 route graph (GeoJSON)</source>
             <translation>Grafo de rutas de Nav2 (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Roads</source>
+            <translation>Vías</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7469,121 +7362,6 @@
             <translation>{metres:.1f} m, {seconds:.1f} s, {points}, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Lee conos de un &lt;b&gt;archivo CSV&lt;/b&gt; en UTF-8, de una &lt;b&gt;pista&lt;/b&gt; de Formula Student o de una &lt;b&gt;capa&lt;/b&gt;. Las pistas son YAML con &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; y &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF con modelos de conos, CSV con columnas como &lt;i&gt;blue_x&lt;/i&gt; y &lt;i&gt;blue_y&lt;/i&gt; para cada color, o CSV sin línea de cabecera: color, x, y. De las demás tablas, las columnas se nombran con parámetros; solo hacen falta las de x e y, y ni siquiera esas para una capa de puntos con SRC, que se toma tal como está. Un archivo o una capa con varias disposiciones da una de ellas, con &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; y &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Los metros de una tabla se giran según &lt;b&gt;rotation&lt;/b&gt; (grados, en sentido antihorario) y después se mueven al &lt;b&gt;origen&lt;/b&gt;. Una fila que no se puede leer se nombra con su columna, y no se coloca nada.&lt;/p&gt; &lt;p&gt;Cada cono se &lt;b&gt;comprueba&lt;/b&gt; como los de &lt;i&gt;Disposición de conos&lt;/i&gt;.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Both FILE and INPUT are</source>
-            <translation>Se han dado FILE e INPUT a la vez</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
-            <translation>Archivo CSV o pista de Formula Student (YAML, SDF)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of colours</source>
-            <translation>Columna de los colores</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of headings, clockwise from the y axis [degrees]</source>
-            <translation>Columna de los rumbos, desde el eje y en sentido horario [grados]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of ids</source>
-            <translation>Columna de los ids</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of roles</source>
-            <translation>Columna de los papeles</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of the order of placing</source>
-            <translation>Columna del orden de colocación</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of x [m]</source>
-            <translation>Columna de x [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of y [m]</source>
-            <translation>Columna de y [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column that names the layout of each row</source>
-            <translation>Columna de la disposición</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Cone layouts ({kinds});;All files (*)</source>
-            <translation>Disposiciones de conos ({kinds});;Todos los archivos (*)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>FILE {file} is none that is read: give one of {kinds}.</source>
-            <translation>FILE: {file} no es de ningún tipo que se lea: dé uno de {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Import cone layout</source>
-            <translation>Importar disposición de conos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Layer, instead of a file</source>
-            <translation>Capa, en lugar de un archivo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Name (default: the layout's, else the file's)</source>
-            <translation>Nombre (por defecto: el de la disposición, si no el del archivo)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Neither FILE nor INPUT is</source>
-            <translation>No se ha dado ni FILE ni INPUT</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
-            <translation>No se ha dado ORIGIN: diga adónde va el 0,0 de la tabla.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
-            <translation>Coloca los conos de un archivo CSV o de una capa, girados y movidos a su lugar, y los comprueba.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Rotation, counter-clockwise [degrees]</source>
-            <translation>Rotación, en sentido antihorario [grados]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>The one layout to take, by that column</source>
-            <translation>La única disposición que se toma, según esa columna</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Where the table's 0,0 goes</source>
-            <translation>Adónde va el 0,0 de la tabla</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>{how} given: give a CSV file, or a layer.</source>
-            <translation>{how}: dé un archivo CSV o una capa.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Lee un mapa de Nav2: el &lt;b&gt;YAML&lt;/b&gt; y la imagen que nombra (PGM, PNG, BMP o JPEG), en los modos &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; y &lt;i&gt;raw&lt;/i&gt;, con sus umbrales, &lt;i&gt;negate&lt;/i&gt; y el origen con su giro.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Ráster&lt;/b&gt;: un valor para cada celda, de 0 libre a 100 ocupada, -1 desconocida. &lt;b&gt;Obstáculos&lt;/b&gt;: un polígono para cada mancha de celdas de al menos &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, a lo largo de los bordes de las celdas.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lugar&lt;/b&gt;: los metros del mapa son los del marco del recinto. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; y &lt;i&gt;ROTATION&lt;/i&gt; dicen dónde está; los archivos de &lt;i&gt;Exportar mapa de navegación&lt;/i&gt; lo dicen ellos mismos. Si nadie lo dice, las capas están en metros locales y un aviso lo dice.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
@@ -7657,36 +7435,6 @@
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>Unknown cells</source>
             <translation>Celdas desconocidas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Lee un mapa de robots, de texto o binario, y hace capas de él.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstáculos que son áreas&lt;/b&gt;: contornos que se cierran, con los patios como huecos. &lt;b&gt;Obstáculos que son líneas&lt;/b&gt;: paredes, escaleras, y lo que corta el borde del mapa. &lt;b&gt;Segmentos&lt;/b&gt;: cada uno de a a b, con espacio libre a su derecha; el estilo muestra ese lado con rayitas y la altura con el color. Campos: identificador, forma, etiquetas, altura, interior o exterior, extras (&lt;i&gt;ext&lt;/i&gt;, como JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lugar&lt;/b&gt;: un mapa puede decir su SRC, el origen y la rotación en sus líneas iniciales; los parámetros prevalecen. Donde no lo dice ninguno, las capas están en metros locales, con un aviso.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Border of the map</source>
-            <translation>Límite del mapa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Load robot map</source>
-            <translation>Cargar mapa de robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are areas</source>
-            <translation>Obstáculos que son áreas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are lines</source>
-            <translation>Obstáculos que son líneas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
-            <translation>Convierte un mapa de robots, texto o binario, en capas con todo lo que dice el mapa.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7772,8 +7520,205 @@
             <source>the database, schema {schema}</source>
             <translation>la base de datos, esquema {schema}</translation>
         </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Comprueba un mapa de robots, de texto o binario, y hace una capa de líneas que muestran qué es extraño, cada una con un tipo, una gravedad, el obstáculo que hay que mirar y qué hay que hacer.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: contornos, patios, segmentos o escalones que van en el sentido equivocado. &lt;b&gt;gap&lt;/b&gt;: anillos que no se cierran, y líneas que se detienen justo antes de otro obstáculo. &lt;b&gt;sliver&lt;/b&gt;: anillos casi sin anchura, segmentos sin longitud. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstáculos que se repiten, se cruzan o se cubren, o están dentro de otro. &lt;b&gt;shared wall&lt;/b&gt;: donde dos contornos se tocan de espaldas. &lt;b&gt;pocket&lt;/b&gt;: espacio libre al que no puede llegar un robot de la anchura dada; los patios lo son. &lt;b&gt;height&lt;/b&gt;: alturas de 0 o menos, o superiores a 0 donde no puede haberlas. &lt;b&gt;outside&lt;/b&gt;: segmentos más allá del borde. &lt;b&gt;id&lt;/b&gt;: identificadores usados dos veces.&lt;/p&gt; &lt;p&gt;Gravedades: &lt;i&gt;error&lt;/i&gt; engaña a un robot, &lt;i&gt;warning&lt;/i&gt; probablemente no es intencionado, &lt;i&gt;info&lt;/i&gt; vale la pena saberlo. El mapa mismo no se cambia.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Lee un mapa de robots, de texto o binario, y hace capas de él.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstáculos que son áreas&lt;/b&gt;: contornos que se cierran, con los patios como huecos. &lt;b&gt;Obstáculos que son líneas&lt;/b&gt;: paredes, escaleras, y lo que corta el borde del mapa. &lt;b&gt;Segmentos&lt;/b&gt;: cada uno de a a b, con espacio libre a su derecha; el estilo muestra ese lado con rayitas y la altura con el color. Campos: identificador, forma, etiquetas, altura, interior o exterior, extras (&lt;i&gt;ext&lt;/i&gt;, como JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Lugar&lt;/b&gt;: un mapa puede decir su SRC, el origen y la rotación en sus líneas iniciales; los parámetros prevalecen. Donde no lo dice ninguno, las capas están en metros locales, con un aviso.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Border of the map</source>
+            <translation>Límite del mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Check robot map</source>
+            <translation>Comprobar mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Errors</source>
+            <translation>Errores</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Findings</source>
+            <translation>Hallazgos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Encuentra contornos girados, huecos, astillas, repeticiones, solapes y rincones inaccesibles en un mapa de robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Load robot map</source>
+            <translation>Cargar mapa de robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>Hueco más largo que no es intencionado [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>Anillo más estrecho que es un obstáculo [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>No hay nada extraño en este mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Obstáculos que son áreas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Obstáculos que son líneas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>Rincón inaccesible más pequeño [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Convierte un mapa de robots, texto o binario, en capas con todo lo que dice el mapa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>Anchura del robot, para los rincones inaccesibles [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Worth knowing</source>
+            <translation>Conviene saberlo</translation>
+        </message>
         <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n nodo</numerusform>
+                <numerusform>%n nodos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n parte</numerusform>
+                <numerusform>%n partes</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n reparación</numerusform>
+                <numerusform>%n reparaciones</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Comprueba la red que hacen los ejes de vía, y hace una capa de puntos que muestran qué es extraño, cada uno con el objeto espacial que hay que mirar. No se cambia nada.&lt;/p&gt; &lt;p&gt;Lo que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;hueco&lt;/b&gt; (gap), un extremo que se detiene dentro de la tolerancia de otra vía; &lt;b&gt;exceso&lt;/b&gt; (overshoot), un extremo que sobrepasa una vía por menos que eso; &lt;b&gt;duplicado&lt;/b&gt; (duplicate), un tramo dibujado dos veces.&lt;/p&gt; &lt;p&gt;Lo que solo pueden juzgar las personas: &lt;b&gt;callejón sin salida&lt;/b&gt; (dead end); &lt;b&gt;parte desconectada&lt;/b&gt; (disconnected part), vías conectadas entre sí pero no con la parte más larga; &lt;b&gt;sentido único&lt;/b&gt; (one-way), vías de las que no se puede volver a causa de los sentidos.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Corta los ejes de vía donde se cruzan o se tocan, y hace una capa de aristas y una de nodos.&lt;/p&gt; &lt;p&gt;Las vías de &lt;b&gt;niveles&lt;/b&gt; distintos solo se encuentran donde una de ellas acaba en un punto de la otra: a un puente se entra por los extremos y pasa por encima de lo que hay en medio. El &lt;b&gt;sentido&lt;/b&gt;, la velocidad, la anchura, la superficie y si una vía está cerrada pasan a sus aristas.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Reparar&lt;/b&gt; lleva hasta una vía los extremos que se detienen dentro de la tolerancia, corta los que la sobrepasan por menos, y deja fuera lo que está dibujado dos veces; el registro nombra cada reparación. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; muestra qué está roto sin cambiar nada.&lt;/p&gt; &lt;p&gt;Los campos de las aristas son los que este algoritmo y &lt;i&gt;fleet:route&lt;/i&gt; leen por sí solos. docs/roads.md dice más.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Build road network</source>
+            <translation>Construir red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Check road network</source>
+            <translation>Comprobar red de vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Dead ends</source>
+            <translation>Callejones sin salida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Aristas sin camino de vuelta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Encuentra huecos, sobrepasos, duplicados, callejones sin salida, partes separadas y trampas de sentido único en los ejes de vía.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Gaps</source>
+            <translation>Huecos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nodes</source>
+            <translation>Nodos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>No hay nada extraño en esta red.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Overshoots</source>
+            <translation>Sobrepasos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Partes separadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Partes no conectadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Repairs</source>
+            <translation>Reparaciones</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Vías dibujadas dos veces</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Divide los ejes de vía donde se encuentran, pasa por encima y por debajo en los puentes, y repara si se pide.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n de las superficies dadas como dibujadas dice que se generó (campo origin); se omite y se vuelve a hacer</numerusform>
+                <numerusform>%n de las superficies dadas como dibujadas dicen que se generaron (campo origin); se omiten y se vuelven a hacer</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>%n points are on a surface, {off} on none.</source>
             <translation>
                 <numerusform>%n punto está sobre una superficie, {off} sobre ninguna.</numerusform>
@@ -7781,59 +7726,114 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Copia puntos y añade &lt;b&gt;surface&lt;/b&gt;, la clase de la superficie de vía en que está cada uno, su &lt;b&gt;surface_name&lt;/b&gt;, y &lt;b&gt;surface_origin&lt;/b&gt;: si la superficie es dibujada o generada de los ejes. Están vacíos donde no hay superficie.&lt;/p&gt; &lt;p&gt;Las superficies son capas de áreas con un campo &lt;i&gt;surface&lt;/i&gt;, o la clase que dice su papel; si no se da ninguna, las capas del proyecto con el papel de superficie de vía. Los puntos y las capas pueden estar en cualquier SRC.&lt;/p&gt; &lt;p&gt;Un punto en el borde está en la superficie. Donde las superficies se superponen cuenta antes una dibujada que una generada, y después la menor antes que la mayor. La expresión &lt;i&gt;road_surface(x, y)&lt;/i&gt; dice lo mismo. docs/roads.md dice más.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Ensancha los ejes de vía la mitad de su anchura a cada lado: los extremos se cortan rectos y las esquinas se hacen en punta, dentro de una vía y donde varias vías acaban en un punto. Lo que es de una clase, como asfalto, se convierte en una superficie; los trozos que no se tocan son objetos espaciales propios.&lt;/p&gt; &lt;p&gt;Ningún terreno está en dos superficies. Las &lt;b&gt;dibujadas a mano&lt;/b&gt; conservan el suyo y se copian al resultado. Entre las generadas conserva el terreno la clase que va primero en la &lt;b&gt;precedencia&lt;/b&gt;; de las que no se nombran allí, la que tiene menos terreno, y lo que no tiene clase va lo último.&lt;/p&gt; &lt;p&gt;Una vía de anchura desconocida es tan ancha como dice la &lt;b&gt;anchura por defecto&lt;/b&gt;, y sale en la capa de &lt;b&gt;hallazgos&lt;/b&gt;. Los extremos que se detienen justo antes de otra vía quedan separados: arréglelos con &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; y dé sus aristas.&lt;/p&gt; &lt;p&gt;Dé al resultado el papel de superficie de vía para publicarlo. docs/roads.md dice más.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
             <translation>Añade a puntos, en cualquier SRC, la clase de la superficie de vía donde están.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Área [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Construir superficies de vía</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>Clases que conservan su suelo, la primera antes que la segunda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Feature {id} has points on several surfaces; none is given for it</source>
             <translation>El objeto {id} tiene puntos sobre varias superficies; no se da ninguna</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Generadas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>No se dan superficies de vía, y ninguna capa del proyecto tiene el papel superficie de vía: dé SURFACES, o ponga el papel en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
             <translation>POINTS {name} es una tabla sin lugares: haga primero puntos de sus columnas con native:createpointslayerfromtable.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points</source>
             <translation>Puntos</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on a surface</source>
             <translation>Puntos sobre una superficie</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on none</source>
             <translation>Puntos sobre ninguna</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points with surface</source>
             <translation>Puntos con superficie</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Road surfaces (default: the project's layers with that role)</source>
             <translation>Superficies de vía (por defecto: las capas del proyecto con ese papel)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Vías sin anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Surface at point</source>
             <translation>Superficie en el punto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Superficies dibujadas a mano, que conservan su terreno</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>La anchura de esta vía no se conoce; se usa {width:g} m.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Ensancha los ejes en superficies, una por clase; las dibujadas a mano conservan su terreno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>without a class</source>
+            <translation>sin clase</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/trajectories.py" />

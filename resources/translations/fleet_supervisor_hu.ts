@@ -3460,14 +3460,54 @@
             <translation>Nincs mit visszavonni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
+            <translation>A projekt egyik rétegének sem útfelület a szerepe: állítsa be a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>No road surface</source>
+            <translation>Nincs útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
+            <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>The way to where you clicked last was not known yet, so it is not in the route.</source>
             <translation>Még nem volt ismert, hogyan lehet eljutni oda, ahová utoljára kattintott, ezért az nincs benne az útvonalban.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/road_route_tool.py" />
+            <location filename="../../plugin/map/tools/road_tools.py" />
             <source>This leg does not follow the roads: {note}</source>
             <translation>Ez a szakasz nem követi az utakat: {note}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>Which road surface is here?</source>
+            <translation>Milyen útfelület van itt?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no CRS</source>
+            <translation>nincs vetület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>no road surface</source>
+            <translation>nincs útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>road surface without a class</source>
+            <translation>osztály nélküli útfelület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/road_tools.py" />
+            <source>{told} at {where}</source>
+            <translation>{told} itt: {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
@@ -3483,46 +3523,6 @@
             <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Ez az első töréspont: másikat csak egy későbbi elé lehet tenni.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No layer of the project has the role road surface: set it in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
-            <translation>A projekt egyik rétegének sem útfelület a szerepe: állítsa be a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>No road surface</source>
-            <translation>Nincs útfelület</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Tell the road surface under the cursor; a click says it with its coordinates, Esc ends</source>
-            <translation>A kurzor alatti útfelületet mutatja; kattintás a koordinátáival együtt mondja, az Esc befejezi</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>Which road surface is here?</source>
-            <translation>Milyen útfelület van itt?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no CRS</source>
-            <translation>nincs vetület</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>no road surface</source>
-            <translation>nincs útfelület</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>road surface without a class</source>
-            <translation>osztály nélküli útfelület</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/surface_tool.py" />
-            <source>{told} at {where}</source>
-            <translation>{told} itt: {where}</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -6504,343 +6504,223 @@
             <source>{name} {given} cannot be opened: check the file and the layer's name.</source>
             <translation>{name}: {given} nem nyitható meg: ellenőrizze a fájlt és a réteg nevét.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n edges</source>
-            <translation>
-                <numerusform>%n él</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n nodes</source>
-            <translation>
-                <numerusform>%n csomópont</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n parts</source>
-            <translation>
-                <numerusform>%n rész</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>%n repairs</source>
-            <translation>
-                <numerusform>%n javítás</numerusform>
-            </translation>
-        </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Szétvágja az úttengelyeket, ahol keresztezik vagy érintik egymást, és egy réteget készít az élekből, egyet a csomópontokból.&lt;/p&gt; &lt;p&gt;Különböző &lt;b&gt;szintű&lt;/b&gt; utak csak ott találkoznak, ahol egyikük a másik egy pontjában végződik: egy hídra a végein lehet rámenni, és átível azon, ami közöttük van. Az &lt;b&gt;irány&lt;/b&gt;, a sebesség, a szélesség, a felület és hogy le van-e zárva egy út, átmegy az éleire.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;javítás&lt;/b&gt; az út mellett a tűrésen belül végződő végeket rátolja, a túlnyúló végeket levágja, ha kevesebbel nyúlnak túl, és elhagyja, ami kétszer van megrajzolva; a napló minden javítást megnevez. A &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; megmutatja, mi hibás, és semmit sem változtat.&lt;/p&gt; &lt;p&gt;Az élek mezőit ez az algoritmus és a &lt;i&gt;fleet:route&lt;/i&gt; magától olvassa. Bővebben: docs/roads.md.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Build road network</source>
-            <translation>Úthálózat készítése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Edges</source>
-            <translation>Élek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Nodes</source>
-            <translation>Csomópontok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Parts that are not connected</source>
-            <translation>Össze nem függő részek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Repairs</source>
-            <translation>Javítások</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Roads</source>
-            <translation>Utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_network.py" />
-            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
-            <translation>Az úttengelyeket találkozásaiknál felosztja, hidaknál alattuk és felettük átvezeti, és kérésre kijavítja.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
-            <translation>
-                <numerusform>%n rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); kimarad, és újra elkészül</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Az úttengelyeket szélességük felével kiszélesíti mindkét oldalra: a végeket merőlegesen vágja le, a sarkokat hegyesen zárja, egy úton belül és ahol utak egy pontban végződnek. Ami egy osztályú, például aszfalt, egy felület lesz; az egymáshoz nem érő darabok külön elemek.&lt;/p&gt; &lt;p&gt;Egyetlen terület sincs két felületben. A &lt;b&gt;kézzel rajzolt&lt;/b&gt; felületek megtartják a magukét, és átmásolódnak az eredménybe. A generáltak közül az az osztály tartja meg a területet, amelyik a &lt;b&gt;sorrendben&lt;/b&gt; előbb áll; a meg nem nevezettek közül a kisebb területű, és ami osztály nélküli, az az utolsó.&lt;/p&gt; &lt;p&gt;Az ismeretlen szélességű út olyan széles, amennyit az &lt;b&gt;alapértelmezett szélesség&lt;/b&gt; mond, és szerepel a &lt;b&gt;leletek&lt;/b&gt; rétegében. A másik út előtt épp hogy véget érő végek elválva maradnak: javítsa őket a &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; algoritmussal, és annak éleit adja meg.&lt;/p&gt; &lt;p&gt;Közzétételhez adja az eredménynek az útfelület szerepet. Bővebben: docs/roads.md.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Area [m²]</source>
-            <translation>Terület [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Build road surfaces</source>
-            <translation>Útfelületek készítése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Classes that keep their ground, the first before the second</source>
-            <translation>A területüket megtartó osztályok, az első a második előtt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Generated ones</source>
-            <translation>Ebből előállított</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Roads without a width</source>
-            <translation>Szélesség nélküli utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Surfaces drawn by hand, which keep their ground</source>
-            <translation>Kézzel rajzolt felületek, amelyek megtartják helyüket</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>The width of this road is not known; {width:g} m is used.</source>
-            <translation>Ennek az útnak a szélessége nem ismert; {width:g} m lesz használva.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
-            <translation>Az úttengelyeket felületekké szélesíti, osztályonként eggyé; a kézzel rajzolt felületek megtartják helyüket.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>without a class</source>
-            <translation>osztály nélkül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/build_road_surfaces.py" />
-            <source>{label}: {area:.1f} m²</source>
-            <translation>{label}: {area:.1f} m²</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Ellenőrzi az úttengelyekből álló hálózatot, és pontréteget készít arról, ami furcsa, mindegyiknél a megnézendő elemmel. Semmit sem változtat.&lt;/p&gt; &lt;p&gt;Amit a &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; kijavít: &lt;b&gt;rés&lt;/b&gt; (gap), egy vég, amely a tűrésen belül egy másik út előtt megáll; &lt;b&gt;túlnyúlás&lt;/b&gt; (overshoot), egy vég, amely ennél kevesebbel nyúlik túl egy úton; &lt;b&gt;kettőzés&lt;/b&gt; (duplicate), kétszer megrajzolt szakasz.&lt;/p&gt; &lt;p&gt;Amit csak ember ítélhet meg: &lt;b&gt;zsákutca&lt;/b&gt; (dead end); &lt;b&gt;különálló rész&lt;/b&gt; (disconnected part), egymással összefüggő utak, amelyek a leghosszabb résszel nem; &lt;b&gt;egyirányú&lt;/b&gt; (one-way), utak, ahonnan az irányok miatt nincs út vissza.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Check road network</source>
-            <translation>Úthálózat ellenőrzése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Dead ends</source>
-            <translation>Zsákutcák</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Edges without a way back</source>
-            <translation>Élek visszaút nélkül</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Findings</source>
-            <translation>Találatok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
-            <translation>Hézagokat, túlnyúlásokat, kettőzéseket, zsákutcákat, különálló részeket és egyirányú csapdákat keres az úttengelyekben.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Gaps</source>
-            <translation>Hézagok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Nothing is odd in this network.</source>
-            <translation>Ebben a hálózatban semmi sem furcsa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Overshoots</source>
-            <translation>Túlnyúlások</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Parts of their own</source>
-            <translation>Különálló részek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_road_network.py" />
-            <source>Roads drawn twice</source>
-            <translation>Kétszer rajzolt utak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Ellenőriz egy szöveges vagy bináris robottérképet, és vonalréteget készít arról, ami furcsa, mindegyiknél a fajtával, a súlyossággal, a megnézendő akadállyal és a teendővel.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: rossz irányba futó körvonalak, udvarok, szakaszok vagy lépcsőfokok. &lt;b&gt;gap&lt;/b&gt;: nem záródó gyűrűk, és vonalak, amelyek épp egy másik akadály előtt végződnek. &lt;b&gt;sliver&lt;/b&gt;: szinte szélesség nélküli gyűrűk, hossz nélküli szakaszok. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: akadályok, amelyek ismétlődnek, keresztezik vagy fedik egymást, vagy egy másikban vannak. &lt;b&gt;shared wall&lt;/b&gt;: ahol két körvonal háttal összeér. &lt;b&gt;pocket&lt;/b&gt;: szabad terület, amelyet egy adott szélességű robot nem ér el; az udvarok ilyenek. &lt;b&gt;height&lt;/b&gt;: 0 vagy kisebb magasságok, vagy 0 felettiek, ahol nem lehet ilyen. &lt;b&gt;outside&lt;/b&gt;: a kereten túli szakaszok. &lt;b&gt;id&lt;/b&gt;: kétszer használt azonosítók.&lt;/p&gt; &lt;p&gt;Súlyosság: az &lt;i&gt;error&lt;/i&gt; félrevezet egy robotot, a &lt;i&gt;warning&lt;/i&gt; valószínűleg nem szándékos, az &lt;i&gt;info&lt;/i&gt; érdemes tudni. Maga a térkép nem változik.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Check robot map</source>
-            <translation>Robottérkép ellenőrzése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Errors</source>
-            <translation>Hibák</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
-            <translation>Megfordított körvonalakat, hézagokat, szilánkokat, ismétléseket, átfedéseket és elérhetetlen zugokat keres egy robottérképen.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Longest gap that was not meant [m]</source>
-            <translation>A leghosszabb nem szándékos hézag [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Narrowest ring that is an obstacle [m]</source>
-            <translation>A legkeskenyebb gyűrű, amely akadály [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Nothing is odd in this map.</source>
-            <translation>Ezen a térképen semmi sem furcsa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Smallest unreachable pocket [m²]</source>
-            <translation>A legkisebb elérhetetlen zug [m²]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Width of the robot, for unreachable pockets [m]</source>
-            <translation>A robot szélessége, az elérhetetlen zugokhoz [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/check_robot_map.py" />
-            <source>Worth knowing</source>
-            <translation>Jó tudni</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>&lt;p&gt;Places a layout of traffic cones, either at a &lt;b&gt;point&lt;/b&gt;, turned to a &lt;b&gt;heading&lt;/b&gt; (degrees clockwise from north), or along a &lt;b&gt;line&lt;/b&gt; such as a road's centreline, from &lt;b&gt;start&lt;/b&gt; metres after its beginning. The layer has an id, the order of placing, the heading of travel, the colour and the role of each cone.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Dimensions&lt;/b&gt; change the standard's: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. The log lists those of the layout with their values. A wrong name or value is refused with what there is.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt;: on one of the surfaces (of the allowed classes), away from obstacles and from other cones. What is wrong becomes a layer of findings with the cone's id and the reason; the cones are placed nevertheless.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Forgalomterelő bóják elrendezését helyezi el, vagy egy &lt;b&gt;ponton&lt;/b&gt;, adott &lt;b&gt;irányba&lt;/b&gt; fordítva (fok, északtól az óramutató járása szerint), vagy egy &lt;b&gt;vonal&lt;/b&gt;, például úttengely mentén, annak elejétől a &lt;b&gt;start&lt;/b&gt; méternyire. A rétegben minden bójának azonosítója, kihelyezési sorszáma, haladási iránya, színe és szerepe van.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;méretek&lt;/b&gt; a szabványéit változtatják: &lt;code&gt;vehicle_width=1.7; lane_offset=3&lt;/code&gt;. A napló felsorolja az elrendezés méreteit értékeikkel. A rossz nevet vagy értéket visszautasítja, és megmondja, mi van.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;: valamelyik felületen van-e (a megengedett osztályokból), távol akadályoktól és más bójáktól. Ami nem jó, a leletek rétegébe kerül a bója azonosítójával és az okkal; a bóják ettől még elhelyeződnek.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:conelayout -- LAYOUT=iso3888_1 POINT="640432,5193486.2 [EPSG:32633]" HEADING=90 DIMENSIONS="vehicle_width=1.7; exit_length=15" SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Bójákat olvas UTF-8 kódolású &lt;b&gt;CSV-fájlból&lt;/b&gt;, Formula Student &lt;b&gt;pályából&lt;/b&gt; vagy &lt;b&gt;rétegből&lt;/b&gt;. A pálya YAML &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; és &lt;i&gt;cones_orange_big&lt;/i&gt; kulcsokkal, SDF bójamodellekkel, CSV színenként két oszloppal, mint &lt;i&gt;blue_x&lt;/i&gt; és &lt;i&gt;blue_y&lt;/i&gt;, vagy fejléc nélküli CSV: szín, x, y. Más táblázatok oszlopait paraméterek nevezik meg; csak az x és az y kell, és azok sem, ha vetülettel bíró pontrétegről van szó, amely úgy marad, ahogy fekszik. Több elrendezést tartalmazó fájlból vagy rétegből egyet ad a &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; és a &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Egy táblázat métereit a &lt;b&gt;rotation&lt;/b&gt; (fok, az óramutatóval ellentétesen) elforgatja, majd a &lt;b&gt;kezdőpontba&lt;/b&gt; tolja. Az olvashatatlan sort oszlopával együtt megnevezi, és semmi sem helyeződik el.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;, ahogy a &lt;i&gt;Bójaelrendezés&lt;/i&gt; teszi.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Against the direction of the line</source>
             <translation>A vonal irányával szemben</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Begin so far along the line [m]</source>
             <translation>Kezdés a vonal mentén ennyire [m]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Both FILE and INPUT are</source>
+            <translation>FILE és INPUT is meg van adva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Both POINT and LINE are</source>
             <translation>POINT és LINE is meg van adva</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
+            <translation>CSV-fájl vagy Formula Student pálya (YAML, SDF)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of colours</source>
+            <translation>A színek oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of headings, clockwise from the y axis [degrees]</source>
+            <translation>Az irányok oszlopa, az y tengelytől az óramutató járásával [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of ids</source>
+            <translation>Az azonosítók oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of roles</source>
+            <translation>A szerepek oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of the order of placing</source>
+            <translation>A kihelyezési sorrend oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of x [m]</source>
+            <translation>x oszlopa [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column of y [m]</source>
+            <translation>y oszlopa [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Column that names the layout of each row</source>
+            <translation>A sorok elrendezésének oszlopa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Cone layout</source>
             <translation>Bójaelrendezés</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Cone layouts ({kinds});;All files (*)</source>
+            <translation>Bójaelrendezések ({kinds});;Minden fájl (*)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>DIMENSIONS has {part!r}, which is not name=value with a number: write such as spacing=15.</source>
             <translation>A DIMENSIONS része {part!r}, ami nem név=érték számmal: írja így: spacing=15.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Dimensions other than the standard's, as name=value; ...</source>
             <translation>A szabványostól eltérő méretek, név=érték; ... alakban</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>FILE {file} is none that is read: give one of {kinds}.</source>
+            <translation>FILE: a(z) {file} fájlfajta nem olvasható: adjon meg ilyet: {kinds}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Heading, clockwise from north [degrees]</source>
             <translation>Irány, északtól az óramutató járásával [fok]</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Id of the line's feature (default: the only one)</source>
             <translation>A vonal elemének azonosítója (alapértelmezés: az egyetlen)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Ids begin with (default: the layout)</source>
             <translation>Az azonosítók eleje (alapértelmezés: az elrendezés)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Import cone layout</source>
+            <translation>Bójaelrendezés importálása</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Layer, instead of a file</source>
+            <translation>Réteg, fájl helyett</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Layout</source>
             <translation>Elrendezés</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Line to lie along, instead of a place</source>
             <translation>Vonal, amely mentén fekszik, hely helyett</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Name (default: the layout's, else the file's)</source>
+            <translation>Név (alapértelmezés: az elrendezésé, különben a fájlé)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Neither FILE nor INPUT is</source>
+            <translation>Sem FILE, sem INPUT nincs megadva</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Neither POINT nor LINE is</source>
             <translation>Sem POINT, sem LINE nincs megadva</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
+            <translation>ORIGIN nincs megadva: mondja meg, hová kerül a táblázat 0,0 pontja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Place of the layout's origin</source>
             <translation>Az elrendezés kezdőpontjának helye</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>Places a standard cone layout at a point and heading or along a line, and checks every cone.</source>
             <translation>Szabványos bójaelrendezést helyez egy pontra és irányba vagy egy vonal mentén, és minden bóját ellenőriz.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
+            <translation>Egy CSV-fájl vagy réteg bójáit helyére forgatja és tolja, és ellenőrzi őket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Rotation, counter-clockwise [degrees]</source>
+            <translation>Elforgatás, az óramutató járásával ellentétesen [fok]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {layer} has no line with a length and a place in the site's CRS: correct it, or choose another.</source>
             <translation>A(z) {layer} {id}. elemének nincs olyan vonala, amelynek hossza és a telephely vetületében helye van: javítsa ki, vagy válasszon másikat.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The feature {id} of {sourcename} has {lines} lines: split it, or choose one that has one.</source>
             <translation>A(z) {sourcename} {id}. eleme {lines} vonalból áll: ossza fel, vagy válasszon olyat, amely egyből áll.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>The layer {sourcename} has {found}: choose one line by LINE_ID, or select it and tick 'Selected features only'.</source>
             <translation>A(z) {sourcename} réteg: {found}. Válasszon egy vonalat a LINE_ID-vel, vagy jelölje ki, és kapcsolja be: „Csak a kijelölt elemek”.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>The one layout to take, by that column</source>
+            <translation>Az egyetlen átveendő elrendezés, ezen oszlop szerint</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>Where the table's 0,0 goes</source>
+            <translation>Hová kerül a táblázat 0,0 pontja</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>no feature {wanted}</source>
             <translation>nincs benne {wanted}. elem</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>not exactly one feature</source>
             <translation>nem pontosan egy elem van benne</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/cone_layout.py" />
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
+            <source>{how} given: give a CSV file, or a layer.</source>
+            <translation>{how}: adjon meg egy CSV-fájlt vagy egy réteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/cone_layouts.py" />
             <source>{how} given: give the place of the layout, or a line that it lies along.</source>
             <translation>{how}: adja meg az elrendezés helyét, vagy egy vonalat, amely mentén fekszik.</translation>
         </message>
@@ -6999,10 +6879,22 @@
             <source>{target}: {content} bytes</source>
             <translation>{target}: {content} bájt</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>%n edges</source>
+            <translation>
+                <numerusform>%n él</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>&lt;p&gt;Writes the network of road centrelines as other robots read it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formats&lt;/b&gt;, several at once:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: graph for Nav2's route server (GeoJSON). Nav2 drives straight from node to node, so every point of a road becomes a node.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: VDMA's Layout Interchange Format 1.0, for masters of VDA 5050 vehicles (JSON). Roads that are not straight have a trajectory.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: lanes with borders for Lanelet2 and Autoware (OSM). Traffic keeps to the right, or to the left on request.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;Roads that are driven both ways become two edges; one-way roads one. Closed roads are left out, and so are edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt;. Speeds go over as limits.&lt;/p&gt; &lt;p&gt;Coordinates are metres in the &lt;b&gt;site frame&lt;/b&gt;, as on robot maps: &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt;, else as the project has it. Nav2 keeps 32 bits of a coordinate: give an origin on the site, or a warning says by how much places move.&lt;/p&gt; &lt;p&gt;Existing files are replaced, each in one step, after all of them could be made. docs/navigation-maps.md says what is in each.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Az úttengelyek hálózatát írja ki úgy, ahogy más robotok olvassák.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Formátumok&lt;/b&gt;, egyszerre több is:&lt;/p&gt; &lt;ul&gt; &lt;li&gt;&lt;i&gt;nav2&lt;/i&gt;: gráf a Nav2 útvonalszerverének (GeoJSON). A Nav2 egyenesen hajt csomóponttól csomópontig, ezért egy út minden pontja csomópont lesz.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lif&lt;/i&gt;: a VDMA Layout Interchange Format 1.0 formátuma, VDA 5050 járművek irányítóinak (JSON). A nem egyenes utaknak pályagörbéjük van.&lt;/li&gt; &lt;li&gt;&lt;i&gt;lanelet2&lt;/i&gt;: sávok széleikkel a Lanelet2-nek és az Autoware-nek (OSM). A forgalom jobbra tart, kérésre balra.&lt;/li&gt; &lt;/ul&gt; &lt;p&gt;A mindkét irányban járható utakból két él lesz, az egyirányúakból egy. A lezárt utak kimaradnak, és azok az élek is, amelyek a &lt;b&gt;területek, amelyeken nem szabad áthajtani&lt;/b&gt; egy poligonján vezetnek át. A sebességek korlátként mennek át.&lt;/p&gt; &lt;p&gt;A koordináták méterek a &lt;b&gt;telephelyi keretben&lt;/b&gt;, mint a robottérképeken: &lt;i&gt;ORIGIN&lt;/i&gt; és &lt;i&gt;ROTATION&lt;/i&gt;, különben ahogy a projekté. A Nav2 egy koordinátából 32 bitet tart meg: adjon meg kezdőpontot a telephelyen, különben figyelmeztetés mondja meg, mennyivel mozdulnak el a helyek.&lt;/p&gt; &lt;p&gt;A meglévő fájlokat lecseréli, mindegyiket egy lépésben, miután mind elkészült. Hogy mi van bennük, a docs/navigation-maps.md írja le.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:exportroadnetwork -- ROADS=roads.gpkg FORMATS=nav2 FORMATS=lif ORIGIN="640420,5193480" NAME=campus OUTPUT=graphs&lt;/pre&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Edges</source>
+            <translation>Élek</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7043,6 +6935,11 @@
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
             <source>Nav2 route graph (GeoJSON)</source>
             <translation>Nav2-útvonalgráf (GeoJSON)</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/export_road_network.py" />
+            <source>Roads</source>
+            <translation>Utak</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/export_road_network.py" />
@@ -7419,121 +7316,6 @@
             <translation>{metres:.1f} m, {seconds:.1f} s, {points}, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>&lt;p&gt;Reads cones from a &lt;b&gt;CSV file&lt;/b&gt; in UTF-8, from a &lt;b&gt;track&lt;/b&gt; of Formula Student, or from a &lt;b&gt;layer&lt;/b&gt;. Tracks are YAML with &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; and &lt;i&gt;cones_orange_big&lt;/i&gt;, SDF with models of cones, CSV with columns such as &lt;i&gt;blue_x&lt;/i&gt; and &lt;i&gt;blue_y&lt;/i&gt; for each colour, or CSV without a head line: colour, x, y. Of other tables the columns are named by parameters; only those of x and y are needed, and not even those for a layer of points with a CRS, which is taken as it lies. A file or layer with several layouts gives one of them, by &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; and &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Metres of a table are turned by &lt;b&gt;rotation&lt;/b&gt; (degrees, counter-clockwise) and then moved to the &lt;b&gt;origin&lt;/b&gt;. A row that cannot be read is named with its column, and nothing is placed.&lt;/p&gt; &lt;p&gt;Every cone is &lt;b&gt;checked&lt;/b&gt; as those of &lt;i&gt;Cone layout&lt;/i&gt; are.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Bójákat olvas UTF-8 kódolású &lt;b&gt;CSV-fájlból&lt;/b&gt;, Formula Student &lt;b&gt;pályából&lt;/b&gt; vagy &lt;b&gt;rétegből&lt;/b&gt;. A pálya YAML &lt;i&gt;cones_left&lt;/i&gt;, &lt;i&gt;cones_right&lt;/i&gt;, &lt;i&gt;cones_orange&lt;/i&gt; és &lt;i&gt;cones_orange_big&lt;/i&gt; kulcsokkal, SDF bójamodellekkel, CSV színenként két oszloppal, mint &lt;i&gt;blue_x&lt;/i&gt; és &lt;i&gt;blue_y&lt;/i&gt;, vagy fejléc nélküli CSV: szín, x, y. Más táblázatok oszlopait paraméterek nevezik meg; csak az x és az y kell, és azok sem, ha vetülettel bíró pontrétegről van szó, amely úgy marad, ahogy fekszik. Több elrendezést tartalmazó fájlból vagy rétegből egyet ad a &lt;b&gt;LAYOUT_FIELD&lt;/b&gt; és a &lt;b&gt;LAYOUT&lt;/b&gt;.&lt;/p&gt; &lt;p&gt;Egy táblázat métereit a &lt;b&gt;rotation&lt;/b&gt; (fok, az óramutatóval ellentétesen) elforgatja, majd a &lt;b&gt;kezdőpontba&lt;/b&gt; tolja. Az olvashatatlan sort oszlopával együtt megnevezi, és semmi sem helyeződik el.&lt;/p&gt; &lt;p&gt;Minden bóját &lt;b&gt;ellenőriz&lt;/b&gt;, ahogy a &lt;i&gt;Bójaelrendezés&lt;/i&gt; teszi.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importconelayout -- FILE=cone_layouts.csv COLOUR_FIELD=colour LAYOUT_FIELD=track LAYOUT=eufs_skidpad ORIGIN="640520,5193530 [EPSG:32633]" ROTATION=90 SITE_CRS=EPSG:32633 CONES=cones.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Both FILE and INPUT are</source>
-            <translation>FILE és INPUT is meg van adva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>CSV file, or track of Formula Student (YAML, SDF)</source>
-            <translation>CSV-fájl vagy Formula Student pálya (YAML, SDF)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of colours</source>
-            <translation>A színek oszlopa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of headings, clockwise from the y axis [degrees]</source>
-            <translation>Az irányok oszlopa, az y tengelytől az óramutató járásával [fok]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of ids</source>
-            <translation>Az azonosítók oszlopa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of roles</source>
-            <translation>A szerepek oszlopa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of the order of placing</source>
-            <translation>A kihelyezési sorrend oszlopa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of x [m]</source>
-            <translation>x oszlopa [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column of y [m]</source>
-            <translation>y oszlopa [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Column that names the layout of each row</source>
-            <translation>A sorok elrendezésének oszlopa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Cone layouts ({kinds});;All files (*)</source>
-            <translation>Bójaelrendezések ({kinds});;Minden fájl (*)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>FILE {file} is none that is read: give one of {kinds}.</source>
-            <translation>FILE: a(z) {file} fájlfajta nem olvasható: adjon meg ilyet: {kinds}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Import cone layout</source>
-            <translation>Bójaelrendezés importálása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Layer, instead of a file</source>
-            <translation>Réteg, fájl helyett</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Name (default: the layout's, else the file's)</source>
-            <translation>Név (alapértelmezés: az elrendezésé, különben a fájlé)</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Neither FILE nor INPUT is</source>
-            <translation>Sem FILE, sem INPUT nincs megadva</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>ORIGIN is not given: say where the table's 0,0 goes.</source>
-            <translation>ORIGIN nincs megadva: mondja meg, hová kerül a táblázat 0,0 pontja.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Places the cones of a CSV file or a layer, turned and moved to their place, and checks them.</source>
-            <translation>Egy CSV-fájl vagy réteg bójáit helyére forgatja és tolja, és ellenőrzi őket.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Rotation, counter-clockwise [degrees]</source>
-            <translation>Elforgatás, az óramutató járásával ellentétesen [fok]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>The one layout to take, by that column</source>
-            <translation>Az egyetlen átveendő elrendezés, ezen oszlop szerint</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>Where the table's 0,0 goes</source>
-            <translation>Hová kerül a táblázat 0,0 pontja</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/import_cone_layout.py" />
-            <source>{how} given: give a CSV file, or a layer.</source>
-            <translation>{how}: adjon meg egy CSV-fájlt vagy egy réteget.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
             <translation>&lt;p&gt;Nav2-térképet olvas be: a &lt;b&gt;YAML&lt;/b&gt;-fájlt és a benne megnevezett képet (PGM, PNG, BMP vagy JPEG), &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; és &lt;i&gt;raw&lt;/i&gt; módban, a küszöbökkel, a &lt;i&gt;negate&lt;/i&gt; kapcsolóval és az elforgatott kezdőponttal.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raszter&lt;/b&gt;: minden cellának egy értéke van, 0 szabad, 100 foglalt, -1 ismeretlen. &lt;b&gt;Akadályok&lt;/b&gt;: a legalább &lt;i&gt;OCCUPIED_FROM&lt;/i&gt; értékű cellák minden foltjának egy poligonja, a cellák szélei mentén.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Hely&lt;/b&gt;: a térkép méterei a telephelyi keret méterei. Hogy az hol van, a &lt;i&gt;SITE_CRS&lt;/i&gt;, az &lt;i&gt;ORIGIN&lt;/i&gt; és a &lt;i&gt;ROTATION&lt;/i&gt; mondja meg; a &lt;i&gt;Navigációs térkép exportálása&lt;/i&gt; fájljai maguk is megmondják. Ahol egyik sem, ott a rétegek helyi méterekben vannak, amit figyelmeztetés jelez.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</translation>
@@ -7607,36 +7389,6 @@
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>Unknown cells</source>
             <translation>Ismeretlen cellák</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
-            <translation>&lt;p&gt;Szöveges vagy bináris robottérképet olvas, és rétegeket készít belőle.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Területszerű akadályok&lt;/b&gt;: záródó körvonalak, az udvarok lyukak. &lt;b&gt;Vonalszerű akadályok&lt;/b&gt;: falak, lépcsők, és amit a térkép kerete elvág. &lt;b&gt;Szakaszok&lt;/b&gt;: mindegyik a-tól b-ig, jobbján szabad területtel; a stílus ezt az oldalt rovátkákkal, a magasságot színnel mutatja. Mezők: azonosító, alak, címkék, magasság, bent vagy kint, továbbiak (&lt;i&gt;ext&lt;/i&gt;, JSON-ként).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Hely&lt;/b&gt;: a térkép bevezető sorai megnevezhetik vetületét, kezdőpontját és elforgatását; a paraméterek előbbre valók. Ahol egyik sem mondja meg, a rétegek helyi méterekben vannak, figyelmeztetéssel.&lt;/p&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Border of the map</source>
-            <translation>A térkép határa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Load robot map</source>
-            <translation>Robottérkép betöltése</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are areas</source>
-            <translation>Akadályok, amelyek területek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Obstacles that are lines</source>
-            <translation>Akadályok, amelyek vonalak</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/load_robot_map.py" />
-            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
-            <translation>Szöveges vagy bináris robottérképet alakít rétegekké mindazzal, amit a térkép mond.</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/publish_site.py" />
@@ -7719,67 +7471,315 @@
             <source>the database, schema {schema}</source>
             <translation>adatbázis, {schema} séma</translation>
         </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Checks a robot map, text or binary, and makes a layer of lines that show what is odd, each with a kind, a severity, the obstacle to look at, and what to do.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: outlines, courtyards, segments or risers that run the wrong way round. &lt;b&gt;gap&lt;/b&gt;: rings that do not close, and lines that stop just short of another obstacle. &lt;b&gt;sliver&lt;/b&gt;: rings next to nothing wide, segments without length. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: obstacles that repeat, cross or cover one another or lie inside another. &lt;b&gt;shared wall&lt;/b&gt;: where two outlines touch back to back. &lt;b&gt;pocket&lt;/b&gt;: free space that a robot of the given width cannot reach; courtyards are such pockets. &lt;b&gt;height&lt;/b&gt;: heights of 0 or less, or above 0 where there must be none. &lt;b&gt;outside&lt;/b&gt;: segments beyond the border. &lt;b&gt;id&lt;/b&gt;: ids used twice.&lt;/p&gt; &lt;p&gt;Severities: &lt;i&gt;error&lt;/i&gt; misleads a robot, &lt;i&gt;warning&lt;/i&gt; is probably not meant, &lt;i&gt;info&lt;/i&gt; is worth knowing. The map itself is not changed.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Ellenőriz egy szöveges vagy bináris robottérképet, és vonalréteget készít arról, ami furcsa, mindegyiknél a fajtával, a súlyossággal, a megnézendő akadállyal és a teendővel.&lt;/p&gt; &lt;p&gt;&lt;b&gt;orientation&lt;/b&gt;: rossz irányba futó körvonalak, udvarok, szakaszok vagy lépcsőfokok. &lt;b&gt;gap&lt;/b&gt;: nem záródó gyűrűk, és vonalak, amelyek épp egy másik akadály előtt végződnek. &lt;b&gt;sliver&lt;/b&gt;: szinte szélesség nélküli gyűrűk, hossz nélküli szakaszok. &lt;b&gt;duplicate&lt;/b&gt;, &lt;b&gt;overlap&lt;/b&gt;: akadályok, amelyek ismétlődnek, keresztezik vagy fedik egymást, vagy egy másikban vannak. &lt;b&gt;shared wall&lt;/b&gt;: ahol két körvonal háttal összeér. &lt;b&gt;pocket&lt;/b&gt;: szabad terület, amelyet egy adott szélességű robot nem ér el; az udvarok ilyenek. &lt;b&gt;height&lt;/b&gt;: 0 vagy kisebb magasságok, vagy 0 felettiek, ahol nem lehet ilyen. &lt;b&gt;outside&lt;/b&gt;: a kereten túli szakaszok. &lt;b&gt;id&lt;/b&gt;: kétszer használt azonosítók.&lt;/p&gt; &lt;p&gt;Súlyosság: az &lt;i&gt;error&lt;/i&gt; félrevezet egy robotot, a &lt;i&gt;warning&lt;/i&gt; valószínűleg nem szándékos, az &lt;i&gt;info&lt;/i&gt; érdemes tudni. Maga a térkép nem változik.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>&lt;p&gt;Reads a robot map, text or binary, and makes layers of it.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Obstacles that are areas&lt;/b&gt;: outlines that close, courtyards as holes. &lt;b&gt;Obstacles that are lines&lt;/b&gt;: walls, stairs, and what the border of the map cuts. &lt;b&gt;Segments&lt;/b&gt;: each from a to b, with free space on its right; the style shows that side by ticks and the height by colour. Fields: id, shape, labels, height, indoors or outdoors, extras (&lt;i&gt;ext&lt;/i&gt;, as JSON).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: a map may name its CRS, origin and rotation in its leading lines; parameters win over them. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Szöveges vagy bináris robottérképet olvas, és rétegeket készít belőle.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Területszerű akadályok&lt;/b&gt;: záródó körvonalak, az udvarok lyukak. &lt;b&gt;Vonalszerű akadályok&lt;/b&gt;: falak, lépcsők, és amit a térkép kerete elvág. &lt;b&gt;Szakaszok&lt;/b&gt;: mindegyik a-tól b-ig, jobbján szabad területtel; a stílus ezt az oldalt rovátkákkal, a magasságot színnel mutatja. Mezők: azonosító, alak, címkék, magasság, bent vagy kint, továbbiak (&lt;i&gt;ext&lt;/i&gt;, JSON-ként).&lt;/p&gt; &lt;p&gt;&lt;b&gt;Hely&lt;/b&gt;: a térkép bevezető sorai megnevezhetik vetületét, kezdőpontját és elforgatását; a paraméterek előbbre valók. Ahol egyik sem mondja meg, a rétegek helyi méterekben vannak, figyelmeztetéssel.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Border of the map</source>
+            <translation>A térkép határa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Check robot map</source>
+            <translation>Robottérkép ellenőrzése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Errors</source>
+            <translation>Hibák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Findings</source>
+            <translation>Találatok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Finds turned outlines, gaps, slivers, repeats, overlaps and unreachable pockets in a robot map.</source>
+            <translation>Megfordított körvonalakat, hézagokat, szilánkokat, ismétléseket, átfedéseket és elérhetetlen zugokat keres egy robottérképen.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Load robot map</source>
+            <translation>Robottérkép betöltése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Longest gap that was not meant [m]</source>
+            <translation>A leghosszabb nem szándékos hézag [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Narrowest ring that is an obstacle [m]</source>
+            <translation>A legkeskenyebb gyűrű, amely akadály [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Nothing is odd in this map.</source>
+            <translation>Ezen a térképen semmi sem furcsa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are areas</source>
+            <translation>Akadályok, amelyek területek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Obstacles that are lines</source>
+            <translation>Akadályok, amelyek vonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Smallest unreachable pocket [m²]</source>
+            <translation>A legkisebb elérhetetlen zug [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Turns a robot map, text or binary, into layers with all that the map says.</source>
+            <translation>Szöveges vagy bináris robottérképet alakít rétegekké mindazzal, amit a térkép mond.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Width of the robot, for unreachable pockets [m]</source>
+            <translation>A robot szélessége, az elérhetetlen zugokhoz [m]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/read_robot_maps.py" />
+            <source>Worth knowing</source>
+            <translation>Jó tudni</translation>
+        </message>
         <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n nodes</source>
+            <translation>
+                <numerusform>%n csomópont</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n parts</source>
+            <translation>
+                <numerusform>%n rész</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n repairs</source>
+            <translation>
+                <numerusform>%n javítás</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Ellenőrzi az úttengelyekből álló hálózatot, és pontréteget készít arról, ami furcsa, mindegyiknél a megnézendő elemmel. Semmit sem változtat.&lt;/p&gt; &lt;p&gt;Amit a &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; kijavít: &lt;b&gt;rés&lt;/b&gt; (gap), egy vég, amely a tűrésen belül egy másik út előtt megáll; &lt;b&gt;túlnyúlás&lt;/b&gt; (overshoot), egy vég, amely ennél kevesebbel nyúlik túl egy úton; &lt;b&gt;kettőzés&lt;/b&gt; (duplicate), kétszer megrajzolt szakasz.&lt;/p&gt; &lt;p&gt;Amit csak ember ítélhet meg: &lt;b&gt;zsákutca&lt;/b&gt; (dead end); &lt;b&gt;különálló rész&lt;/b&gt; (disconnected part), egymással összefüggő utak, amelyek a leghosszabb résszel nem; &lt;b&gt;egyirányú&lt;/b&gt; (one-way), utak, ahonnan az irányok miatt nincs út vissza.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Splits road centrelines where they cross or touch, and makes a layer of edges and one of nodes.&lt;/p&gt; &lt;p&gt;Roads of different &lt;b&gt;levels&lt;/b&gt; meet only where one of them ends in a point of the other: a bridge is reached at its ends and passes over what is between them. &lt;b&gt;Direction&lt;/b&gt;, speed, width, surface and whether a road is closed go over to its edges.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Repair&lt;/b&gt; moves ends that stop within the tolerance of a road onto it, cuts off ends that reach beyond a road by less, and leaves out what is drawn twice; the log names each repair. &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; shows what is broken without changing anything.&lt;/p&gt; &lt;p&gt;The fields of the edges are those that this algorithm and &lt;i&gt;fleet:route&lt;/i&gt; read by themselves. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Szétvágja az úttengelyeket, ahol keresztezik vagy érintik egymást, és egy réteget készít az élekből, egyet a csomópontokból.&lt;/p&gt; &lt;p&gt;Különböző &lt;b&gt;szintű&lt;/b&gt; utak csak ott találkoznak, ahol egyikük a másik egy pontjában végződik: egy hídra a végein lehet rámenni, és átível azon, ami közöttük van. Az &lt;b&gt;irány&lt;/b&gt;, a sebesség, a szélesség, a felület és hogy le van-e zárva egy út, átmegy az éleire.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;javítás&lt;/b&gt; az út mellett a tűrésen belül végződő végeket rátolja, a túlnyúló végeket levágja, ha kevesebbel nyúlnak túl, és elhagyja, ami kétszer van megrajzolva; a napló minden javítást megnevez. A &lt;i&gt;fleet:checkroadnetwork&lt;/i&gt; megmutatja, mi hibás, és semmit sem változtat.&lt;/p&gt; &lt;p&gt;Az élek mezőit ez az algoritmus és a &lt;i&gt;fleet:route&lt;/i&gt; magától olvassa. Bővebben: docs/roads.md.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Build road network</source>
+            <translation>Úthálózat készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Check road network</source>
+            <translation>Úthálózat ellenőrzése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Dead ends</source>
+            <translation>Zsákutcák</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Edges without a way back</source>
+            <translation>Élek visszaút nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
+            <translation>Hézagokat, túlnyúlásokat, kettőzéseket, zsákutcákat, különálló részeket és egyirányú csapdákat keres az úttengelyekben.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Gaps</source>
+            <translation>Hézagok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nodes</source>
+            <translation>Csomópontok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Nothing is odd in this network.</source>
+            <translation>Ebben a hálózatban semmi sem furcsa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Overshoots</source>
+            <translation>Túlnyúlások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts of their own</source>
+            <translation>Különálló részek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Parts that are not connected</source>
+            <translation>Össze nem függő részek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Repairs</source>
+            <translation>Javítások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Roads drawn twice</source>
+            <translation>Kétszer rajzolt utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
+            <translation>Az úttengelyeket találkozásaiknál felosztja, hidaknál alattuk és felettük átvezeti, és kérésre kijavítja.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>%n of the surfaces that are given as drawn say that they were generated (field origin); they are left out and made anew</source>
+            <translation>
+                <numerusform>%n rajzoltként megadott felület azt mondja magáról, hogy előállított (origin mező); kimarad, és újra elkészül</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>%n points are on a surface, {off} on none.</source>
             <translation>
                 <numerusform>%n pont van felületen, {off} egyiken sem.</numerusform>
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>&lt;p&gt;Copies points and adds &lt;b&gt;surface&lt;/b&gt;, the class of the road surface that each is on, its &lt;b&gt;surface_name&lt;/b&gt;, and &lt;b&gt;surface_origin&lt;/b&gt;: whether the surface was drawn or generated from centrelines. They are empty where there is no surface.&lt;/p&gt; &lt;p&gt;The surfaces are layers of areas with a field &lt;i&gt;surface&lt;/i&gt;, or the class that their role says; without any, the project's layers with the role road surface. Points and layers may be in any CRS.&lt;/p&gt; &lt;p&gt;A point on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger. The expression &lt;i&gt;road_surface(x, y)&lt;/i&gt; tells the same. docs/roads.md says more.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Lemásolja a pontokat, és hozzáteszi a &lt;b&gt;surface&lt;/b&gt; mezőt, annak az útfelületnek az osztályát, amelyen mindegyik van, a &lt;b&gt;surface_name&lt;/b&gt; mezőt, a nevét, és a &lt;b&gt;surface_origin&lt;/b&gt; mezőt: hogy a felületet rajzolták-e, vagy tengelyekből készült. Ahol nincs felület, üresek.&lt;/p&gt; &lt;p&gt;A felületek területrétegek &lt;i&gt;surface&lt;/i&gt; mezővel vagy a szerepük szerinti osztállyal; ha egy sincs megadva, a projekt útfelület szerepű rétegei. A pontok és rétegek bármilyen vetületben lehetnek.&lt;/p&gt; &lt;p&gt;A peremen lévő pont a felületen van. Ahol felületek fedik egymást, a rajzolt előbbre való a generáltnál, azután a kisebb a nagyobbnál. A &lt;i&gt;road_surface(x, y)&lt;/i&gt; kifejezés ugyanezt mondja. Bővebben: docs/roads.md.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>&lt;p&gt;Widens road centrelines by half their width to each side: ends are cut square, corners are mitred, within a road and where roads end in one point. What is of one class, such as asphalt, becomes one surface; pieces that do not touch are features of their own.&lt;/p&gt; &lt;p&gt;No ground is in two surfaces. Surfaces &lt;b&gt;drawn by hand&lt;/b&gt; keep theirs and are copied to the result. Among generated ones the class that comes first in &lt;b&gt;precedence&lt;/b&gt; keeps the ground; of classes that are not named there the one with less ground, and what has no class comes last.&lt;/p&gt; &lt;p&gt;A road whose width is not known is as wide as &lt;b&gt;default width&lt;/b&gt; says, and is in the layer of &lt;b&gt;findings&lt;/b&gt;. Ends that stop just short of another road stay apart: mend them with &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; and give its edges.&lt;/p&gt; &lt;p&gt;Give the result the role road surface to publish it. docs/roads.md says more.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Az úttengelyeket szélességük felével kiszélesíti mindkét oldalra: a végeket merőlegesen vágja le, a sarkokat hegyesen zárja, egy úton belül és ahol utak egy pontban végződnek. Ami egy osztályú, például aszfalt, egy felület lesz; az egymáshoz nem érő darabok külön elemek.&lt;/p&gt; &lt;p&gt;Egyetlen terület sincs két felületben. A &lt;b&gt;kézzel rajzolt&lt;/b&gt; felületek megtartják a magukét, és átmásolódnak az eredménybe. A generáltak közül az az osztály tartja meg a területet, amelyik a &lt;b&gt;sorrendben&lt;/b&gt; előbb áll; a meg nem nevezettek közül a kisebb területű, és ami osztály nélküli, az az utolsó.&lt;/p&gt; &lt;p&gt;Az ismeretlen szélességű út olyan széles, amennyit az &lt;b&gt;alapértelmezett szélesség&lt;/b&gt; mond, és szerepel a &lt;b&gt;leletek&lt;/b&gt; rétegében. A másik út előtt épp hogy véget érő végek elválva maradnak: javítsa őket a &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; algoritmussal, és annak éleit adja meg.&lt;/p&gt; &lt;p&gt;Közzétételhez adja az eredménynek az útfelület szerepet. Bővebben: docs/roads.md.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Adds to points, in any CRS, the class of the road surface that they are on.</source>
             <translation>Bármely vetületű pontokhoz hozzáadja annak az útfelületnek az osztályát, amelyen vannak.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Area [m²]</source>
+            <translation>Terület [m²]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Build road surfaces</source>
+            <translation>Útfelületek készítése</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Classes that keep their ground, the first before the second</source>
+            <translation>A területüket megtartó osztályok, az első a második előtt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Feature {id} has points on several surfaces; none is given for it</source>
             <translation>A(z) {id}. elem pontjai több felületen vannak; egyik sincs megadva hozzá</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Generated ones</source>
+            <translation>Ebből előállított</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>No road surfaces are given, and no layer of the project has the role road surface: give SURFACES, or set the role in Plugins &gt; Fleet Supervisor &gt; Layer roles.</source>
             <translation>Nincsenek megadva útfelületek, és a projekt egyik rétegének sem útfelület a szerepe: adja meg a SURFACES-t, vagy állítsa be a szerepet a Modulok &gt; Fleet Supervisor &gt; Rétegszerepek ablakban.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>POINTS {name} is a table without places: make points of its columns first, by native:createpointslayerfromtable.</source>
             <translation>A POINTS {name} helyek nélküli táblázat: előbb készítsen pontokat az oszlopaiból a native:createpointslayerfromtable algoritmussal.</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points</source>
             <translation>Pontok</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on a surface</source>
             <translation>Pontok felületen</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points on none</source>
             <translation>Pontok felületen kívül</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Points with surface</source>
             <translation>Pontok felülettel</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Road surfaces (default: the project's layers with that role)</source>
             <translation>Útfelületek (alapértelmezés: a projekt ilyen szerepű rétegei)</translation>
         </message>
         <message>
-            <location filename="../../plugin/processing/algorithms/surface_at_point.py" />
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Roads without a width</source>
+            <translation>Szélesség nélküli utak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
             <source>Surface at point</source>
             <translation>Felület a pontban</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Surfaces drawn by hand, which keep their ground</source>
+            <translation>Kézzel rajzolt felületek, amelyek megtartják helyüket</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>The width of this road is not known; {width:g} m is used.</source>
+            <translation>Ennek az útnak a szélessége nem ismert; {width:g} m lesz használva.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>Widens centrelines to surfaces, one for each class; surfaces drawn by hand keep their ground.</source>
+            <translation>Az úttengelyeket felületekké szélesíti, osztályonként eggyé; a kézzel rajzolt felületek megtartják helyüket.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>without a class</source>
+            <translation>osztály nélkül</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
+            <source>{label}: {area:.1f} m²</source>
+            <translation>{label}: {area:.1f} m²</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/trajectories.py" />

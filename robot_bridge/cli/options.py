@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from sqlalchemy import URL
 
     from ..core.sites.settings import SiteSettings
-    from ..gateway.site_copy import SiteCopy
+    from ..gateway.site_updates import SiteCopy
 
 DEFAULT = "sqlite:///robot-bridge.db"
 
@@ -72,7 +72,7 @@ def site_copy(site: str, state: Path | None) -> SiteCopy | None:
 
     if not is_database_address(site):
         return None
-    from ..gateway.site_copy import SiteCopy
+    from ..gateway.site_updates import SiteCopy
 
     copy = SiteCopy(read_site_address(site), state)
     copy.fetch_first()

@@ -20,15 +20,7 @@ from ..core.messages.records import MOST_PLACEMENTS, GetPlacements, PlacementRep
 from ..core.sites.frame import SiteFrame, projections
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories import records as stored
-from .options import (
-    DEFAULT,
-    DatabaseOption,
-    PasswordFileOption,
-    SiteOption,
-    database_address,
-    site_settings,
-    time_span,
-)
+from . import options
 
 # --- Placed cones as columns: in the site frame, in the site's CRS, and their deviation along both axes
 
@@ -180,9 +172,9 @@ def placements() -> None:
 @app.command()
 def export(
     file: Annotated[Path, typer.Argument(help="The file to be written: .csv, or .gpkg for GIS.")],
-    site: SiteOption,
-    database: DatabaseOption = DEFAULT,
-    database_password_file: PasswordFileOption = None,
+    site: options.SiteOption,
+    database: options.DatabaseOption = options.DEFAULT,
+    database_password_file: options.PasswordFileOption = None,
     layout: Annotated[str | None, typer.Option(help="Only the cones of this layout.")] = None,
     plan: Annotated[str | None, typer.Option(help="Only the cones of this plan.")] = None,
     robot: Annotated[str | None, typer.Option(help="Only what this robot put down.")] = None,
@@ -206,7 +198,7 @@ def export(
         )
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
-    first, last = time_span(since, until)
+    first, last = options.time_span(since, until)
     query = GetPlacements(
         layout=layout,
         plan=plan,
@@ -216,8 +208,8 @@ def export(
         collected=collected,
         limit=MOST_PLACEMENTS,
     )
-    frame = site_settings(site).frame
-    address = database_address(database, database_password_file)
+    frame = options.site_settings(site).frame
+    address = options.database_address(database, database_password_file)
 
     async def work() -> list[PlacementReport]:
         opened = Database(address, patience=None)

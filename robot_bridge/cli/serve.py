@@ -21,15 +21,7 @@ from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
 from ..core.parent_process import call_at_end_of_input, notify, watchdog_interval
 from ..gateway.monitoring import freeze_permanent_objects
-from .options import (
-    DEFAULT,
-    DatabaseOption,
-    PasswordFileOption,
-    SiteOption,
-    UntilStdinCloses,
-    database_address,
-    site_copy,
-)
+from . import options
 
 if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings, Signals
@@ -45,9 +37,9 @@ Loop = Literal["auto", "uvloop", "asyncio"]
 
 
 def serve(
-    site: SiteOption,
-    database: DatabaseOption = "",
-    database_password_file: PasswordFileOption = None,
+    site: options.SiteOption,
+    database: options.DatabaseOption = "",
+    database_password_file: options.PasswordFileOption = None,
     host: Annotated[
         str, typer.Option(help=f"Address to listen on ({HOST}); beyond loopback with TLS and accounts.")
     ] = "",
@@ -108,7 +100,7 @@ def serve(
         LogLevel, typer.Option(help="The least that is logged.", envvar="ROBOT_BRIDGE_LOG_LEVEL")
     ] = "warning",
     loop: Annotated[Loop, typer.Option(help="Event loop; auto is uvloop where it is installed.")] = "auto",
-    until_stdin_closes: UntilStdinCloses = False,
+    until_stdin_closes: options.UntilStdinCloses = False,
 ) -> None:
     """Serve one site to robots (/robot, and tables rr and sa) and to operators (/desk).
 
@@ -147,14 +139,14 @@ def gateway_settings(
     from ..gateway.app import GatewaySettings
     from ..gateway.auth.port import server_files
 
-    copy = site_copy(site, state)
+    copy = options.site_copy(site, state)
     folder = Path(site) if copy is None else copy.folder
     # A folder that is not there is named by whoever reads the whole site.
     given = read_settings(folder / SETTINGS_FILE).gateway if folder.is_dir() else GatewayOptions()
     files = (certificate or _beside(folder, given.certificate), key or _beside(folder, given.key))
     return GatewaySettings(
         site=folder,
-        database=database_address(database or given.database or DEFAULT, password_file),
+        database=options.database_address(database or given.database or options.DEFAULT, password_file),
         host=host or given.host or HOST,
         port=next(number for number in (port, given.port, PORT) if number is not None),
         tls=server_files(*files),

@@ -29,6 +29,7 @@ from ..gateway.app import GatewaySettings, Signals
 from ..gateway.app import run as run_gateway
 from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings
 from ..reference_robot.body import BodyLimits
+from ..reference_robot.localisation import simulation
 from ..reference_robot.localisation.avoidance import MovingObstacles, People
 from ..reference_robot.localisation.experiment import (
     PATIENCE,
@@ -40,14 +41,6 @@ from ..reference_robot.localisation.experiment import (
 )
 from ..reference_robot.localisation.localiser import InitialBelief
 from ..reference_robot.localisation.sensors import TruePose
-from ..reference_robot.localisation.simulation import (
-    MAP_MARGIN,
-    InlineExecutor,
-    LocalisedBody,
-    LocalisedSettings,
-    SimulatedWorld,
-    simulated_world,
-)
 from ..reference_robot.websocket_link import RobotWebSocketLink
 
 P = ParamSpec("P")
@@ -273,7 +266,7 @@ class _CountingAgent(Agent):
         return super().receive(answer, id)
 
 
-class _TimedExecutor(InlineExecutor):
+class _TimedExecutor(simulation.InlineExecutor):
     """Works at once, and remembers how much processor time the newest work took."""
 
     seconds = 0.0
@@ -307,20 +300,25 @@ class _Robot:
         self.length = float(np.hypot(*np.diff(np.array(route), axis=0).T).sum())
         (x, y), (to_x, to_y) = route[:2]
         begin: TruePose = (x, y, float(np.arctan2(to_y - y, to_x - x)))
-        made = simulated_world(robot_map, settings, seed)
-        world = SimulatedWorld(made.walls, made.sky, surroundings)
+        made = simulation.simulated_world(robot_map, settings, seed)
+        world = simulation.SimulatedWorld(made.walls, made.sky, surroundings)
         limits = BodyLimits(speed=settings.speed)
         belief = InitialBelief(begin, (settings.start_m, float(np.radians(settings.start_deg))))
         robot = msgspec.structs.replace(settings)
-        body = LocalisedSettings(
+        body = simulation.LocalisedSettings(
             robot, limits, begin, belief, settings.scans, settings.gps, seed, compiled=drives.compiled
         )
         self._timed = _TimedExecutor()
-        self.body = LocalisedBody(body, world, self._timed)
+        self.body = simulation.LocalisedBody(body, world, self._timed)
         self.link = RobotWebSocketLink(f"{address}/robot", self.name)
         self.agent = _CountingAgent(
             AgentSettings(
-                magic=seed, pose=begin, limits=limits, asks_path=True, map_margin=MAP_MARGIN, body=self.body
+                magic=seed,
+                pose=begin,
+                limits=limits,
+                asks_path=True,
+                map_margin=simulation.MAP_MARGIN,
+                body=self.body,
             ),
             self,
         )

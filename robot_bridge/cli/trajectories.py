@@ -21,16 +21,7 @@ from ..links.base.frames import FrameSettings, LinkFrame
 from ..recordings.csv_table import TableForm
 from ..recordings.readers import ReadingOptions, read_recording
 from ..recordings.tracks import Recording, Track
-from .options import (
-    DEFAULT,
-    DatabaseOption,
-    PasswordFileOption,
-    SiteOption,
-    database_address,
-    seconds_of,
-    site_settings,
-    time_span,
-)
+from . import options
 
 # --- ``robot-bridge trajectories import``: a recorded drive into the database ---
 
@@ -40,9 +31,9 @@ _LEAST_DATE = 1e8
 
 def import_recording(
     file: Annotated[Path, typer.Argument(help="The recording: .csv, .csv.gz, .gpx, .gpkg, or a ROS bag.")],
-    site: SiteOption,
-    database: DatabaseOption = DEFAULT,
-    database_password_file: PasswordFileOption = None,
+    site: options.SiteOption,
+    database: options.DatabaseOption = options.DEFAULT,
+    database_password_file: options.PasswordFileOption = None,
     robot: Annotated[
         list[str] | None,
         typer.Option(help="NAME of the one robot recorded; or RECORDED=NAME, repeatedly: no others."),
@@ -65,7 +56,7 @@ def import_recording(
     columns = dict(_pair("--column", text) for text in column or ())
     form = TableForm(columns, delimiter, time_unit, theta_unit)
     form.check()
-    settings = site_settings(site)
+    settings = options.site_settings(site)
     recording = read_recording(file, ReadingOptions(form, tuple(topic or ())))
     _tell_remarks(recording)
     own = FrameSettings(crs=recording.crs or crs, origin=_origin(origin), rotation_deg=rotation)
@@ -81,7 +72,7 @@ def import_recording(
         )
         for track, name in _named(recording.tracks, robot or (), file)
     ]
-    address = database_address(database, database_password_file)
+    address = options.database_address(database, database_password_file)
 
     async def work() -> int:
         opened = Database(address, patience=None)
@@ -132,7 +123,7 @@ def _named(tracks: Sequence[Track], choices: Sequence[str], file: Path) -> list[
 
 def _shift(recording: Recording, begin: str | None) -> float:
     """Return the seconds from the recording's times to those since 1970."""
-    at = seconds_of("--begin", begin)
+    at = options.seconds_of("--begin", begin)
     if at is not None:
         return at - recording.begin
     if recording.begin < _LEAST_DATE:
@@ -181,9 +172,9 @@ def trajectories() -> None:
 @app.command()
 def export(
     file: Annotated[Path, typer.Argument(help="The GeoPackage to be written.")],
-    site: SiteOption,
-    database: DatabaseOption = DEFAULT,
-    database_password_file: PasswordFileOption = None,
+    site: options.SiteOption,
+    database: options.DatabaseOption = options.DEFAULT,
+    database_password_file: options.PasswordFileOption = None,
     robot: Annotated[list[str] | None, typer.Option(help="Only this robot; may be given repeatedly.")] = None,
     since: Annotated[
         str | None, typer.Option(help="Not before: 2026-11-21T08:00 (UTC), or with an offset such as +01:00.")
@@ -200,15 +191,15 @@ def export(
         raise BridgeError(f"{file} is no name for a GeoPackage; write one that ends in .gpkg")
     if file.exists() and not replace:
         raise BridgeError(f"{file} is there already; choose another name, or give --replace")
-    first, last = time_span(since, until)
+    first, last = options.time_span(since, until)
     query = TrajectoryQuery(
         robots=tuple(check_robot_name(name) for name in robot or ()),
         since=first,
         until=last,
         bounds=_bounds(bounds),
     )
-    frame = site_settings(site).frame
-    address = database_address(database, database_password_file)
+    frame = options.site_settings(site).frame
+    address = options.database_address(database, database_password_file)
 
     async def work() -> TrajectoryFile:
         opened = Database(address, patience=None)

@@ -26,11 +26,10 @@ from ..core.messages.validation import MessageError, check_robot_name
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
+from .api.http_pages import HEALTH, METRICS, SiteQueries, StatusPages
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface
 from .api.robot_websockets import WebSocketInterface
-from .api.site_queries import SiteQueries
-from .api.status_pages import HEALTH, METRICS, StatusPages
 from .auth.accounts import TokenKind, check_link_name
 from .auth.administration import AccountAdministration
 from .auth.authorisation import PATHS, AuthGate
@@ -57,8 +56,7 @@ from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
 from .site.site_maps import SiteMaps
-from .site_copy import LOOK_INTERVAL, SiteCopy
-from .site_watch import SiteWatch, stamp_of
+from .site_updates import FETCH_INTERVAL, SiteCopy, SiteWatch, stamp_of
 from .storage.database import Database
 from .storage.repositories import metadata
 from .storage.repositories.metadata import newest_time
@@ -400,7 +398,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             works = relays.works(works, fleet.tally)
         if (copy := settings.site_copy) is not None:
             stack.push_async_callback(copy.close)
-            works["site copy"] = lambda: every(LOOK_INTERVAL, copy.refresh, "site copy", fleet.tally)
+            works["site copy"] = lambda: every(FETCH_INTERVAL, copy.refresh, "site copy", fleet.tally)
         await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import functools
 import gc
 import importlib.metadata
 import logging
@@ -50,6 +51,7 @@ class Counters:
         return None if last is None else time.monotonic() - last
 
 
+@functools.cache
 def gateway_version() -> str:
     """Return the version of the installed gateway, ``unknown`` where it runs from a folder."""
     try:

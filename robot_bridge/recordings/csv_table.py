@@ -12,23 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
-from .tracks import (
-    MOST_SAMPLES,
-    NOTHING,
-    SPEED_BOUNDS,
-    THETA_BOUNDS,
-    UNITS,
-    WGS84,
-    RecordingError,
-    Remarks,
-    Sample,
-    Source,
-    ValueRefusedError,
-    number,
-    place_bounds,
-    seconds_of,
-    shown,
-)
+from . import tracks
 
 # --- Which columns of a table hold what: one row a position, or columns for each robot ---
 
@@ -53,15 +37,19 @@ class TableForm:
         """Raise RecordingError, beginning with the key, for what cannot be."""
         for key in self.columns:
             if key not in KNOWN:
-                raise RecordingError(f"columns.{key} is not known; known are {', '.join(KNOWN)}")
+                raise tracks.RecordingError(f"columns.{key} is not known; known are {', '.join(KNOWN)}")
         if len(self.delimiter) != 1:
-            raise RecordingError(f"delimiter = {self.delimiter!r}: give one character")
-        if self.time_unit not in UNITS:
-            raise RecordingError(f"time_unit = {self.time_unit!r}: give one of {', '.join(UNITS)}")
+            raise tracks.RecordingError(f"delimiter = {self.delimiter!r}: give one character")
+        if self.time_unit not in tracks.UNITS:
+            raise tracks.RecordingError(
+                f"time_unit = {self.time_unit!r}: give one of {', '.join(tracks.UNITS)}"
+            )
         if self.theta_unit not in THETA_UNITS:
-            raise RecordingError(f"theta_unit = {self.theta_unit!r}: give one of {', '.join(THETA_UNITS)}")
+            raise tracks.RecordingError(
+                f"theta_unit = {self.theta_unit!r}: give one of {', '.join(THETA_UNITS)}"
+            )
         if {"x", "y"} & self.columns.keys() and {"lat", "lon"} & self.columns.keys():
-            raise RecordingError("columns: give x and y, or lat and lon")
+            raise tracks.RecordingError("columns: give x and y, or lat and lon")
 
     def radians(self, value: float) -> float:
         """Return a heading of the table as radians counter-clockwise from the x axis, in [-π, π]."""
@@ -108,7 +96,7 @@ def _robots(pattern: str, head: Sequence[str]) -> list[str | None]:
     form = re.compile(f"{re.escape(before)}(.+){re.escape(behind)}")
     names: list[str | None] = [found[1] for found in map(form.fullmatch, head) if found]
     if not names:
-        raise RecordingError(f"no column is called like {pattern}; {_there(head)}")
+        raise tracks.RecordingError(f"no column is called like {pattern}; {_there(head)}")
     return names
 
 
@@ -120,13 +108,13 @@ def _of_robot(
         if column in head:
             return head.index(column)
         if key in columns:
-            raise RecordingError(f"columns.{key}: no column is called {column}; {_there(head)}")
+            raise tracks.RecordingError(f"columns.{key}: no column is called {column}; {_there(head)}")
         return None
 
     def need(key: str) -> int:
         found = find(key)
         if found is None:
-            raise RecordingError(
+            raise tracks.RecordingError(
                 f"no column is called {key}; name the one that holds it with columns.{key}; {_there(head)}"
             )
         return found
@@ -146,11 +134,11 @@ def _there(head: Sequence[str]) -> str:
 LONGEST_LINE = 1 << 20
 """characters."""
 LONGEST_NAME = 128
-MOST_ROWS = 2 * MOST_SAMPLES
+MOST_ROWS = 2 * tracks.MOST_SAMPLES
 """rows that are gone through, empty ones and such that cannot be used among them."""
 
 
-def read_csv(file: Path, form: TableForm, remarks: Remarks) -> Source:
+def read_csv(file: Path, form: TableForm, remarks: tracks.Remarks) -> tracks.Source:
     """Return the positions in a table; rows that cannot be used are noted in ``remarks``.
 
     :raises RecordingError: for a file that cannot be opened, and columns that do not fit.
@@ -159,14 +147,16 @@ def read_csv(file: Path, form: TableForm, remarks: Remarks) -> Source:
     head = [name.strip() for _, name_row in [next(rows, (0, []))] for name in name_row]
     if not head:
         rows.close()
-        raise RecordingError(f"{file}: row 1: no names of columns stand there; the file is empty or cut off")
+        raise tracks.RecordingError(
+            f"{file}: row 1: no names of columns stand there; the file is empty or cut off"
+        )
     try:
         robots = robot_columns(head, form, file.name.split(".")[0])
-    except RecordingError as error:
+    except tracks.RecordingError as error:
         rows.close()
-        raise RecordingError(f"{file}: row 1: {error}") from None
+        raise tracks.RecordingError(f"{file}: row 1: {error}") from None
     table = _Table(file, form, head, robots, remarks)
-    return Source(WGS84 if robots[0].is_earth else None, table.samples(rows))
+    return tracks.Source(tracks.WGS84 if robots[0].is_earth else None, table.samples(rows))
 
 
 class _Table:
@@ -176,12 +166,12 @@ class _Table:
         form: TableForm,
         head: Sequence[str],
         robots: Sequence[RobotColumns],
-        remarks: Remarks,
+        remarks: tracks.Remarks,
     ) -> None:
         self._file, self._form, self._head = file, form, head
         self._robots, self._remarks = robots, remarks
 
-    def samples(self, rows: Iterator[tuple[int, list[str]]]) -> Iterator[Sample]:
+    def samples(self, rows: Iterator[tuple[int, list[str]]]) -> Iterator[tracks.Sample]:
         """Yield the positions of rows; those that cannot be used are noted."""
         for row, cells in rows:
             if not cells:
@@ -194,24 +184,24 @@ class _Table:
             for robot in self._robots:
                 try:
                     sample = self._sample(row, cells, robot)
-                except ValueRefusedError as error:
+                except tracks.ValueRefusedError as error:
                     self._remarks.add(f"{self._file}: row {row}", str(error))
                     continue
                 if sample is not None:
                     yield sample
 
-    def _sample(self, row: int, cells: Sequence[str], robot: RobotColumns) -> Sample | None:
+    def _sample(self, row: int, cells: Sequence[str], robot: RobotColumns) -> tracks.Sample | None:
         if robot.name is not None and len(self._robots) > 1 and not (cells[robot.x] or cells[robot.y]):
             return None
-        x, y = place_bounds(robot.is_earth)
-        return Sample(
+        x, y = tracks.place_bounds(robot.is_earth)
+        return tracks.Sample(
             row,
             self._name(cells, robot),
-            seconds_of(cells[robot.time], self._head[robot.time], self._form.time_unit),
-            number(cells[robot.x], self._head[robot.x], x),
-            number(cells[robot.y], self._head[robot.y], y),
-            self._form.radians(self._optional(cells, robot.theta, THETA_BOUNDS)),
-            self._optional(cells, robot.v, SPEED_BOUNDS),
+            tracks.seconds_of(cells[robot.time], self._head[robot.time], self._form.time_unit),
+            tracks.number(cells[robot.x], self._head[robot.x], x),
+            tracks.number(cells[robot.y], self._head[robot.y], y),
+            self._form.radians(self._optional(cells, robot.theta, tracks.THETA_BOUNDS)),
+            self._optional(cells, robot.v, tracks.SPEED_BOUNDS),
         )
 
     def _name(self, cells: Sequence[str], robot: RobotColumns) -> str:
@@ -219,17 +209,19 @@ class _Table:
             return str(robot.name)
         name = cells[robot.robot].strip()
         if not name or len(name) > LONGEST_NAME:
-            raise ValueRefusedError(self._head[robot.robot], f"{shown(name)} is no name of a robot")
+            raise tracks.ValueRefusedError(
+                self._head[robot.robot], f"{tracks.shown(name)} is no name of a robot"
+            )
         return name
 
     def _optional(self, cells: Sequence[str], column: int | None, bounds: tuple[float, float]) -> float:
         if column is None or not cells[column].strip():
-            return NOTHING
-        return number(cells[column], self._head[column], bounds)
+            return tracks.NOTHING
+        return tracks.number(cells[column], self._head[column], bounds)
 
 
 def _rows(
-    file: Path, delimiter: str, remarks: Remarks, most: int = MOST_ROWS
+    file: Path, delimiter: str, remarks: tracks.Remarks, most: int = MOST_ROWS
 ) -> Generator[tuple[int, list[str]], None, None]:
     """Yield rows with their numbers, as far as the file can be read."""
     lines = _lines(file)
@@ -238,12 +230,12 @@ def _rows(
     try:
         for row, cells in enumerate(reader, 1):
             if row > most:
-                raise RecordingError(f"{file}: more than {most} rows; part the file")
+                raise tracks.RecordingError(f"{file}: more than {most} rows; part the file")
             yield row, cells
     except (EOFError, zlib.error, OSError, csv.Error) as error:
         text = getattr(error, "strerror", None) or error
         if row == 0:
-            raise RecordingError(f"{file} cannot be read: {text}") from None
+            raise tracks.RecordingError(f"{file} cannot be read: {text}") from None
         remarks.add(f"{file}: behind row {row}", f"the file is cut off or damaged: {text}")
     finally:
         lines.close()

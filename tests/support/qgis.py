@@ -6,11 +6,13 @@ import os
 import shutil
 import sys
 import sysconfig
+from importlib.util import cache_from_source
 from pathlib import Path
 
 from tests.support.errors import StageError
 from tests.support.processes import Processes
 from tools.install_plugin import install
+from tools.plugin_files import ROOT
 
 SETTINGS = """\
 [PythonPlugins]
@@ -65,10 +67,12 @@ class Profile:
         (profile / "QGIS" / "QGIS3.ini").write_text(settings, encoding="utf-8")
         (folder / "run").mkdir(mode=0o700)
         self.plugin = install(profile, link=link)
+        if not link:
+            _take_compiled(self.plugin)
 
     def environment(self, *, packages: bool) -> dict[str, str]:
         """Return what QGIS's environment needs; with ``packages`` it also sees those of this environment."""
-        paths = [str(Path(__file__).parents[2])]
+        paths = [str(ROOT)]
         if packages:
             paths.append(sysconfig.get_path("purelib"))
         return {
@@ -78,6 +82,19 @@ class Profile:
             # A QGIS that ends abruptly says what its Python was at.
             "PYTHONFAULTHANDLER": "1",
         }
+
+
+def _take_compiled(plugin: Path) -> None:
+    """Put what Python has compiled of the repository beside the copy, so that QGIS need not."""
+    for copy in plugin.rglob("*.py"):
+        source = ROOT / copy.relative_to(plugin)
+        compiled = Path(cache_from_source(str(source)))
+        if compiled.is_file():
+            # Compiled is what is as old as its source.
+            os.utime(copy, ns=(source.stat().st_atime_ns, source.stat().st_mtime_ns))
+            target = Path(cache_from_source(str(copy)))
+            target.parent.mkdir(exist_ok=True)
+            shutil.copy(compiled, target)
 
 
 def program(name: str) -> str:

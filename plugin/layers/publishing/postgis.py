@@ -38,7 +38,7 @@ from ....robot_bridge.core.sites.site_database import (
 )
 from ...ui.errors import PublicationError
 from ...ui.language import tr
-from .site_file import LAYERS
+from .site_content import LAYERS
 
 # --- The database that a site goes into: a connection of QGIS's, or an address ---
 

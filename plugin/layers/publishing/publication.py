@@ -29,18 +29,10 @@ from ....robot_bridge.core.sites.site import cache_writer, publish_staged, write
 from ....robot_bridge.core.sites.site_cache import CacheWriter
 from ...ui.errors import PublicationError
 from ...ui.language import tr
+from .. import roles
 from ..live_layers import fleet_group
-from ..roles import (
-    KEEPOUT,
-    OBSTACLE,
-    ROAD_CENTRELINE,
-    ROAD_SURFACE,
-    LayerExpressions,
-    LayerSetup,
-    keep_setup,
-    layers_with_role,
-)
-from .site_file import SiteContent, stamp_in, write_site_file
+from .site_content import SiteContent
+from .site_file import stamp_in, write_site_file
 
 # --- One publication at a time into a folder, whichever processes publish ---
 
@@ -274,7 +266,7 @@ class _Part:
     layer: str
     title: str
     style: str
-    setup: LayerSetup
+    setup: roles.LayerSetup
 
 
 PARTS = (
@@ -282,15 +274,15 @@ PARTS = (
         KEEPOUTS.name,
         tr("Keepouts"),
         "keepouts.qml",
-        LayerSetup(KEEPOUT, LayerExpressions(semantics='"name"')),
+        roles.LayerSetup(roles.KEEPOUT, roles.LayerExpressions(semantics='"name"')),
     ),
     _Part(
         OBSTACLES.name,
         tr("Obstacles"),
         "",
-        LayerSetup(
-            OBSTACLE,
-            LayerExpressions(
+        roles.LayerSetup(
+            roles.OBSTACLE,
+            roles.LayerExpressions(
                 height='"height_m"', semantics='"semantics"', outdoor='"outdoor"', base='"base_m"'
             ),
         ),
@@ -299,13 +291,15 @@ PARTS = (
         CENTRELINES.name,
         tr("Road centrelines"),
         "road_centrelines.qml",
-        LayerSetup(ROAD_CENTRELINE, LayerExpressions(semantics='"surface"', width='"width_m"')),
+        roles.LayerSetup(
+            roles.ROAD_CENTRELINE, roles.LayerExpressions(semantics='"surface"', width='"width_m"')
+        ),
     ),
     _Part(
         SURFACES.name,
         tr("Road surfaces"),
         "road_surfaces.qml",
-        LayerSetup(ROAD_SURFACE, LayerExpressions(semantics='"surface"')),
+        roles.LayerSetup(roles.ROAD_SURFACE, roles.LayerExpressions(semantics='"surface"')),
     ),
 )
 """From top to bottom."""
@@ -336,11 +330,11 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
     :raises PublicationError: when a part is missing or cannot be read; nothing is loaded then.
     """
     name, opened = _site_name(folder), _open(folder)
-    taken = {part.setup.role for part in PARTS if layers_with_role(project, part.setup.role)}
+    taken = {part.setup.role for part in PARTS if roles.layers_with_role(project, part.setup.role)}
     group = fleet_group(project).addGroup(name)
     for part, layer in opened:
         if part.setup.role not in taken:
-            keep_setup(layer, part.setup)
+            roles.keep_setup(layer, part.setup)
         _dress(layer, part.style)
         project.addMapLayer(layer, False)
         group.addLayer(layer)

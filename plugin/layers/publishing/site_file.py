@@ -1,321 +1,24 @@
-"""Site file: content read from layers, its rows, and ``site.gpkg`` written."""
+"""Site file: ``site.gpkg`` written, with the spatial indexes of its layers."""
 
 from __future__ import annotations
 
+import math
 import sqlite3
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager, suppress
-from dataclasses import dataclass
-from itertools import chain, islice, pairwise
+from itertools import pairwise
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import Any
 
 import numpy as np
 from qgis.core import QgsFeedback
 
-from ....robot_bridge.core.roads.centrelines import Surface
-from ....robot_bridge.core.robotmap.model import ShapeType
-from ....robot_bridge.core.robotmap.outlines import Outlines
-from ....robot_bridge.core.sites.frame import SiteFrame
-from ....robot_bridge.core.sites.geopackage import (
-    CENTRELINES,
-    KEEPOUTS,
-    KNOWN_BEYOND,
-    OBSTACLES,
-    STAMP_KEY,
-    SURFACES,
-    Area,
-    Centreline,
-    LayerSpec,
-    extras_text,
-)
+from ....robot_bridge.core.sites import geopackage
 from ....robot_bridge.core.sites.settings import SiteSettings
 from ....robot_bridge.core.sites.site_cache import CacheWriter
-from ....robot_bridge.core.sites.site_layers import outline_groups
 from ...ui.errors import PublicationError
 from ...ui.language import tr
-from ..geometry import line_wkb, multi_line_wkb, polygon_heads, polygon_wkb
-from ..layer_source import ObstacleSource
-from ..obstacle_layers import ObstacleReader, check_sources
-from ..road_layers import GroundReading, check_ground_sources, each_area, each_centreline, each_surface
-from ..roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
-from ..site_transform import Bounds, SiteGeoreference, widen_bounds
-from .spatial_index import BoxTree
-
-# --- Everything that a site publishes, on its way from QGIS layers into a publication ---
-
-LAYERS = (OBSTACLES, CENTRELINES, SURFACES, KEEPOUTS)
-"""The layers of a site in the order in which they are read."""
-
-
-@dataclass(frozen=True)
-class SiteSources:
-    """The layers of a site, by what is read of them."""
-
-    obstacles: Sequence[ObstacleSource] = ()
-    centrelines: Sequence[ObstacleSource] = ()
-    surfaces: Sequence[ObstacleSource] = ()
-    keepouts: Sequence[ObstacleSource] = ()
-
-    def all(self) -> list[ObstacleSource]:
-        """Return every source."""
-        return [*self.obstacles, *self.centrelines, *self.surfaces, *self.keepouts]
-
-
-_TOGETHER = 1000
-"""Roads or areas that are placed and written together."""
-Item = TypeVar("Item", bound="Centreline | Area | Surface")
-
-
-class SiteContent:
-    """What ``sources`` hold, in the site frame, metres; each part is read once, as it is asked for.
-
-    Nothing is kept: a city has more than memory should be spent on.
-    Of obstacles what is near ``bounds`` is read, else all.
-
-    :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
-    """
-
-    def __init__(
-        self,
-        sources: SiteSources,
-        site: SiteGeoreference,
-        bounds: Bounds | None,
-        default_height: float,
-        default_width: float,
-    ) -> None:
-        near = widen_bounds(bounds, KNOWN_BEYOND) if bounds is not None else None
-        self._sources, self._site, self._default_width = sources, site, default_width
-        self._obstacles = ObstacleReader(sources.obstacles, site, near, default_height)
-        self._roads: GroundReading[Centreline] = GroundReading()
-        self._surfaces: GroundReading[Surface] = GroundReading()
-        self._keepouts: GroundReading[Area] = GroundReading()
-        self._low, self._high = np.full(2, np.inf), np.full(2, -np.inf)
-        self.counts = dict.fromkeys((layer.name for layer in LAYERS), 0)
-        """How many outlines, roads and areas were read so far, by the names of their layers."""
-
-    @property
-    def complete(self) -> bool:
-        """Whether nothing of what was asked for was left out; false after a cancel."""
-        ground = (self._roads, self._surfaces, self._keepouts)
-        return self._obstacles.complete and all(reading.complete for reading in ground)
-
-    @property
-    def extent(self) -> Bounds | None:
-        """x_min, y_min, x_max, y_max of what was read so far; None where there is nothing."""
-        if not any(self.counts.values()):
-            return None
-        (x_min, y_min), (x_max, y_max) = self._low.tolist(), self._high.tolist()
-        return x_min, y_min, x_max, y_max
-
-    def warnings(self) -> list[str]:
-        """Return what there is to warn of in what was read so far."""
-        read = (self._obstacles.warnings, self._roads.notes, self._surfaces.notes, self._keepouts.notes)
-        return [text for notes in read for text in notes.texts()]
-
-    def obstacles(self, feedback: QgsFeedback) -> Iterator[Outlines]:
-        """Yield the obstacles, some at a time."""
-        for some in self._obstacles.parts(feedback):
-            self._counted(OBSTACLES.name, some.coordinates, len(some))
-            yield some
-
-    def centrelines(self, feedback: QgsFeedback) -> Iterator[list[Centreline]]:
-        """Yield the roads, some at a time."""
-        sources = self._sources.centrelines
-        for some in _some(each_centreline(sources, self._site, self._default_width, self._roads, feedback)):
-            self._counted(CENTRELINES.name, np.concatenate([line.points for line in some]), len(some))
-            yield some
-
-    def surfaces(self, feedback: QgsFeedback) -> Iterator[list[Surface]]:
-        """Yield the road surfaces, some at a time."""
-        for some in _some(each_surface(self._sources.surfaces, self._site, self._surfaces, feedback)):
-            self._counted(SURFACES.name, np.concatenate([one.rings[0] for one in some]), len(some))
-            yield some
-
-    def keepouts(self, feedback: QgsFeedback) -> Iterator[list[Area]]:
-        """Yield the keepouts, some at a time."""
-        for some in _some(each_area(self._sources.keepouts, self._site, KEEPOUT, self._keepouts, feedback)):
-            self._counted(KEEPOUTS.name, np.concatenate([one.rings[0] for one in some]), len(some))
-            yield some
-
-    def _counted(self, layer: str, points: np.ndarray, count: int) -> None:
-        self.counts[layer] += count
-        self._low = np.minimum(self._low, points.min(axis=0)[:2])
-        self._high = np.maximum(self._high, points.max(axis=0)[:2])
-
-
-def _some(items: Iterator[Item]) -> Iterator[list[Item]]:
-    while some := list(islice(items, _TOGETHER)):
-        yield some
-
-
-def check_content_sources(sources: SiteSources, site: SiteGeoreference) -> None:
-    """Raise :class:`LayerReadingError` for what reading ``sources`` would refuse, without reading."""
-    check_sources(sources.obstacles, site)
-    check_ground_sources(sources.centrelines, site, ROAD_CENTRELINE)
-    check_ground_sources(sources.surfaces, site, ROAD_SURFACE)
-    check_ground_sources(sources.keepouts, site, KEEPOUT)
-
-
-# --- The content of a site as rows of the layers of ``site.gpkg``: geometries and values, some at a time
-
-_RINGS = tuple(int(one) for one in (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP))
-_STAIRS = int(ShapeType.STAIRS)
-_POINT_BYTES = 16
-
-
-class SiteRows(NamedTuple):
-    """Features of one layer: the geometry of each without the head that GeoPackages give it, and its box.
-
-    ``boxes`` is (n, 4), x_min, y_min, x_max and y_max in the site CRS; ``columns`` are the values of each
-    field of the layer, n of them.
-    """
-
-    wkb: Sequence[bytes]
-    boxes: np.ndarray
-    columns: Sequence[Iterable[Any]]
-
-
-def site_rows(
-    content: SiteContent, frame: SiteFrame, cache: CacheWriter, feedback: QgsFeedback
-) -> list[tuple[LayerSpec, Iterator[SiteRows]]]:
-    """Return the four layers of a site with the rows of each, which are read as they are asked for.
-
-    ``cache`` gets the obstacles as they are read, for they are read once.
-    """
-    return [
-        (OBSTACLES, _obstacle_rows(content, frame, cache, feedback)),
-        (CENTRELINES, _centreline_rows(content, frame, feedback)),
-        (SURFACES, _surface_rows(content, frame, feedback)),
-        (KEEPOUTS, _keepout_rows(content, frame, feedback)),
-    ]
-
-
-def _obstacle_rows(
-    content: SiteContent, frame: SiteFrame, cache: CacheWriter, feedback: QgsFeedback
-) -> Iterator[SiteRows]:
-    for some in content.obstacles(feedback):
-        cache.add(some)
-        yield _rows_of(some, frame)
-
-
-def _rows_of(some: Outlines, frame: SiteFrame) -> SiteRows:
-    """Return ``some`` as features; a courtyard is a hole of the ring before it."""
-    shut = np.isin(some.shape_type, _RINGS)
-    shapes = _PlacedShapes(some.coordinates, some.offsets, shut, frame)
-    groups = list(outline_groups(some))
-    rows = np.array([first for first, _ in groups], dtype=np.intp)
-    wkb = shapes.wkb(groups)
-    for k in np.flatnonzero(some.shape_type[rows] == _STAIRS).tolist():
-        wkb[k] = multi_line_wkb(_risers(shapes.points(groups[k][0])))
-    extras = some.extras
-    values: dict[str, Iterable[Any]] = {
-        "source": [some.source[first] for first, _ in groups],
-        "semantics": [some.semantics[first] for first, _ in groups],
-        "height_m": some.height[rows].tolist(),
-        "outdoor": some.outdoor[rows].astype(int).tolist(),
-        "shape_type": some.shape_type[rows].tolist(),
-        "base_m": some.bases[rows].tolist(),
-        "ext": [extras_text(extras[first]) for first, _ in groups],
-    }
-    return SiteRows(wkb, shapes.boxes()[rows], _in_order(OBSTACLES, values))
-
-
-def _risers(points: bytes) -> list[bytes]:
-    return [points[at : at + 2 * _POINT_BYTES] for at in range(0, len(points), 2 * _POINT_BYTES)]
-
-
-def _centreline_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback) -> Iterator[SiteRows]:
-    for some in content.centrelines(feedback):
-        shapes = _PlacedShapes.of([line.points for line in some], frame, closed=False)
-        values: dict[str, Iterable[Any]] = {
-            name: [getattr(line, name) for line in some] for name in CENTRELINES.fields
-        }
-        values["closed"] = map(int, values["closed"])
-        wkb = shapes.wkb([(k, k + 1) for k in range(len(some))])
-        yield SiteRows(wkb, shapes.boxes(), _in_order(CENTRELINES, values))
-
-
-def _surface_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback) -> Iterator[SiteRows]:
-    for some in content.surfaces(feedback):
-        values = {
-            "surface": [one.label for one in some],
-            "name": [one.name for one in some],
-            "origin": [one.origin for one in some],
-        }
-        yield _area_rows(SURFACES, [one.rings for one in some], values, frame)
-
-
-def _keepout_rows(content: SiteContent, frame: SiteFrame, feedback: QgsFeedback) -> Iterator[SiteRows]:
-    for some in content.keepouts(feedback):
-        names = [one.label for one in some]
-        yield _area_rows(KEEPOUTS, [one.rings for one in some], {"name": names}, frame)
-
-
-def _area_rows(
-    spec: LayerSpec,
-    areas: Sequence[Sequence[np.ndarray]],
-    values: Mapping[str, Iterable[Any]],
-    frame: SiteFrame,
-) -> SiteRows:
-    shapes = _PlacedShapes.of(list(chain.from_iterable(areas)), frame, closed=True)
-    edges = np.concatenate([[0], np.cumsum([len(rings) for rings in areas])])
-    wkb = shapes.wkb(list(pairwise(edges.tolist())))
-    return SiteRows(wkb, shapes.boxes()[edges[:-1]], _in_order(spec, values))
-
-
-def _in_order(spec: LayerSpec, values: Mapping[str, Iterable[Any]]) -> list[Iterable[Any]]:
-    return [values[name] for name in spec.fields]
-
-
-class _PlacedShapes:
-    """Rings and lines in the site CRS: ``coordinates``, (m, 2) in the site frame, one after the other.
-
-    ``offsets``, (n + 1,), says where each begins, ``closed``, (n,), which are rings. None is without points.
-    """
-
-    def __init__(
-        self, coordinates: np.ndarray, offsets: np.ndarray, closed: np.ndarray, frame: SiteFrame
-    ) -> None:
-        self._xy = frame.to_crs(coordinates)
-        self._starts, ends = offsets[:-1], offsets[1:]
-        # Rotating there and back may leave the two ends a rounding error apart.
-        self._xy[ends[closed] - 1] = self._xy[self._starts[closed]]
-        self._closed = closed.tolist()
-        self._lengths = ends - self._starts
-        self._data, self._edges = self._xy.tobytes(), (offsets * _POINT_BYTES).tolist()
-
-    @classmethod
-    def of(cls, shapes: Sequence[np.ndarray], frame: SiteFrame, *, closed: bool) -> _PlacedShapes:
-        """Return ``shapes``, each (n, 2) in the site frame, all rings or all lines."""
-        offsets = np.concatenate([[0], np.cumsum([len(one) for one in shapes])])
-        return cls(np.concatenate(shapes), offsets, np.full(len(shapes), closed), frame)
-
-    def boxes(self) -> np.ndarray:
-        """Return x_min, y_min, x_max and y_max of each, (n, 4)."""
-        low = np.minimum.reduceat(self._xy, self._starts)
-        return np.hstack([low, np.maximum.reduceat(self._xy, self._starts)])
-
-    def points(self, number: int) -> bytes:
-        """Return x and y of each point of one of them."""
-        return self._data[self._edges[number] : self._edges[number + 1]]
-
-    def wkb(self, groups: Sequence[tuple[int, int]]) -> list[bytes]:
-        """Return the geometry of each of ``groups``, the first of its rings and that behind the last.
-
-        A polygon, its other rings as holes; of what begins with a line that one.
-        """
-        data, edges, heads = self._data, self._edges, polygon_heads(self._lengths)
-        made = []
-        for first, last in groups:
-            if not self._closed[first]:
-                made.append(line_wkb(self.points(first)))
-            elif last - first > 1:
-                made.append(polygon_wkb([self.points(k) for k in range(first, last)]))
-            else:
-                made.append(heads[first] + data[edges[first] : edges[last]])
-        return made
-
+from .site_content import SiteContent, SiteRows, site_rows
 
 # --- ``site.gpkg`` written by the GDAL that every QGIS has: no pyogrio, no shapely ---
 # The layers and fields are those of ``robot_bridge.core.sites.geopackage``, and the stamp is the one that
@@ -361,11 +64,13 @@ def stamp_in(file: Path) -> str:
     """Return which publication the GeoPackage ``file`` belongs to; nothing when it does not say."""
     with suppress(PublicationError), _named_failures(file) as gdal:
         source = _there(gdal.OpenEx(str(file), gdal.OF_VECTOR | gdal.OF_READONLY, ["GPKG"]))
-        return str(_there(source.GetLayer(0)).GetMetadataItem(STAMP_KEY) or "")
+        return str(_there(source.GetLayer(0)).GetMetadataItem(geopackage.STAMP_KEY) or "")
     return ""
 
 
-def _make_tables(gdal: Any, file: Path, specs: Sequence[LayerSpec], settings: SiteSettings) -> None:
+def _make_tables(
+    gdal: Any, file: Path, specs: Sequence[geopackage.LayerSpec], settings: SiteSettings
+) -> None:
     """Make the GeoPackage with its layers and their spatial indexes, all empty, and close it."""
     _, ogr, osr = _bindings()
     crs = osr.SpatialReference()
@@ -378,14 +83,14 @@ def _make_tables(gdal: Any, file: Path, specs: Sequence[LayerSpec], settings: Si
         for name, type_ in spec.fields.items():
             _done(layer.CreateField(_field(name, type_)))
         # On the layer, not the file: GDAL would put that into an .aux.xml file beside the site each time.
-        _done(layer.SetMetadataItem(STAMP_KEY, settings.stamp))
+        _done(layer.SetMetadataItem(geopackage.STAMP_KEY, settings.stamp))
     _done(target.FlushCache())
     for spec in specs:
         target.ExecuteSQL(f"SELECT CreateSpatialIndex('{spec.name}', '{_GEOMETRY}')")
     _done(target.FlushCache())
 
 
-def _insert(database: sqlite3.Connection, spec: LayerSpec, batches: Iterator[SiteRows]) -> None:
+def _insert(database: sqlite3.Connection, spec: geopackage.LayerSpec, batches: Iterator[SiteRows]) -> None:
     """Insert ``batches`` into the empty table of ``spec`` and its index, and note there what it holds."""
     find = "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?"
     (srs,) = database.execute(find, [spec.name]).fetchone()
@@ -493,3 +198,151 @@ def _bindings() -> tuple[Any, Any, Any]:
             )
         ) from error
     return gdal, ogr, osr
+
+
+# --- The spatial index of a layer, made at once ---
+# SQLite puts every box into its place by itself, which takes longer than to write the features. Its tables
+# hold plain numbers (https://www.sqlite.org/rtree.html, 6), and GDAL 3.8 and newer write them like this, too.
+
+_BOXES = 100_000
+"""Features whose boxes are in memory together."""
+_ENTRY = np.dtype([("id", ">i8"), ("box", ">f4", 4)])
+_NODE_HEAD = 4
+"""Bytes of the depth, which the root has, and of the number of entries."""
+_STEP = 1 / (1 << 23)
+"""What a number is changed by to be rounded another way, times itself."""
+
+
+class BoxTree:
+    """Fills the R-tree ``table``, which is empty, with boxes of rows 1, 2 and so on.
+
+    ``packed`` is to write its nodes; else SQLite does, which alone may where it is so strict.
+    """
+
+    def __init__(self, database: sqlite3.Connection, table: str, packed: bool | None = None) -> None:
+        self._database, self._table = database, table
+        (root,) = database.execute(f'SELECT data FROM "{table}_node" WHERE nodeno = 1').fetchone()  # nosec B608 # names
+        self._node_bytes = len(root)
+        self._fits = (len(root) - _NODE_HEAD) // _ENTRY.itemsize
+        self._packed = self._may_pack() if packed is None else packed
+        self._waiting: list[np.ndarray] = []
+        self._count = 0
+        self._last_node = 1
+        self._leaves: list[np.ndarray] = []
+        self._low, self._high = np.full(2, np.inf), np.full(2, -np.inf)
+
+    @property
+    def extent(self) -> list[float] | None:
+        """x_min, y_min, x_max and y_max of all boxes, None where there are none."""
+        return [*self._low.tolist(), *self._high.tolist()] if self._count else None
+
+    def add(self, boxes: np.ndarray) -> None:
+        """Add the boxes of the next rows: (n, 4), x_min, y_min, x_max and y_max; raises sqlite3.Error."""
+        self._low = np.minimum(self._low, boxes[:, :2].min(axis=0))
+        self._high = np.maximum(self._high, boxes[:, 2:].max(axis=0))
+        self._waiting.append(boxes)
+        self._count += len(boxes)
+        if sum(map(len, self._waiting)) >= _BOXES:
+            self._add_waiting()
+
+    def end(self) -> None:
+        """Put the rest in its place; raises sqlite3.Error."""
+        if not self._packed:
+            self._add_waiting()
+            return
+        depth, kind, nodes = 0, "rowid", self._entries() if self._count <= self._fits else None
+        if nodes is None:
+            self._add_waiting()
+            depth, kind, nodes = 1, "parent", np.concatenate(self._leaves)
+        while len(nodes) > self._fits:
+            depth, nodes = depth + 1, self._nodes_of(nodes, kind)
+        self._write(1, nodes, np.array([len(nodes)]), depth)
+        self._insert(kind, nodes["id"], np.full(len(nodes), 1))
+
+    def _may_pack(self) -> bool:
+        try:
+            self._database.execute(f'UPDATE "{self._table}_node" SET data = data WHERE nodeno = 0')  # nosec B608 # names
+        except sqlite3.DatabaseError:
+            return False
+        return True
+
+    def _add_waiting(self) -> None:
+        entries = self._entries()
+        if not len(entries):
+            return
+        if self._packed:
+            self._leaves.append(self._nodes_of(entries, "rowid"))
+        else:
+            rows = zip(entries["id"].tolist(), *entries["box"].T.tolist(), strict=True)
+            self._database.executemany(f'INSERT INTO "{self._table}" VALUES (?, ?, ?, ?, ?)', rows)  # nosec B608 # names
+
+    def _entries(self) -> np.ndarray:
+        """Return the boxes that wait with their rows, and forget them."""
+        boxes = np.concatenate([np.empty((0, 4)), *self._waiting])
+        self._waiting = []
+        entries = np.empty(len(boxes), _ENTRY)
+        entries["id"] = np.arange(self._count - len(boxes), self._count) + 1
+        entries["box"] = _outwards(boxes)
+        return entries
+
+    def _nodes_of(self, entries: np.ndarray, kind: str) -> np.ndarray:
+        """Write ``entries`` into nodes, neighbours together, and return those as entries of the next ones.
+
+        In which node each is goes into the table of ``kind``. No node has much less in it than others.
+        """
+        entries = entries[_neighbours(entries["box"], self._fits)]
+        count = math.ceil(len(entries) / self._fits)
+        edges = np.arange(count + 1) * len(entries) // count
+        numbers = self._last_node + 1 + np.arange(count)
+        self._last_node += count
+        self._write(int(numbers[0]), entries, np.diff(edges), 0)
+        self._insert(kind, entries["id"], np.repeat(numbers, np.diff(edges)))
+        made = np.empty(count, _ENTRY)
+        made["id"] = numbers
+        for side, joined in enumerate((np.minimum, np.maximum, np.minimum, np.maximum)):
+            made["box"][:, side] = joined.reduceat(entries["box"][:, side].astype(np.float32), edges[:-1])
+        return made
+
+    def _write(self, first: int, entries: np.ndarray, counts: np.ndarray, depth: int) -> None:
+        """Write ``entries`` into nodes from ``first`` on, of which each gets some: ``counts``, (n,)."""
+        heads = np.column_stack([np.full(len(counts), depth), counts]).astype(">u2").tobytes()
+        data, width = np.ascontiguousarray(entries, _ENTRY).tobytes(), _ENTRY.itemsize
+        edges = np.concatenate([[0], np.cumsum(counts)]).tolist()
+        nodes = (
+            (
+                first + k,
+                (heads[k * _NODE_HEAD : (k + 1) * _NODE_HEAD] + data[low * width : high * width]).ljust(
+                    self._node_bytes, b"\0"
+                ),
+            )
+            for k, (low, high) in enumerate(pairwise(edges))
+        )
+        self._database.executemany(f'INSERT OR REPLACE INTO "{self._table}_node" VALUES (?, ?)', nodes)  # nosec B608 # names
+
+    def _insert(self, kind: str, ids: np.ndarray, nodes: np.ndarray) -> None:
+        order = np.argsort(ids)
+        rows = zip(ids[order].tolist(), nodes[order].tolist(), strict=True)
+        self._database.executemany(f'INSERT INTO "{self._table}_{kind}" VALUES (?, ?)', rows)  # nosec B608 # names
+
+
+def _outwards(boxes: np.ndarray) -> np.ndarray:
+    """Return x_min, x_max, y_min and y_max as float32, (n, 4), rounded as SQLite does: no box is smaller."""
+    rounded = np.empty((len(boxes), 4), np.float32)
+    for side, (column, away) in enumerate(((0, -1), (2, 1), (1, -1), (3, 1))):
+        exact = boxes[:, column]
+        near = exact.astype(np.float32)
+        further = (exact * (1 + away * np.sign(exact) * _STEP)).astype(np.float32)
+        rounded[:, side] = np.where(away * (near - exact) < 0, further, near)
+    return rounded
+
+
+def _neighbours(boxes: np.ndarray, fits: int) -> np.ndarray:
+    """Return the order in which each ``fits`` of ``boxes``, as :func:`_outwards` has them, lie together.
+
+    Sort-tile-recursive: strips by x, which are cut by y (Leutenegger and others, ICDE 1997).
+    """
+    x, y = (boxes[:, side].astype(np.float64) + boxes[:, side + 1] for side in (0, 2))
+    strips = math.ceil(math.sqrt(math.ceil(len(boxes) / fits)))
+    order = np.argsort(x, kind="stable")
+    strip = np.arange(len(boxes)) // (fits * math.ceil(len(boxes) / fits / strips))
+    return order[np.lexsort((y[order], strip))]

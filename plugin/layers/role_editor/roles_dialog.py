@@ -38,40 +38,12 @@ from ...ui.dialogs import file_to_read
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count
 from ...ui.tables import fit_headers
+from .. import roles
 from ..crs import frame_in_project, site_crs_for, stated_crs
 from ..layer_source import ObstacleSource, obstacle_sources
-from ..roles import (
-    PUBLISHED_ROLES,
-    SUFFIXES,
-    LayerExpressions,
-    keep_setup,
-    read_profile,
-    setup_of,
-    shipped_profiles,
-)
 from ..site_transform import SiteGeoreference
+from . import role_table
 from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
-from .role_table import (
-    BASE,
-    ESTIMATE,
-    FILTER,
-    HEIGHT,
-    LAYER,
-    OUTDOOR,
-    RESULT,
-    ROLE,
-    ROTATION,
-    SEMANTICS,
-    TEMPLATE,
-    TITLES,
-    WHAT,
-    WIDTH,
-    ExpressionDelegate,
-    RoleDelegate,
-    RoleRow,
-    RoleTableModel,
-    role_rows,
-)
 
 # --- Keeps the counts and the picture up with the table, without the GUI thread ever waiting ---
 
@@ -91,7 +63,7 @@ class LivePreview(QObject):
     drawn = pyqtSignal(QImage)
     summed = pyqtSignal(str)
 
-    def __init__(self, project: QgsProject, rows: Sequence[RoleRow], parent: QObject):
+    def __init__(self, project: QgsProject, rows: Sequence[role_table.RoleRow], parent: QObject):
         super().__init__(parent)
         self._project, self._rows = project, rows
         self._known: dict[object, LayerMeasure] = {}
@@ -136,7 +108,7 @@ class LivePreview(QObject):
         if self._task is not None:
             # The one that was cancelled ends soon, and starts this again.
             return
-        rows = [row for row in self._rows if row.setup.role in PUBLISHED_ROLES]
+        rows = [row for row in self._rows if row.setup.role in roles.PUBLISHED_ROLES]
         missing = [row for row in rows if _key(row) not in self._known]
         try:
             site = self._site(rows)
@@ -157,18 +129,18 @@ class LivePreview(QObject):
         self._task.taskTerminated.connect(self._ended)
         QgsApplication.taskManager().addTask(self._task)
 
-    def _source(self, row: RoleRow) -> ObstacleSource | None:
+    def _source(self, row: role_table.RoleRow) -> ObstacleSource | None:
         context = QgsExpressionContext()
         context.appendScope(QgsExpressionContextUtils.globalScope())
         context.appendScope(QgsExpressionContextUtils.projectScope(self._project))
         try:
-            (source,) = obstacle_sources([row.layer], LayerExpressions(), context, lambda _: row.setup)
+            (source,) = obstacle_sources([row.layer], roles.LayerExpressions(), context, lambda _: row.setup)
         except FleetError as error:
             self._keep(_key(row), LayerMeasure(row.setup.role, refused=str(error)))
             return None
         return source
 
-    def _site(self, rows: Sequence[RoleRow]) -> SiteGeoreference:
+    def _site(self, rows: Sequence[role_table.RoleRow]) -> SiteGeoreference:
         layers = [stated_crs(row.layer.crs()) for row in rows]
         crs = site_crs_for(QgsCoordinateReferenceSystem(), self._project.crs(), layers)
         frame = frame_in_project(self._project, crs) or SiteFrame(crs.authid(), (0.0, 0.0))
@@ -187,29 +159,29 @@ class LivePreview(QObject):
         if cancelled:
             self._timer.start()
             return
-        keys = [_key(row) for row in self._rows if row.setup.role in PUBLISHED_ROLES]
+        keys = [_key(row) for row in self._rows if row.setup.role in roles.PUBLISHED_ROLES]
         self.summed.emit(measure_summary([self._known[key] for key in keys if key in self._known]))
 
 
-def _key(row: RoleRow) -> object:
+def _key(row: role_table.RoleRow) -> object:
     return row.layer_id, row.setup
 
 
 # --- The dialog *Layer roles*: what each layer of the project is to robots, with a live preview ---
 
 WIDTHS = {
-    LAYER: 140,
-    ROLE: 130,
-    FILTER: 70,
-    HEIGHT: 80,
-    ESTIMATE: 90,
-    BASE: 65,
-    SEMANTICS: 110,
-    OUTDOOR: 70,
-    WIDTH: 75,
-    TEMPLATE: 75,
-    ROTATION: 75,
-    RESULT: 200,
+    role_table.LAYER: 140,
+    role_table.ROLE: 130,
+    role_table.FILTER: 70,
+    role_table.HEIGHT: 80,
+    role_table.ESTIMATE: 90,
+    role_table.BASE: 65,
+    role_table.SEMANTICS: 110,
+    role_table.OUTDOOR: 70,
+    role_table.WIDTH: 75,
+    role_table.TEMPLATE: 75,
+    role_table.ROTATION: 75,
+    role_table.RESULT: 200,
 }
 WIDEST_NAME = 320
 """Pixels that names of layers get at most; longer ones are cut in the middle, and whole in a tool tip."""
@@ -229,7 +201,7 @@ class RolesDialog(QDialog):
         self.setWindowTitle(tr("Layer roles"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._project = project
-        self.model = RoleTableModel(role_rows(project), self)
+        self.model = role_table.RoleTableModel(role_table.role_rows(project), self)
         self.preview = LivePreview(project, self.model.rows, self)
         self._bar = QgsMessageBar(self)
         self._table = self._make_table()
@@ -240,15 +212,15 @@ class RolesDialog(QDialog):
         self._buttons = self._make_buttons()
         self._lay_out()
         self._wire()
-        long_names = self._table.columnWidth(LAYER) - WIDTHS[LAYER]
+        long_names = self._table.columnWidth(role_table.LAYER) - WIDTHS[role_table.LAYER]
         self.resize(max(WIDE, min(WIDE + long_names, self.screen().availableGeometry().width())), 760)
         self.preview.refresh()
 
     def apply(self) -> None:
         """Keep what the table says in the layers."""
-        changed = [row for row in self.model.rows if row.setup != setup_of(row.layer)]
+        changed = [row for row in self.model.rows if row.setup != roles.setup_of(row.layer)]
         for row in changed:
-            keep_setup(row.layer, row.setup)
+            roles.keep_setup(row.layer, row.setup)
         if changed:
             self._project.setDirty(True)
         self._show_changed()
@@ -256,7 +228,7 @@ class RolesDialog(QDialog):
     def apply_profile(self, file: Path) -> None:
         """Set the layers up that the profile in ``file`` knows; say how many those were, or what is wrong."""
         try:
-            profile = read_profile(file)
+            profile = roles.read_profile(file)
         except FleetError as error:
             self._bar.pushWarning("", str(error))
             return
@@ -297,9 +269,9 @@ class RolesDialog(QDialog):
         table = QTableView(self)
         table.setObjectName("fleet_roles_table")
         table.setModel(self.model)
-        table.setItemDelegateForColumn(ROLE, RoleDelegate(table))
-        for column in WHAT.keys() - {ROLE}:
-            table.setItemDelegateForColumn(column, ExpressionDelegate(table))
+        table.setItemDelegateForColumn(role_table.ROLE, role_table.RoleDelegate(table))
+        for column in role_table.WHAT.keys() - {role_table.ROLE}:
+            table.setItemDelegateForColumn(column, role_table.ExpressionDelegate(table))
         triggers = QAbstractItemView.EditTrigger
         table.setEditTriggers(
             triggers.SelectedClicked
@@ -316,12 +288,14 @@ class RolesDialog(QDialog):
         header = table.horizontalHeader()
         for column, width in WIDTHS.items():
             table.setColumnWidth(column, width)
-        name_width = min(table.sizeHintForColumn(LAYER), WIDEST_NAME)
-        table.setColumnWidth(LAYER, max(name_width, WIDTHS[LAYER]))
+        name_width = min(table.sizeHintForColumn(role_table.LAYER), WIDEST_NAME)
+        table.setColumnWidth(role_table.LAYER, max(name_width, WIDTHS[role_table.LAYER]))
         fit_headers(table)
         # The column that takes what is left keeps room for its head.
-        header.setMinimumSectionSize(header.fontMetrics().horizontalAdvance(TITLES[RESULT]) + 8)
-        header.setSectionResizeMode(RESULT, QHeaderView.ResizeMode.Stretch)
+        header.setMinimumSectionSize(
+            header.fontMetrics().horizontalAdvance(role_table.TITLES[role_table.RESULT]) + 8
+        )
+        header.setSectionResizeMode(role_table.RESULT, QHeaderView.ResizeMode.Stretch)
         return table
 
     def _make_buttons(self) -> QDialogButtonBox:
@@ -346,9 +320,9 @@ class RolesDialog(QDialog):
     def _profile_line(self) -> QHBoxLayout:
         self._profiles = QComboBox(self)
         self._profiles.setObjectName("fleet_roles_profile")
-        for file in shipped_profiles():
+        for file in roles.shipped_profiles():
             try:
-                profile = read_profile(file)
+                profile = roles.read_profile(file)
             except FleetError as error:
                 self._bar.pushWarning("", str(error))
                 continue
@@ -394,11 +368,11 @@ class RolesDialog(QDialog):
             self.reject()
 
     def _show_changed(self) -> None:
-        changed = any(row.setup != setup_of(row.layer) for row in self.model.rows)
+        changed = any(row.setup != roles.setup_of(row.layer) for row in self.model.rows)
         self._buttons.button(QDialogButtonBox.StandardButton.Apply).setEnabled(changed)
 
     def _choose_profile(self) -> None:
-        kinds = " ".join(f"*{suffix}" for suffix in SUFFIXES)
+        kinds = " ".join(f"*{suffix}" for suffix in roles.SUFFIXES)
         name = file_to_read(
             self,
             tr("Map profile"),

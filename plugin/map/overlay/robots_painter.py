@@ -14,24 +14,8 @@ from qgis.PyQt.QtGui import QColor, QPainter, QPixmap
 
 from ...gateway_client.robot_table import STATES
 from ...ui.glyphs import CASING, PAPER, STATE_COLOURS, pen
+from . import primitives
 from .labels import Labels
-from .primitives import (
-    ARROW_SIZE,
-    ARROW_TURNS,
-    HEADINGS,
-    MARK_SIZE,
-    OTHER_RING,
-    RING,
-    Sprites,
-    arrow_atlas,
-    cell,
-    flat,
-    lines,
-    mark_atlas,
-    polygon,
-    robot_atlas,
-    segments,
-)
 from .scene import InView, MapScene, Screen
 
 Points = npt.NDArray[np.float64]
@@ -61,7 +45,7 @@ _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
 STRIP = 16
 STRIPS = 4096
 """Pixels of a strip of the screen, and more strips than any screen has."""
-_TURNS = np.arange(HEADINGS)
+_TURNS = np.arange(primitives.HEADINGS)
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
 
@@ -69,8 +53,8 @@ class RobotsPainter:
     """Paints the robots on one screen at a time."""
 
     def __init__(self) -> None:
-        self._drawings: dict[tuple[float, int], Sprites] = {}
-        self._marks: dict[float, Sprites] = {}
+        self._drawings: dict[tuple[float, int], primitives.Sprites] = {}
+        self._marks: dict[float, primitives.Sprites] = {}
         self._made_for = 0.0, 0.0
         """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
         self.magnification = 1.0
@@ -86,14 +70,16 @@ class RobotsPainter:
         """Draw an arrow for each robot, or none."""
         self.arrows = on
 
-    def marks(self, ratio: float, size: float = 1.0) -> Sprites:
+    def marks(self, ratio: float, size: float = 1.0) -> primitives.Sprites:
         """Return the marks of :func:`~.desk.live.atlases.mark_atlas`."""
         if self._made_for != (ratio, self.magnification):
             self._drawings.clear()
             self._marks.clear()
             self._made_for = ratio, self.magnification
         if size not in self._marks:
-            self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
+            self._marks[size] = primitives.Sprites(
+                primitives.mark_atlas(ratio, size), primitives.cell(ratio, primitives.MARK_SIZE * size), ratio
+            )
         return self._marks[size]
 
     def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
@@ -121,13 +107,13 @@ class RobotsPainter:
         chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
         layer = _LAYER.take(robots.state)
         if chosen:
-            rings = np.full(len(chosen), OTHER_RING)
-            rings[-1:] = RING
+            rings = np.full(len(chosen), primitives.OTHER_RING)
+            rings[-1:] = primitives.RING
             marks.paint(painter, view.pixels[chosen], rings)
             layer[chosen] += len(STATES)
         if not self.arrows:
             return
-        cells = np.where(known, _directions(view.metre), HEADINGS)
+        cells = np.where(known, _directions(view.metre), primitives.HEADINGS)
         self._paint_drawings(painter, view.there, cells, layer.take(view.rows), size)
 
     def _paint_drawings(
@@ -148,13 +134,13 @@ class RobotsPainter:
                 worth = 1.0 if is_chosen else _worth(_UPWARDS[of_state], size)
                 self._sprites(worth, _UPWARDS[of_state]).paint(painter, at[begin:end], cells[begin:end])
 
-    def _sprites(self, size: float, state: int) -> Sprites:
+    def _sprites(self, size: float, state: int) -> primitives.Sprites:
         """Return the drawings of robots in a state, made when the first such robot is seen."""
         if (size, state) not in self._drawings:
             ratio, magnification = self._made_for
             drawn = size * magnification
-            atlas = robot_atlas(ratio, drawn, STATES[state])
-            self._drawings[size, state] = Sprites(atlas, cell(ratio, drawn), ratio)
+            atlas = primitives.robot_atlas(ratio, drawn, STATES[state])
+            self._drawings[size, state] = primitives.Sprites(atlas, primitives.cell(ratio, drawn), ratio)
         return self._drawings[size, state]
 
 
@@ -172,7 +158,7 @@ def _directions(way: Points) -> Rows:
     """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
     # Floats of half the size are exact enough, and numpy is several times as fast with them.
     x, y = way[:, 0].astype(np.float32), way[:, 1].astype(np.float32)
-    turns = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi)))
+    turns = np.rint(np.arctan2(y, x) * np.float32(primitives.HEADINGS / (2 * np.pi)))
     # What is negative counts from the end.
     return _TURNS.take(turns.astype(np.intp))
 
@@ -209,7 +195,7 @@ def paint_circles(
     """Paint what :func:`circles` found: the robot is somewhere inside."""
     for row, corners in found:
         colour = QColor(STATE_COLOURS[STATES[placed.scene.robots.state[row]]])
-        outline = polygon(screen.pixels(corners))
+        outline = primitives.polygon(screen.pixels(corners))
         painter.setPen(pen(PAPER, 2.6, 0.55))
         colour.setAlpha(30)
         painter.setBrush(colour)
@@ -240,12 +226,12 @@ def _velocities(
     end = start + view.metre[long] * (speed[long, None] * VELOCITY_SECONDS)
     if len(long) > FINE_VELOCITIES:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
-        painter.strokePath(segments(start, end), flat(pen(PAPER, 1.0)))
+        painter.strokePath(primitives.segments(start, end), primitives.flat(pen(PAPER, 1.0)))
         painter.setRenderHint(QPainter.RenderHint.Antialiasing)
         return
-    long_ones = lines(start, end)
+    long_ones = primitives.lines(start, end)
     for stroke in (pen(CASING, 4.2), pen(PAPER, 2.0)):
-        painter.setPen(flat(stroke))
+        painter.setPen(primitives.flat(stroke))
         painter.drawLines(long_ones)
 
 
@@ -302,14 +288,14 @@ class BorderHints:
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
-        self._atlases: dict[tuple[int, bool], Sprites] = {}
+        self._atlases: dict[tuple[int, bool], primitives.Sprites] = {}
         self._ratio = 0.0
         self._found_for: tuple[Screen, list[str]] | None = None
         self._found_at = -np.inf
         self.hints: list[Hint] = []
         self._chosen: tuple[str, ...] | None = None
         """For which selection it was made ready what is painted; None when it has to be made again."""
-        self._arrows: list[tuple[Sprites, Points, Rows]] = []
+        self._arrows: list[tuple[primitives.Sprites, Points, Rows]] = []
         self._texts: list[tuple[QPointF, QPixmap]] = []
 
     def find(self, placed: MapScene, view: InView, screen: Screen) -> None:
@@ -337,7 +323,7 @@ class BorderHints:
         for place, text in self._texts:
             painter.drawPixmap(place, text)
 
-    def _coloured(self, placed: MapScene, screen: Screen) -> list[tuple[Sprites, Points, Rows]]:
+    def _coloured(self, placed: MapScene, screen: Screen) -> list[tuple[primitives.Sprites, Points, Rows]]:
         """Return for each colour the arrow, the places where it stands, and its cells."""
         chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
         rows = np.concatenate([hint.rows for hint in self.hints])
@@ -345,7 +331,7 @@ class BorderHints:
         states = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.state[rows]], first)]
         is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
-        cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        cells = np.round(turns * primitives.ARROW_TURNS).astype(np.intp) % primitives.ARROW_TURNS
         at = np.array([(hint.x, hint.y) for hint in self.hints])
         found = []
         for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
@@ -353,14 +339,16 @@ class BorderHints:
             found.append((self._arrow(state, to_chosen, screen.ratio), at[those], cells[those]))
         return found
 
-    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
+    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> primitives.Sprites:
         """Return the arrow to robots in a state, made when it is needed first."""
         if ratio != self._ratio:
             self._atlases.clear()
             self._ratio = ratio
         if (state, to_chosen) not in self._atlases:
-            atlas = arrow_atlas(ratio, STATES[state], to_chosen)
-            self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
+            atlas = primitives.arrow_atlas(ratio, STATES[state], to_chosen)
+            self._atlases[state, to_chosen] = primitives.Sprites(
+                atlas, primitives.cell(ratio, primitives.ARROW_SIZE), ratio
+            )
         return self._atlases[state, to_chosen]
 
 

@@ -20,7 +20,7 @@ from ...ui.errors import FleetError
 from ...ui.language import time_of_day, tr
 from ..live_view import LiveView
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
-from .road_route_tool import RoutePreview
+from .road_tools import RoutePreview
 
 
 class ConeTool(DrawingTool):

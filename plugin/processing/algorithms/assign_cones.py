@@ -57,6 +57,7 @@ from ....robot_bridge.core.roads.routes import Router
 from ...cone_texts import FINISHES, METHODS, OBJECTIVES, TASKS
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_count, tr_page
+from ..common import road_sources
 from ..common.algorithm import (
     FleetAlgorithm,
     ParameterError,
@@ -68,18 +69,6 @@ from ..common.algorithm import (
 from ..common.cone_layers import PointRow, point_rows
 from ..common.outputs import check_target, fill_sink, line, write_whole
 from ..common.parameters import chosen_crs
-from ..common.road_sources import (
-    ROADS,
-    KeepoutAreas,
-    RoadSource,
-    driving_options,
-    keepout_parameter,
-    length_parameters,
-    network_of_roads,
-    repair_parameter,
-    road_parameters,
-    surfaces_parameter,
-)
 
 # --- Cones, robots and stores, read from point layers by the names of their fields ---
 
@@ -217,13 +206,13 @@ def layers_crs(sources: Sequence[QgsProcessingFeatureSource | None]) -> list[Qgs
 
 def travel_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say which roads may be driven, and how."""
-    roads, tolerance, *others = road_parameters()
+    roads, tolerance, *others = road_sources.road_parameters()
     roads.setDescription(tr("Road centrelines (default: straight lines)"))
     made = [
-        surfaces_parameter(),
-        keepout_parameter(),
-        *length_parameters(),
-        repair_parameter(),
+        road_sources.surfaces_parameter(),
+        road_sources.keepout_parameter(),
+        *road_sources.length_parameters(),
+        road_sources.repair_parameter(),
         tolerance,
         *others,
     ]
@@ -241,10 +230,10 @@ class TravelSource:
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
     ) -> None:
         self._algorithm, self._parameters, self._context = algorithm, parameters, context
-        given = parameters.get(ROADS) not in (None, "")
-        self._roads = RoadSource(algorithm, parameters, context) if given else None
-        self._keepouts = KeepoutAreas(algorithm, parameters, context)
-        self._wishes = driving_options(algorithm, parameters, context)
+        given = parameters.get(road_sources.ROADS) not in (None, "")
+        self._roads = road_sources.RoadSource(algorithm, parameters, context) if given else None
+        self._keepouts = road_sources.KeepoutAreas(algorithm, parameters, context)
+        self._wishes = road_sources.driving_options(algorithm, parameters, context)
         self._network: Network | None = None
 
     def open(self, jobs: JobSource, feedback: QgsProcessingFeedback) -> QgsCoordinateReferenceSystem | None:
@@ -259,7 +248,9 @@ class TravelSource:
         if reading is None:
             return None
         reading.warnings += self._wishes.doubts(reading.roads)
-        built = network_of_roads(self._algorithm, self._parameters, self._context, reading, feedback)
+        built = road_sources.network_of_roads(
+            self._algorithm, self._parameters, self._context, reading, feedback
+        )
         if built is None or feedback.isCanceled():
             return None
         self._network, _ = built

@@ -31,6 +31,7 @@ from ....robot_bridge.core.roads.lanelet2_export import lanelet2_document, lanes
 from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...ui.language import tr, tr_count, tr_page
+from ..common import road_sources
 from ..common.algorithm import (
     FleetAlgorithm,
     ParameterError,
@@ -42,15 +43,6 @@ from ..common.algorithm import (
 from ..common.map_files import MapPlace, PlacedMap
 from ..common.outputs import WholeFolder
 from ..common.parameters import frame_in_crs_parameters, site_frame
-from ..common.road_sources import (
-    WARNING_COUNT,
-    KeepoutAreas,
-    RoadSource,
-    keepout_parameter,
-    network_of_roads,
-    repair_parameter,
-    road_parameters,
-)
 
 # --- The files of each format that ``fleet:exportroadnetwork`` writes ---
 
@@ -208,14 +200,14 @@ class ExportRoadNetwork(FleetAlgorithm):
         for name in FORMAT_WRITERS:
             self.addOutput(QgsProcessingOutputFile(name.upper(), tr("File of format {name}", name=name)))
         self.addOutput(QgsProcessingOutputNumber("EDGE_COUNT", tr("Edges")))
-        self.addOutput(QgsProcessingOutputNumber(WARNING_COUNT, tr("Warnings")))
+        self.addOutput(QgsProcessingOutputNumber(road_sources.WARNING_COUNT, tr("Warnings")))
 
     def prepareAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         with shown_by_processing():
-            self._source = RoadSource(self, parameters, context)
-            self._keepouts = KeepoutAreas(self, parameters, context)
+            self._source = road_sources.RoadSource(self, parameters, context)
+            self._keepouts = road_sources.KeepoutAreas(self, parameters, context)
         return True
 
     def processAlgorithm(
@@ -244,7 +236,7 @@ class ExportRoadNetwork(FleetAlgorithm):
         return {
             OUTPUT: str(folder),
             "EDGE_COUNT": edges,
-            WARNING_COUNT: len(export.warnings),
+            road_sources.WARNING_COUNT: len(export.warnings),
             **{format.upper(): str(folder / next(iter(files))) for format, files in made.items()},
         }
 
@@ -262,7 +254,7 @@ class ExportRoadNetwork(FleetAlgorithm):
         if reading is None:
             return None
         frame = site_frame(self, parameters, context, reading.crs)
-        built = network_of_roads(self, parameters, context, reading, feedback)
+        built = road_sources.network_of_roads(self, parameters, context, reading, feedback)
         if built is None:
             return None
         closed, warnings = self._keepouts.edges_inside(built[0], reading.crs, feedback)
@@ -285,7 +277,7 @@ _WORDS = {NAME: "roads", MAP_ID: "map", VEHICLE_TYPE: "robot"}
 
 
 def _parameters() -> list[QgsProcessingParameterDefinition]:
-    roads, tolerance, *others = road_parameters()
+    roads, tolerance, *others = road_sources.road_parameters()
     rare: list[QgsProcessingParameterDefinition] = [
         *frame_in_crs_parameters(),
         QgsProcessingParameterString(MAP_ID, tr("Robots' name for the site frame"), _WORDS[MAP_ID]),
@@ -300,8 +292,8 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
         roads,
         enum_parameter(FORMATS, tr("Formats"), FORMAT_NAMES, ["nav2"], several=True),
         QgsProcessingParameterString(NAME, tr("Name of the files"), _WORDS[NAME]),
-        keepout_parameter(),
-        repair_parameter(),
+        road_sources.keepout_parameter(),
+        road_sources.repair_parameter(),
         tolerance,
         *others,
         *map(advanced, rare),

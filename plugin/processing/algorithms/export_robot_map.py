@@ -20,22 +20,8 @@ from ....robot_bridge.core.robotmap.model import RobotMap, Window
 from ...layers.obstacle_layers import ObstacleReading
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_page
+from ..common import export_parameters
 from ..common.algorithm import FleetAlgorithm, Parameters, shown_by_processing
-from ..common.export_parameters import (
-    BASE_EXPRESSION,
-    DEFAULT_HEIGHT,
-    HEIGHT_EXPRESSION,
-    OBSTACLES,
-    OUTDOOR_EXPRESSION,
-    OUTPUT,
-    SEMANTICS_EXPRESSION,
-    format_parameters,
-    obstacle_layers,
-    obstacle_outlines,
-    obstacles_parameter,
-    read_export_parameters,
-    shaping_parameters,
-)
 from ..common.map_files import obstacles_in_words
 from ..common.outputs import write_whole
 from ..common.parameters import (
@@ -103,14 +89,16 @@ class ExportRobotMap(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         for parameter in (
-            obstacles_parameter(),
+            export_parameters.obstacles_parameter(),
             *window_parameters(),
             *value_parameters(),
             profile_parameter(),
-            *shaping_parameters(),
-            *format_parameters(),
+            *export_parameters.shaping_parameters(),
+            *export_parameters.format_parameters(),
             QgsProcessingParameterFileDestination(
-                OUTPUT, tr("Robot map"), tr("Robot map, text (*.txt);;Robot map, binary (*.rmap)")
+                export_parameters.OUTPUT,
+                tr("Robot map"),
+                tr("Robot map, text (*.txt);;Robot map, binary (*.rmap)"),
             ),
         ):
             self.addParameter(parameter)
@@ -119,7 +107,9 @@ class ExportRobotMap(FleetAlgorithm):
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         # Before QGIS's own checks, which say that a value is wrong and not why.
-        problem = window_problem(parameters) or layers_problem(parameters, OBSTACLES, context)
+        problem = window_problem(parameters) or layers_problem(
+            parameters, export_parameters.OBSTACLES, context
+        )
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)
@@ -129,8 +119,8 @@ class ExportRobotMap(FleetAlgorithm):
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         with shown_by_processing():
-            self._plan = read_export_parameters(self, parameters, context)
-            layers = obstacle_layers(self, parameters, context)
+            self._plan = export_parameters.read_export_parameters(self, parameters, context)
+            layers = export_parameters.obstacle_layers(self, parameters, context)
             warn_of_profile(self, parameters, context, layers, feedback)
         return True
 
@@ -140,7 +130,7 @@ class ExportRobotMap(FleetAlgorithm):
         with shown_by_processing(feedback):
             plan = self._plan
             border = plan.window.border
-            found = obstacle_outlines(plan, plan.window, feedback)
+            found = export_parameters.obstacle_outlines(plan, plan.window, feedback)
             if found is None:
                 return {}
             reading, outlines, robot_map = found
@@ -155,12 +145,12 @@ class ExportRobotMap(FleetAlgorithm):
         feedback.setProgress(100)
         counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
         figures = (*counts, len(content) / border.area, warnings)
-        return {OUTPUT: str(plan.target), **dict(zip(NUMBERS, figures, strict=True))}
+        return {export_parameters.OUTPUT: str(plan.target), **dict(zip(NUMBERS, figures, strict=True))}
 
     def _check_plan(self, parameters: Parameters, context: QgsProcessingContext) -> tuple[bool, str]:
         """Make the plan once before the run: the dialog and scripts are told what is wrong with it."""
         try:
-            read_export_parameters(self, parameters, context)
+            export_parameters.read_export_parameters(self, parameters, context)
         except (FleetError, RobotMapError) as error:
             return False, str(error)
         return True, ""
@@ -169,7 +159,9 @@ class ExportRobotMap(FleetAlgorithm):
 def value_parameters() -> list[QgsProcessingParameterDefinition]:
     """Return the parameters that say what a feature is."""
     base = QgsProcessingParameterExpression(
-        BASE_EXPRESSION, tr("Foot of each feature above ground [m] (default: on it)"), optional=True
+        export_parameters.BASE_EXPRESSION,
+        tr("Foot of each feature above ground [m] (default: on it)"),
+        optional=True,
     )
     base.setHelp(
         tr(
@@ -179,20 +171,26 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
     )
     return [
         QgsProcessingParameterExpression(
-            HEIGHT_EXPRESSION, tr("Height of each feature [m] (default: its field height)"), optional=True
+            export_parameters.HEIGHT_EXPRESSION,
+            tr("Height of each feature [m] (default: its field height)"),
+            optional=True,
         ),
         base,
         QgsProcessingParameterNumber(
-            DEFAULT_HEIGHT,
+            export_parameters.DEFAULT_HEIGHT,
             tr("Height where none is known, marked as estimated [m]"),
             QgsProcessingParameterNumber.Type.Double,
             3.0,
         ),
         QgsProcessingParameterExpression(
-            SEMANTICS_EXPRESSION, tr("Label of each feature (default: the layer's name)"), optional=True
+            export_parameters.SEMANTICS_EXPRESSION,
+            tr("Label of each feature (default: the layer's name)"),
+            optional=True,
         ),
         QgsProcessingParameterExpression(
-            OUTDOOR_EXPRESSION, tr("Whether each feature is outdoors (default: true)"), optional=True
+            export_parameters.OUTDOOR_EXPRESSION,
+            tr("Whether each feature is outdoors (default: true)"),
+            optional=True,
         ),
     ]
 

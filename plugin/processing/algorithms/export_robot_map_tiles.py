@@ -37,17 +37,8 @@ from ...layers.layer_source import FeatureReader
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count, tr_page
+from ..common import export_parameters
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
-from ..common.export_parameters import (
-    OBSTACLES,
-    ObstacleParameters,
-    format_parameters,
-    obstacle_layers,
-    obstacle_outlines,
-    obstacles_parameter,
-    read_obstacle_parameters,
-    shaping_parameters,
-)
 from ..common.map_files import layer_crs
 from ..common.outputs import WholeFolder, check_target, fill_sink, polygon, replaced_whole
 from ..common.parameters import (
@@ -194,7 +185,7 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 
 
 @dataclass(frozen=True)
-class TileParameters(ObstacleParameters):
+class TileParameters(export_parameters.ObstacleParameters):
     """Everything that is needed of the parameters and layers to export tiles.
 
     ``index`` is the file of the index, None where it is none; ``warnings`` are about the route.
@@ -226,7 +217,7 @@ def read_tile_parameters(
     :raises FleetError: when a parameter or a layer cannot be used.
     :raises WindowError: when the extent encloses nothing.
     """
-    plan = read_obstacle_parameters(algorithm, parameters, context)
+    plan = export_parameters.read_obstacle_parameters(algorithm, parameters, context)
     numbers = (
         algorithm.parameterAsDouble(parameters, n, context) for n in (TILE_WIDTH, TILE_HEIGHT, OVERLAP)
     )
@@ -350,7 +341,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         kinds = QgsProcessing.SourceType
         for parameter in (
-            obstacles_parameter(),
+            export_parameters.obstacles_parameter(),
             QgsProcessingParameterExtent(EXTENT, tr("Extent of a grid (or choose a route)"), optional=True),
             QgsProcessingParameterFeatureSource(
                 ROUTE, tr("Route, instead of a grid"), [kinds.TypeVectorLine], optional=True
@@ -366,8 +357,8 @@ class ExportRobotMapTiles(FleetAlgorithm):
             *frame_parameters(),
             *value_parameters(),
             profile_parameter(),
-            *shaping_parameters(),
-            *format_parameters(),
+            *export_parameters.shaping_parameters(),
+            *export_parameters.format_parameters(),
             QgsProcessingParameterFolderDestination(FOLDER, tr("Folder of the tiles")),
             QgsProcessingParameterFeatureSink(INDEX, tr("Index of the tiles"), kinds.TypeVectorPolygon),
         ):
@@ -376,7 +367,9 @@ class ExportRobotMapTiles(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, title))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        problem = tiles_problem(parameters) or layers_problem(parameters, OBSTACLES, context)
+        problem = tiles_problem(parameters) or layers_problem(
+            parameters, export_parameters.OBSTACLES, context
+        )
         if problem:
             return False, problem
         fine, message = super().checkParameterValues(parameters, context)
@@ -393,7 +386,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
     ):
         with shown_by_processing():
             self._plan = read_tile_parameters(self, parameters, context)
-            layers = obstacle_layers(self, parameters, context)
+            layers = export_parameters.obstacle_layers(self, parameters, context)
             warn_of_profile(self, parameters, context, layers, feedback)
         self._fields = fields_of(_FIELDS)
         return True
@@ -406,7 +399,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
         with shown_by_processing(feedback), WholeFolder(plan.folder, tr("The set of tiles")) as folder:
             if feedback.isCanceled():
                 return {}
-            found = obstacle_outlines(plan, Window.from_bounds(*area_of(plan.tiles)), steps)
+            found = export_parameters.obstacle_outlines(plan, Window.from_bounds(*area_of(plan.tiles)), steps)
             if found is None:
                 return {}
             reading, outlines, _ = found

@@ -26,6 +26,7 @@ from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.roads.path_smoothing import DensePath, dense_path
 from ....robot_bridge.core.roads.routes import Route, Router
 from ...ui.language import tr, tr_count, tr_page
+from ..common import road_sources
 from ..common.algorithm import (
     FleetAlgorithm,
     Parameters,
@@ -36,19 +37,6 @@ from ..common.algorithm import (
 )
 from ..common.outputs import fill_sink, line
 from ..common.parameters import point_in
-from ..common.road_sources import (
-    WARNING_COUNT,
-    KeepoutAreas,
-    RoadReading,
-    RoadSource,
-    driving_options,
-    keepout_parameter,
-    length_parameters,
-    network_of_roads,
-    repair_parameter,
-    road_parameters,
-    surfaces_parameter,
-)
 
 # --- QGIS's own graph search: what is left where neither RoutingKit nor SciPy is installed ---
 
@@ -130,7 +118,7 @@ NUMBERS = {
     "SECONDS": tr("Time on the route [s]"),
     "POINT_COUNT": tr("Points of the path"),
     "TIGHT_COUNT": tr("Corners tighter than the robot turns"),
-    WARNING_COUNT: tr("Warnings"),
+    road_sources.WARNING_COUNT: tr("Warnings"),
 }
 ENGINE_USED = "ENGINE_USED"
 
@@ -163,7 +151,7 @@ class FindRoute(FleetAlgorithm):
     """)
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
-        roads, tolerance, *others = road_parameters()
+        roads, tolerance, *others = road_sources.road_parameters()
         ways = enum_parameter(BY, tr("Way"), WAYS, SHORTEST)
         engine = advanced(enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC))
         for parameter in (
@@ -171,10 +159,10 @@ class FindRoute(FleetAlgorithm):
             QgsProcessingParameterPoint(START, tr("Start")),
             QgsProcessingParameterPoint(GOAL, tr("Goal")),
             ways,
-            surfaces_parameter(),
-            *length_parameters(),
-            keepout_parameter(),
-            repair_parameter(),
+            road_sources.surfaces_parameter(),
+            *road_sources.length_parameters(),
+            road_sources.keepout_parameter(),
+            road_sources.repair_parameter(),
             tolerance,
             *others,
             engine,
@@ -192,20 +180,20 @@ class FindRoute(FleetAlgorithm):
     ):
         self._fields = fields_of(_ROUTE), fields_of(_PATH)
         with shown_by_processing():
-            self._source = RoadSource(self, parameters, context)
-            self._keepouts = KeepoutAreas(self, parameters, context)
+            self._source = road_sources.RoadSource(self, parameters, context)
+            self._keepouts = road_sources.KeepoutAreas(self, parameters, context)
         return True
 
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
         with shown_by_processing(feedback):
-            wishes = driving_options(self, parameters, context)
+            wishes = road_sources.driving_options(self, parameters, context)
             reading = self._source.read(feedback)
             if reading is None:
                 return {}
             reading.warnings += wishes.doubts(reading.roads)
-            built = network_of_roads(self, parameters, context, reading, feedback)
+            built = road_sources.network_of_roads(self, parameters, context, reading, feedback)
             if built is None:
                 return {}
             network, _ = built
@@ -229,7 +217,7 @@ class FindRoute(FleetAlgorithm):
         self,
         route: Route,
         path: DensePath,
-        reading: RoadReading,
+        reading: road_sources.RoadReading,
         parameters: Parameters,
         context: QgsProcessingContext,
         feedback: QgsProcessingFeedback,
@@ -258,7 +246,7 @@ def _of_qgis(graph: RouteGraph):
     return lambda costs: GraphEngine(graph, costs)
 
 
-def _stretches(route: Route, reading: RoadReading):
+def _stretches(route: Route, reading: road_sources.RoadReading):
     edges = route.network.edges
     return [
         (

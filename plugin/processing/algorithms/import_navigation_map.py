@@ -24,15 +24,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import NavigationMapError
-from ....robot_bridge.core.robotmap.nav2_reader import (
-    LARGEST_YAML,
-    OCCUPIED,
-    UNKNOWN,
-    Nav2Map,
-    cells_of,
-    check_size,
-    read_yaml,
-)
+from ....robot_bridge.core.robotmap import nav2_reader
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
@@ -65,7 +57,7 @@ def read_image(file: Path) -> tuple[np.ndarray, bool]:
                 )
             )
         image = _opened(gdal, file)
-        check_size(image.RasterXSize, image.RasterYSize)
+        nav2_reader.check_size(image.RasterXSize, image.RasterYSize)
         bands = [image.GetRasterBand(number + 1) for number in range(image.RasterCount)]
         colours = [band.GetColorInterpretation() for band in bands]
         depth_fits = all(band.DataType == gdal.GDT_Byte for band in bands) and len(bands) <= 4
@@ -202,7 +194,7 @@ class ImportNavigationMap(FleetAlgorithm):
         for parameter in (
             QgsProcessingParameterFile(MAP, tr("Nav2 map (YAML)"), fileFilter=filters),
             QgsProcessingParameterNumber(
-                OCCUPIED_FROM, tr("Occupied from [of 100]"), whole, 65, False, 1, OCCUPIED
+                OCCUPIED_FROM, tr("Occupied from [of 100]"), whole, 65, False, 1, nav2_reader.OCCUPIED
             ),
             *map_parameters()[1:],
             QgsProcessingParameterRasterDestination(RASTER, tr("Raster"), optional=True),
@@ -247,13 +239,13 @@ class ImportNavigationMap(FleetAlgorithm):
             )
             if feedback.isCanceled():
                 return {}
-        figures = int((cells >= level).sum()), int((cells == UNKNOWN).sum()), count
+        figures = int((cells >= level).sum()), int((cells == nav2_reader.UNKNOWN).sum()), count
         return {**made, **dict(zip(NUMBERS, figures, strict=True))}
 
     def _write_obstacles(
         self,
         occupied: np.ndarray,
-        read: tuple[Path, Nav2Map],
+        read: tuple[Path, nav2_reader.Nav2Map],
         transform: GeoTransform,
         place: MapPlace,
         parameters: Parameters,
@@ -279,20 +271,20 @@ class ImportNavigationMap(FleetAlgorithm):
         return len(rows)
 
 
-def _read(file: Path) -> tuple[Nav2Map, np.ndarray]:
+def _read(file: Path) -> tuple[nav2_reader.Nav2Map, np.ndarray]:
     """Return what the YAML says, and the cells; raises ParameterError, naming the file and the key."""
     try:
         with file.open(encoding="utf-8-sig") as text:
-            described = read_yaml(text.read(LARGEST_YAML + 1))
+            described = nav2_reader.read_yaml(text.read(nav2_reader.LARGEST_YAML + 1))
         bands, alpha = read_image(file.parent / described.image)
-        return described, cells_of(bands, described, alpha=alpha)
+        return described, nav2_reader.cells_of(bands, described, alpha=alpha)
     except (OSError, UnicodeDecodeError, NavigationMapError) as error:
         raise ParameterError(
             tr("The Nav2 map {file} cannot be read: {error}", file=file, error=error)
         ) from error
 
 
-def _transform(described: Nav2Map, cells: np.ndarray, place: MapPlace) -> GeoTransform:
+def _transform(described: nav2_reader.Nav2Map, cells: np.ndarray, place: MapPlace) -> GeoTransform:
     """Return where the cells are in the CRS of the layers."""
     rows, columns = cells.shape
     first, right, below = place.points(described.corners(columns, rows))

@@ -16,11 +16,12 @@ from qgis.core import (
     QgsProcessingOutputString,
 )
 
-from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
+from ....robot_bridge.core.sites.frame import SiteBounds
+from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteSettings, earlier_settings
 from ....robot_bridge.core.sites.site_database import view_schema
 from ...layers.publishing.postgis import SiteDatabase, site_database
 from ...layers.publishing.publication import exclusive_publication, new_publication, next_version
-from ...layers.publishing.site_file import SiteContent
+from ...layers.publishing.site_content import SiteContent
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import FleetError
 from ...ui.language import tr, tr_count, tr_page

@@ -25,25 +25,9 @@ from qgis.PyQt.QtCore import QBuffer, QByteArray, QIODevice, Qt
 from qgis.PyQt.QtGui import QImage
 from qgis.PyQt.QtSvg import QSvgRenderer
 
+from ....robot_bridge.core.robotmap.exporters import nav2, vector_files
 from ....robot_bridge.core.robotmap.exporters.geometries import MapShape, obstacle_shapes, segment_shapes
-from ....robot_bridge.core.robotmap.exporters.nav2 import (
-    Inside,
-    MaskArea,
-    RasterGrid,
-    filter_parameters,
-    keepout_mask,
-    occupancy_of,
-    scale_files,
-    speed_mask,
-    trinary_files,
-)
 from ....robot_bridge.core.robotmap.exporters.svg import svg_of
-from ....robot_bridge.core.robotmap.exporters.vector_files import (
-    column_value,
-    geojson_of,
-    geopackage_layers,
-    wkb_of,
-)
 from ....robot_bridge.core.robotmap.model import RobotMap
 from ...layers.geometry import polygons_of, shapes_of
 from ...layers.layer_expressions import FeatureFilter
@@ -67,7 +51,7 @@ def areas_of(
     counted: FeatureFilter | None,
     feedback: QgsFeedback,
     speed: Speed | None = None,
-) -> tuple[list[MaskArea], list[str]]:
+) -> tuple[list[nav2.MaskArea], list[str]]:
     """Return the areas of a layer in the site frame, and a warning for each feature that is not as it was.
 
     Only features that are ``counted`` are read. With ``speed`` an area without a speed above 0 is left out.
@@ -76,7 +60,7 @@ def areas_of(
     :raises LayerCrsError: when the layer's coordinates have no known place on the site.
     """
     placing = site.of_layer(source.sourceName(), source.sourceCrs())
-    areas: list[MaskArea] = []
+    areas: list[nav2.MaskArea] = []
     warnings: list[str] = []
     for feature, counts, geometry, notes in FeatureReader(
         source.sourceName(), source, placing, counted, feedback
@@ -85,7 +69,7 @@ def areas_of(
         if counts:
             limit = math.nan if speed is None else speed(feature)
             if speed is None or 0 < limit < math.inf:
-                areas += [MaskArea(rings, name, limit) for rings in _polygons(geometry, placing, notes)]
+                areas += [nav2.MaskArea(rings, name, limit) for rings in _polygons(geometry, placing, notes)]
             else:
                 notes.append(tr("has no speed above 0 m/s, so it sets no limit; it is left out"))
         warnings += [f"{name}: {note}" for note in notes]
@@ -173,7 +157,7 @@ def write_geopackage(robot_map: RobotMap, target: Path, place: PlacedMap) -> Non
 
     :raises OutputError: naming the layer that could not be written, and why.
     """
-    for name, shapes in geopackage_layers(robot_map).items():
+    for name, shapes in vector_files.geopackage_layers(robot_map).items():
         _write_layer(name, shapes, target, place)
 
 
@@ -191,10 +175,10 @@ def _write_layer(name: str, shapes: Sequence[MapShape], target: Path, place: Pla
     )
     for shape in shapes:
         geometry = QgsGeometry()
-        geometry.fromWkb(wkb_of(shape, place.place.points))
+        geometry.fromWkb(vector_files.wkb_of(shape, place.place.points))
         feature = QgsFeature(fields)
         feature.setGeometry(geometry)
-        feature.setAttributes([column_value(value) for value in shape.attributes.values()])
+        feature.setAttributes([vector_files.column_value(value) for value in shape.attributes.values()])
         writer.addFeature(feature)
     writer.flushBuffer()
     if writer.hasError() != QgsVectorFileWriter.WriterError.NoError:
@@ -234,10 +218,10 @@ class NavigationExport:
     place: PlacedMap
     name: str
     resolution: float
-    inside: Inside
+    inside: nav2.Inside
     drives_over: float
-    keepouts: list[MaskArea] = field(default_factory=list)
-    speed_areas: list[MaskArea] = field(default_factory=list)
+    keepouts: list[nav2.MaskArea] = field(default_factory=list)
+    speed_areas: list[nav2.MaskArea] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
 
     def files(self, format: str) -> Files:
@@ -248,37 +232,37 @@ class NavigationExport:
         return FORMAT_WRITERS[format](self)
 
     @property
-    def grid(self) -> RasterGrid:
+    def grid(self) -> nav2.RasterGrid:
         """The grid of the masks, which is that of the occupancy grid."""
-        return RasterGrid.covering(self.robot_map.border, self.resolution)
+        return nav2.RasterGrid.covering(self.robot_map.border, self.resolution)
 
 
 def _occupancy(export: NavigationExport) -> Files:
-    made = occupancy_of(
+    made = nav2.occupancy_of(
         export.robot_map, export.resolution, inside=export.inside, drives_over=export.drives_over
     )
     export.warnings += made.warnings
-    return trinary_files(export.name, made.grid, made.cells, export.robot_map.meta)
+    return nav2.trinary_files(export.name, made.grid, made.cells, export.robot_map.meta)
 
 
 def _keepout(export: NavigationExport) -> Files:
     name = f"{export.name}_keepout"
-    cells = keepout_mask(export.grid, export.keepouts)
-    files = trinary_files(name, export.grid, cells, export.robot_map.meta)
-    return {**files, f"{name}_filter.yaml": filter_parameters(_KEEPOUT, "keepout")}
+    cells = nav2.keepout_mask(export.grid, export.keepouts)
+    files = nav2.trinary_files(name, export.grid, cells, export.robot_map.meta)
+    return {**files, f"{name}_filter.yaml": nav2.filter_parameters(_KEEPOUT, "keepout")}
 
 
 def _speed(export: NavigationExport) -> Files:
     name = f"{export.name}_speed"
-    mask = speed_mask(export.grid, export.speed_areas)
-    files = scale_files(name, mask.grid, mask.cells, export.robot_map.meta)
-    return {**files, f"{name}_filter.yaml": filter_parameters(_SPEED_IN_M_S, "speed", mask.multiplier)}
+    mask = nav2.speed_mask(export.grid, export.speed_areas)
+    files = nav2.scale_files(name, mask.grid, mask.cells, export.robot_map.meta)
+    return {**files, f"{name}_filter.yaml": nav2.filter_parameters(_SPEED_IN_M_S, "speed", mask.multiplier)}
 
 
 def _geojson(export: NavigationExport) -> Files:
     robot_map, to_lonlat = export.robot_map, export.place.to_lonlat
     return {
-        f"{export.name}_{kind}.geojson": geojson_of(shapes, to_lonlat, robot_map.meta)
+        f"{export.name}_{kind}.geojson": vector_files.geojson_of(shapes, to_lonlat, robot_map.meta)
         for kind, shapes in (
             ("obstacles", obstacle_shapes(robot_map)),
             ("segments", segment_shapes(robot_map)),

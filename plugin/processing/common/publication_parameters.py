@@ -24,13 +24,14 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteBounds, SiteSettings, earlier_settings
+from ....robot_bridge.core.sites.frame import SiteBounds
+from ....robot_bridge.core.sites.settings import SETTINGS_FILE, SiteSettings, earlier_settings
 from ....robot_bridge.core.sites.settings_tables import LivenessLimits, value_text
 from ...layers.crs import crs_name, is_engineering
 from ...layers.layer_source import Setups, obstacle_sources
 from ...layers.publishing.postgis import check_site_id, database_address
 from ...layers.publishing.publication import check_publication_values, next_version
-from ...layers.publishing.site_file import SiteSources, check_content_sources
+from ...layers.publishing.site_content import SiteSources, check_content_sources
 from ...layers.road_layers import DEFAULT_WIDTH_M
 from ...layers.roles import KEEPOUT, OBSTACLE_ROLES, ROAD_CENTRELINE, ROAD_SURFACE, LayerExpressions
 from ...layers.site_transform import SiteGeoreference

@@ -40,18 +40,8 @@ from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
 
 from ...ui.language import tr, tr_count
+from . import placed_cones
 from .outputs import OutputError, check_target, write_whole
-from .placed_cones import (
-    HEIGHT,
-    WIDTH,
-    ConeDeviations,
-    PlacedCone,
-    deviation_values,
-    extent_of,
-    factor_of,
-    histogram,
-    map_layers,
-)
 
 # --- Room for texts in the columns of a table: shared out, and kept to by leaving out the middle of a text
 
@@ -171,7 +161,7 @@ BEYOND = "!"
 """Stands beside a cone that is beyond the tolerance."""
 
 
-def add_table(layout: QgsPrintLayout, cones: Sequence[PlacedCone], tolerance: float) -> None:
+def add_table(layout: QgsPrintLayout, cones: Sequence[placed_cones.PlacedCone], tolerance: float) -> None:
     """Put the table on the second page, and on as many more as it takes, each with its heads."""
     table = QgsLayoutItemTextTable(layout)
     layout.addMultiFrame(table)
@@ -216,7 +206,7 @@ def _column(head: str, width: float, numbers: bool) -> QgsLayoutTableColumn:
     return column
 
 
-def _row(cone: PlacedCone, tolerance: float) -> list[str]:
+def _row(cone: placed_cones.PlacedCone, tolerance: float) -> list[str]:
     (east, north), (x, y) = cone.off, cone.planned
     return [
         cone.name,
@@ -245,8 +235,8 @@ class ReportContent:
     """The content of the report: ``cones`` in the table's order, ``background`` from the top."""
 
     title: str
-    cones: Sequence[PlacedCone]
-    figures: ConeDeviations
+    cones: Sequence[placed_cones.PlacedCone]
+    figures: placed_cones.ConeDeviations
     tolerance: float
     crs: QgsCoordinateReferenceSystem
     background: Sequence[QgsMapLayer] = field(default_factory=tuple)
@@ -368,22 +358,25 @@ def _natural(name: str) -> list[tuple[int, str]]:
 
 def _picture(layout: QgsPrintLayout, report: ReportContent, folder: Path) -> None:
     file = folder / "histogram.svg"
-    file.write_text(histogram(deviation_values(report.cones), report.tolerance), encoding="utf-8")
+    file.write_text(
+        placed_cones.histogram(placed_cones.deviation_values(report.cones), report.tolerance),
+        encoding="utf-8",
+    )
     picture = QgsLayoutItemPicture(layout)
     picture.setPicturePath(str(file))
-    place_item(picture, (MARGIN, 42, TEXT_WIDTH, TEXT_WIDTH * HEIGHT / WIDTH))
+    place_item(picture, (MARGIN, 42, TEXT_WIDTH, TEXT_WIDTH * placed_cones.HEIGHT / placed_cones.WIDTH))
     layout.addLayoutItem(picture)
 
 
 def _map(layout: QgsPrintLayout, report: ReportContent, project: QgsProject) -> None:
-    top = 42 + TEXT_WIDTH * HEIGHT / WIDTH + 4
+    top = 42 + TEXT_WIDTH * placed_cones.HEIGHT / placed_cones.WIDTH + 4
     shown = QgsLayoutItemMap(layout)
     place_item(shown, (MARGIN, top, TEXT_WIDTH, 274 - top))
     shown.setFrameEnabled(True)
     shown.setCrs(report.crs)
-    shown.zoomToExtent(extent_of(report.cones))
-    factor = factor_of(report.cones, shown.extent().width())
-    layers = map_layers(report.cones, report.crs, report.tolerance, factor)
+    shown.zoomToExtent(placed_cones.extent_of(report.cones))
+    factor = placed_cones.factor_of(report.cones, shown.extent().width())
+    layers = placed_cones.map_layers(report.cones, report.crs, report.tolerance, factor)
     project.addMapLayers(layers, False)
     shown.setLayers([*layers, *report.background])
     shown.setKeepLayerSet(True)

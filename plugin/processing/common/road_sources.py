@@ -27,17 +27,9 @@ from ....robot_bridge.core.roads.network import CancelCheck, Network, build_netw
 from ....robot_bridge.core.roads.network_checks import RoadFinding, repaired_network
 from ....robot_bridge.core.roads.path_smoothing import Driving
 from ....robot_bridge.core.roads.routes import REACH, Restrictions, Router
+from ...layers import road_layers
 from ...layers.layer_expressions import LayerRules
 from ...layers.layer_source import FeatureReader, obstacle_sources
-from ...layers.road_layers import (
-    DEFAULT_WIDTH_M,
-    RoadAttributes,
-    RoadExpressions,
-    RoadRules,
-    edges_through,
-    lines_of,
-    read_areas,
-)
 from ...layers.roles import KEEPOUT, LayerExpressions, expressions_of
 from ...layers.site_transform import LayerToSiteTransform, SiteGeoreference
 from ...ui.language import tr, tr_count
@@ -167,10 +159,10 @@ class KeepoutAreas:
         if not self._sources:
             return [], []
         site = SiteGeoreference.in_crs(crs, self._transforms)
-        reading = read_areas(self._sources, site, KEEPOUT, feedback)
+        reading = road_layers.read_areas(self._sources, site, KEEPOUT, feedback)
         for warning in reading.warnings:
             feedback.pushWarning(warning)
-        closed = edges_through(network, [area.rings for area in reading.items])
+        closed = road_layers.edges_through(network, [area.rings for area in reading.items])
         if closed:
             feedback.pushInfo(
                 tr_count(
@@ -227,7 +219,7 @@ def road_parameters() -> list[QgsProcessingParameterDefinition]:
             DEFAULT_WIDTH,
             tr("Width of roads of which it is not known [m]"),
             _REAL,
-            DEFAULT_WIDTH_M,
+            road_layers.DEFAULT_WIDTH_M,
             minValue=0.01,
         ),
         QgsProcessingParameterNumber(
@@ -271,7 +263,7 @@ class RoadSource:
         }
         for name, of_role in _ROLE.items():
             given[name] = given[name] or getattr(role, of_role)
-        self._expressions = RoadExpressions(**given)
+        self._expressions = road_layers.RoadExpressions(**given)
 
     def read(self, feedback: QgsProcessingFeedback) -> RoadReading | None:
         """Return the roads; None after a cancel.
@@ -305,15 +297,15 @@ class RoadSource:
         name = source.sourceName()
         scope = self._algorithm.createExpressionContext(self._parameters, self._context, source)
         rules = LayerRules(name, source.fields(), scope)
-        road_rules = RoadRules(rules, self._expressions)
+        road_rules = road_layers.RoadRules(rules, self._expressions)
         lines: list[np.ndarray] = []
-        known: list[RoadAttributes] = []
+        known: list[road_layers.RoadAttributes] = []
         features: list[int] = []
         warnings: list[str] = []
         reader = FeatureReader(name, source, placing, self._counted, feedback, 50.0)
         for feature, _, geometry, notes in reader:
             rules.at(feature)
-            found = [] if geometry is None else lines_of(geometry, notes)
+            found = [] if geometry is None else road_layers.lines_of(geometry, notes)
             if found:
                 known += [road_rules.of(notes)] * len(found)
             lines += found
@@ -332,7 +324,7 @@ class RoadSource:
         return reading
 
     def _columns(
-        self, lines: list[np.ndarray], known: list[RoadAttributes], name: str, warnings: list[str]
+        self, lines: list[np.ndarray], known: list[road_layers.RoadAttributes], name: str, warnings: list[str]
     ) -> Centrelines:
         width, speed = (
             self._algorithm.parameterAsDouble(self._parameters, key, self._context)

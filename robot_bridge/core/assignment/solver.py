@@ -10,17 +10,10 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from ..errors import JobError, UnservedError, counted, listed_names
+from . import pyvrp_search
 from .job import AssignmentJob, CancellableTravel, Travel
 from .local_search import TripLimits, improved, saving_pairs, trips_by_savings
 from .plan import ConePlan
-from .pyvrp_search import (
-    Progress,
-    SearchClock,
-    SearchProgress,
-    load_pyvrp,
-    loaded_days_by_pyvrp,
-    trips_by_pyvrp,
-)
 from .schedules import (
     BALANCED,
     LEAST_DISTANCE,
@@ -65,7 +58,7 @@ class Effort:
 
     seconds: float
     use_pyvrp: bool
-    progress: SearchProgress
+    progress: pyvrp_search.SearchProgress
     seed: int = 0
 
 
@@ -97,11 +90,11 @@ def solved_stage(
     if others:
         trips = _trips(first.plan, set(others))
         second: StageSolution | None = _with_trips(
-            days, trips_by_pyvrp(days, trips, limits, clock, effort.seed), begin, aim
+            days, pyvrp_search.trips_by_pyvrp(days, trips, limits, clock, effort.seed), begin, aim
         )
     else:
         plan = first.plan if _all_on_board(first.plan, start) else begin
-        made = loaded_days_by_pyvrp(days, start, plan, aim, clock, effort.seed)
+        made = pyvrp_search.loaded_days_by_pyvrp(days, start, plan, aim, clock, effort.seed)
         second = StageSolution(made, [], _score(days, made, aim), by_pyvrp=True)
     if second is None:
         return _improved(days, first, targets, aim, lambda: over(1.0))
@@ -109,11 +102,11 @@ def solved_stage(
     return min(first, second, key=lambda answer: answer.rank)
 
 
-def _clock_of_pyvrp(effort: Effort, aim: StageObjective, seconds_left: float) -> SearchClock:
+def _clock_of_pyvrp(effort: Effort, aim: StageObjective, seconds_left: float) -> pyvrp_search.SearchClock:
     """Return the clock of what PyVRP does: it leaves time for small changes."""
     begin, end = _FIRST_SHARE, _LAST_SHARE[aim.objective]
     seconds = seconds_left - effort.seconds * (1.0 - end)
-    return SearchClock(seconds, effort.progress.part(begin, end))
+    return pyvrp_search.SearchClock(seconds, effort.progress.part(begin, end))
 
 
 def _all_on_board(plan: Sequence[Schedule], start: Sequence[Schedule]) -> bool:
@@ -260,7 +253,10 @@ class Objective:
 
 
 def assign(
-    job: AssignmentJob, travel: Travel, objective: Objective | None = None, progress: Progress | None = None
+    job: AssignmentJob,
+    travel: Travel,
+    objective: Objective | None = None,
+    progress: pyvrp_search.Progress | None = None,
 ) -> ConePlan:
     """Return the plan by which the robots of ``job`` serve all its targets.
 
@@ -282,12 +278,12 @@ def assign(
 
 def _use_pyvrp(method: str) -> bool:
     if method == PYVRP:
-        load_pyvrp()
+        pyvrp_search.load_pyvrp()
     return method == PYVRP or (method == AUTOMATIC and importlib.util.find_spec("pyvrp") is not None)
 
 
 def _solved(
-    days: ScheduleEvaluator, objective: Objective, use_pyvrp: bool, progress: Progress
+    days: ScheduleEvaluator, objective: Objective, use_pyvrp: bool, progress: pyvrp_search.Progress
 ) -> tuple[list[Schedule], bool]:
     job = days.job
     plan: list[Schedule] = [[[]] for _ in job.robots]
@@ -296,7 +292,7 @@ def _solved(
         targets = [place for place in _places(job) if job.target(place).stage == stage]
         before, part = done / len(job.targets), len(targets) / len(job.targets)
         aim = StageObjective(objective.objective, last=stage == job.stages[-1])
-        tell = SearchProgress(progress, before, before + part)
+        tell = pyvrp_search.SearchProgress(progress, before, before + part)
         effort = Effort(objective.time_limit_s * part, use_pyvrp, tell, objective.seed)
         answer = solved_stage(days, targets, plan, aim, effort)
         if answer.left:

@@ -8,6 +8,7 @@ import math
 from enum import Enum
 from typing import Any, TypeVar
 
+from . import roads
 from .administration import (
     LinkReport,
     Links,
@@ -28,18 +29,6 @@ from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, Pl
 from .positions import RobotReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from .records import ObservationReport, ObservationState, PlacementReport
-from .roads import (
-    ClosureReport,
-    Closures,
-    ConflictReport,
-    Conflicts,
-    HoldReport,
-    ReplannedRobot,
-    RouteReport,
-    SurfaceMetres,
-    WayOut,
-    WaysOut,
-)
 from .safety import EmergencyReport, RobotState, StoppedGateways
 from .validation import known_fields
 
@@ -157,41 +146,41 @@ def emergency_report(values: dict[str, Any]) -> EmergencyReport:
 T = TypeVar("T")
 
 
-def closures_report(values: dict[str, Any]) -> Closures:
+def closures_report(values: dict[str, Any]) -> roads.Closures:
     """Return the roads that are closed."""
-    return Closures([closure_report(one) for one in values.get("closures", [])])
+    return roads.Closures([closure_report(one) for one in values.get("closures", [])])
 
 
-def closure_report(values: dict[str, Any]) -> ClosureReport:
+def closure_report(values: dict[str, Any]) -> roads.ClosureReport:
     """Return one closed road."""
-    return _made(ClosureReport, {**values, "line": _points(values["line"])})
+    return _made(roads.ClosureReport, {**values, "line": _points(values["line"])})
 
 
-def conflicts_report(values: dict[str, Any]) -> Conflicts:
+def conflicts_report(values: dict[str, Any]) -> roads.Conflicts:
     """Return where robots are in each other's way."""
-    return Conflicts(
+    return roads.Conflicts(
         float(values["t"]),
-        [_made(ConflictReport, one) for one in values.get("conflicts", [])],
-        [_made(HoldReport, one) for one in values.get("waiting", [])],
+        [_made(roads.ConflictReport, one) for one in values.get("conflicts", [])],
+        [_made(roads.HoldReport, one) for one in values.get("waiting", [])],
     )
 
 
-def ways_out_report(values: dict[str, Any]) -> WaysOut:
+def ways_out_report(values: dict[str, Any]) -> roads.WaysOut:
     """Return what two robots in each other's way can do."""
-    ways = [_made(WayOut, {**one, "points": _points(one.get("points", []))}) for one in values["ways"]]
-    return WaysOut(float(values["t"]), str(values["robot"]), str(values["other"]), ways)
+    ways = [_made(roads.WayOut, {**one, "points": _points(one.get("points", []))}) for one in values["ways"]]
+    return roads.WaysOut(float(values["t"]), str(values["robot"]), str(values["other"]), ways)
 
 
-def replanned_robot(values: dict[str, Any]) -> ReplannedRobot:
+def replanned_robot(values: dict[str, Any]) -> roads.ReplannedRobot:
     """Return what became of a robot whose road was closed."""
-    return _made(ReplannedRobot, values)
+    return _made(roads.ReplannedRobot, values)
 
 
-def route_report(values: dict[str, Any]) -> RouteReport:
+def route_report(values: dict[str, Any]) -> roads.RouteReport:
     """Return the way that was asked for."""
-    surfaces = [_made(SurfaceMetres, one) for one in values.get("surfaces", [])]
+    surfaces = [_made(roads.SurfaceMetres, one) for one in values.get("surfaces", [])]
     points, tight = _points(values["points"]), _points(values.get("tight", []))
-    return _made(RouteReport, {**values, "points": points, "tight": tight, "surfaces": surfaces})
+    return _made(roads.RouteReport, {**values, "points": points, "tight": tight, "surfaces": surfaces})
 
 
 def _made(kind: type[T], values: dict[str, Any]) -> T:

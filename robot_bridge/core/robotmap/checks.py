@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import counted
+from . import obstacle_checks
 from .findings import (
     SAME_PLACE,
     TOUCHING,
@@ -23,16 +24,6 @@ from .findings import (
     place,
 )
 from .model import Border, RobotMap, ShapeType
-from .obstacle_checks import (
-    broken_chains,
-    near_misses,
-    outside_border,
-    repeated_ids,
-    turned_risers,
-    without_length,
-    wrong_heights,
-    wrong_rings,
-)
 
 # --- Whether obstacles repeat, cover or cross one another ---
 
@@ -406,14 +397,14 @@ __all__ = [
 Check = Callable[[SegmentTable, MapCheckLimits], Iterable[MapFinding]]
 
 CHECKS: tuple[Check, ...] = (
-    repeated_ids,
-    outside_border,
-    without_length,
-    wrong_heights,
-    turned_risers,
-    broken_chains,
-    near_misses,
-    wrong_rings,
+    obstacle_checks.repeated_ids,
+    obstacle_checks.outside_border,
+    obstacle_checks.without_length,
+    obstacle_checks.wrong_heights,
+    obstacle_checks.turned_risers,
+    obstacle_checks.broken_chains,
+    obstacle_checks.near_misses,
+    obstacle_checks.wrong_rings,
     meeting_obstacles,
     unreachable_pockets,
 )

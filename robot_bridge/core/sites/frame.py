@@ -1,11 +1,16 @@
-"""Site frame: the metres that robots use, as a place in a projected CRS; access to pyproj."""
+"""Site frame: the metres of robots as a place in a projected CRS; transforms into it; access to pyproj."""
 
 from __future__ import annotations
 
+import functools
 import math
+import threading
 import warnings
+from collections import OrderedDict
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -35,8 +40,9 @@ def projections() -> Any:
     return pyproj
 
 
+@functools.lru_cache(maxsize=32)
 def crs_of(crs: str) -> Any:
-    """Return the ``pyproj.CRS`` that ``crs`` names.
+    """Return the ``pyproj.CRS`` that ``crs`` names; PROJ takes milliseconds for each.
 
     :raises CrsError: when PROJ does not know it.
     """
@@ -58,6 +64,19 @@ def utm_zone_of(longitude: float, latitude: float) -> str:
 # --- The site frame: the metres that robots speak, as a place in a projected CRS ---
 
 Points = npt.NDArray[np.float64]
+
+
+class SiteBounds(NamedTuple):
+    """The rectangle of the site in the site frame, metres; its edges belong to it."""
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+
+    def contains(self, x: float, y: float) -> bool:
+        """Tell whether (x, y), metres in the site frame, lies in the rectangle."""
+        return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
 
 
 @dataclass(frozen=True)
@@ -142,3 +161,179 @@ def _suggestion(known: Any) -> str:
 
 def _points(xy: Any) -> Points:
     return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
+
+
+# --- From coordinates in any CRS to the site frame, many at once ---
+
+_KEPT = 16
+"""Ways from a CRS to the site that are kept: each costs a few hundredths of a second to find."""
+
+
+class CrsTransform:
+    """Where coordinates lie in a site frame, from whatever CRS; any thread may ask."""
+
+    def __init__(self, frame: SiteFrame) -> None:
+        self._frame = frame
+        self._ways: OrderedDict[str, Any] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def to_site(self, xy: Any, crs: str) -> Points:
+        """Return ``xy``, (n, 2) coordinates in ``crs`` with x before y, as (n, 2) metres in the site frame.
+
+        :raises CrsError: when PROJ does not know ``crs``, or a point of it has no place in the site's CRS.
+        """
+        points = np.asarray(xy, dtype=np.float64).reshape(-1, 2)
+        easting, northing = self._way(crs).transform(points[:, 0], points[:, 1])
+        moved = np.column_stack([easting, northing])
+        finite = np.isfinite(moved).all(axis=1)
+        if not finite.all():
+            k = int(np.argmin(finite))
+            x, y = points[k].tolist()
+            raise CrsError(
+                f"points[{k}], ({x:.10g}, {y:.10g}) in {crs}, has no place in the site's CRS "
+                f"{self._frame.crs}: check the order, x (longitude, easting) before y, and the CRS."
+            )
+        return self._frame.to_site(moved)
+
+    def _way(self, crs: str) -> Any:
+        with self._lock:
+            way = self._ways.pop(crs, None) or self._found(crs)
+            self._ways[crs] = way
+            if len(self._ways) > _KEPT:
+                self._ways.popitem(last=False)
+            return way
+
+    def _found(self, crs: str) -> Any:
+        pyproj = projections()
+        try:
+            return pyproj.Transformer.from_crs(crs_of(crs), crs_of(self._frame.crs), always_xy=True)
+        except pyproj.exceptions.ProjError as error:
+            raise CrsError(
+                f"There is no known way from {crs} to the site's CRS {self._frame.crs} ({error})."
+            ) from error
+
+
+# --- From the earth to the site: latitude, longitude and compass heading as a robot's GPS gives them ---
+
+_STEP = 10.0
+"""metres ahead at which it is looked where a heading leads; short against the curvature of any projection."""
+
+
+NEAR = 10_000.0
+"""metres beside a site within which its robots may come from; swapped coordinates lie much farther off."""
+
+
+def is_near(place: tuple[float, float], bounds: SiteBounds) -> bool:
+    """Tell whether (x, y), metres in the site frame, is on the site or beside it."""
+    x, y = place
+    beside = bounds.x_min - x, x - bounds.x_max, bounds.y_min - y, y - bounds.y_max
+    return max(beside) <= NEAR
+
+
+class GpsTransform:
+    """Where WGS 84 positions lie in a site frame."""
+
+    def __init__(self, frame: SiteFrame) -> None:
+        self._frame = frame
+
+    def place(self, lat: float, lon: float) -> tuple[float, float]:
+        """Return (x, y), metres in the site frame, of a position in degrees.
+
+        :raises CrsError: when the site's CRS has no place for it, or none on the earth.
+        """
+        easting, northing = self._to_crs.transform(lon, lat)
+        if not (math.isfinite(easting) and math.isfinite(northing)):
+            raise CrsError(
+                f"latitude {lat:.6f}, longitude {lon:.6f} has no place in the site's CRS {self._frame.crs}; "
+                "check the order of the two, and that the robot is near the site."
+            )
+        ((x, y),) = self._frame.to_site([(easting, northing)]).tolist()
+        return x, y
+
+    def looks_swapped(self, lat: float, lon: float, bounds: SiteBounds) -> bool:
+        """Tell whether a position lies near a site's ``bounds`` with latitude and longitude swapped."""
+        try:
+            return abs(lon) <= 90 and is_near(self.place(lon, lat), bounds)
+        except CrsError:
+            return False
+
+    def theta(self, lat: float, lon: float, heading: float) -> float:
+        """Return a heading, degrees clockwise from true north at that place, as a site theta in (-π, π].
+
+        North of the map is not true north: the difference, the convergence, is a degree or more at the edge
+        of a UTM zone.
+
+        :raises CrsError: as :meth:`place`.
+        """
+        ahead_lon, ahead_lat, _ = self._ellipsoid.fwd(lon, lat, heading, _STEP)
+        x, y = self.place(lat, lon)
+        ahead_x, ahead_y = self.place(ahead_lat, ahead_lon)
+        return math.atan2(ahead_y - y, ahead_x - x)
+
+    @cached_property
+    def _to_crs(self) -> Any:
+        pyproj = projections()
+        try:
+            return pyproj.Transformer.from_crs(4326, crs_of(self._frame.crs), always_xy=True)
+        except pyproj.exceptions.ProjError as error:
+            raise CrsError(
+                f"The site's CRS {self._frame.crs} has no known place on the earth ({error}); robots there "
+                "cannot be placed by GPS."
+            ) from error
+
+    @cached_property
+    def _ellipsoid(self) -> Any:
+        return projections().Geod(ellps="WGS84")
+
+
+# --- Where a robot map lies on the earth, from its leading lines ---
+
+_UNPLACED = "write the map with its leading lines (not strict), or choose a format in the site's own metres"
+
+
+def frame_of_map(meta: Mapping[str, str]) -> SiteFrame | None:
+    """Return the frame that the lines crs, origin and rotation of a map give; None when it names no CRS.
+
+    :raises CrsError: naming a line that is not what it must be.
+    """
+    crs = meta.get("crs", "").strip()
+    if not crs:
+        return None
+    origin = _numbers(meta, "origin", "0,0", 2)
+    (rotation,) = _numbers(meta, "rotation", "0", 1)
+    return SiteFrame(crs, (origin[0], origin[1]), rotation)
+
+
+def lonlat_of(frame: SiteFrame | None) -> Callable[[Points], Points]:
+    """Return the way from (n, 2) metres in the site frame to (n, 2) longitudes and latitudes (WGS 84).
+
+    :raises CrsError: when there is no frame, or PROJ does not know its CRS or where on the earth it is.
+    """
+    if frame is None:
+        raise CrsError(f"The map does not say where on the earth it is: it has no line crs; {_UNPLACED}.")
+    pyproj = projections()
+    try:
+        transformer = pyproj.Transformer.from_crs(crs_of(frame.crs), 4326, always_xy=True)
+    except pyproj.exceptions.ProjError as error:
+        raise CrsError(
+            f"The map's CRS {frame.crs} has no known place on the earth ({error}); {_UNPLACED}."
+        ) from error
+
+    def to_lonlat(xy: Points) -> Points:
+        return np.column_stack(transformer.transform(*frame.to_crs(xy).T))
+
+    return to_lonlat
+
+
+def _numbers(meta: Mapping[str, str], key: str, default: str, count: int) -> list[float]:
+    text = meta.get(key, default)
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != count or not all(math.isfinite(number) for number in numbers):
+        expected = "'x,y' in metres" if count == 2 else "an angle in radians"
+        raise CrsError(
+            f"The map's line {key} is {text!r}: it must be {expected}; correct it, or remove the line crs."
+        )
+    return numbers

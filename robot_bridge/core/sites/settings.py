@@ -8,11 +8,11 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from pathlib import Path
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from ..errors import CrsError, SettingsError
 from ..json_decoder import toml_tables
-from .frame import SiteFrame, check_site_crs
+from .frame import SiteBounds, SiteFrame, check_site_crs
 from .settings_tables import (
     AuditSettings,
     CommandSettings,
@@ -51,7 +51,6 @@ __all__ = [
     "ObservationSettings",
     "QueueSettings",
     "RouteSettings",
-    "SiteBounds",
     "SiteSettings",
     "TrajectorySettings",
     "check_settings",
@@ -63,19 +62,6 @@ __all__ = [
 ]
 
 SETTINGS_FILE = "site.toml"
-
-
-class SiteBounds(NamedTuple):
-    """The rectangle of the site in the site frame, metres; its edges belong to it."""
-
-    x_min: float
-    y_min: float
-    x_max: float
-    y_max: float
-
-    def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies in the rectangle."""
-        return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
 
 
 @dataclass(frozen=True)

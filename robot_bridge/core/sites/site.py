@@ -21,25 +21,11 @@ from ..robotmap.model import PART_OF, Border, RobotMap, Window
 from ..robotmap.outlines import Outlines
 from ..robotmap.text_format import write_text
 from ..robotmap.window_index import GroupText, OutlineIndex, group_texts, size_in_binary
+from . import geopackage, site_layers
 from .fences import Fences, KeepoutIndex
-from .frame import Points, SiteFrame
-from .geopackage import (
-    CENTRELINES,
-    GEOPACKAGE_FILE,
-    KEEPOUTS,
-    KNOWN_BEYOND,
-    OBSTACLES,
-    SURFACES,
-    Area,
-    Centreline,
-    Layer,
-    check_features,
-    read_layers,
-    write_layers,
-)
+from .frame import Points, SiteBounds, SiteFrame
 from .settings import (
     SETTINGS_FILE,
-    SiteBounds,
     SiteSettings,
     check_settings,
     earlier_settings,
@@ -48,16 +34,6 @@ from .settings import (
 )
 from .settings_tables import value_text
 from .site_cache import CACHE_FILE, SURELY_TOO_LARGE, CacheWriter, SiteCache, read_cache
-from .site_layers import (
-    area_layer,
-    areas_of,
-    centreline_layer,
-    centrelines_of,
-    obstacle_layer,
-    outlines_of,
-    surface_layer,
-    surfaces_of,
-)
 
 # --- A site as the gateway serves it: what is on it, and the robot maps cut from it ---
 
@@ -71,9 +47,9 @@ class Site:
 
     settings: SiteSettings
     outlines: Outlines
-    centrelines: tuple[Centreline, ...]
+    centrelines: tuple[geopackage.Centreline, ...]
     surfaces: tuple[Surface, ...]
-    keepouts: tuple[Area, ...]
+    keepouts: tuple[geopackage.Area, ...]
     cache: SiteCache | None = None
     """what was computed of ``outlines`` at publishing; else it is computed when it is needed first."""
 
@@ -181,7 +157,8 @@ class Site:
         if not self._is_near(window):
             x_min, y_min, x_max, y_max = self.bounds
             raise WindowError(
-                f"no part of {area:g} m² around ({x:.2f}, {y:.2f}) is within {KNOWN_BEYOND:g} m of site "
+                f"no part of {area:g} m² around ({x:.2f}, {y:.2f}) is within "
+                f"{geopackage.KNOWN_BEYOND:g} m of site "
                 f"{self.name!r}, which reaches from ({x_min:.2f}, {y_min:.2f}) to "
                 f"({x_max:.2f}, {y_max:.2f}); what stands there is not known"
             )
@@ -192,7 +169,7 @@ class Site:
         x_min, y_min, x_max, y_max = self.bounds
         apart_x = abs(window.x - (x_min + x_max) / 2) - (window.width + x_max - x_min) / 2
         apart_y = abs(window.y - (y_min + y_max) / 2) - (window.height + y_max - y_min) / 2
-        return max(apart_x, apart_y) <= KNOWN_BEYOND
+        return max(apart_x, apart_y) <= geopackage.KNOWN_BEYOND
 
     def _map(self, window: Window) -> RobotMap:
         return self._index.map_of(window, meta=self.map_meta(window.border))
@@ -265,7 +242,8 @@ def check_site(folder: Path | str) -> SiteSettings:
     folder = Path(folder)
     if not folder.is_dir():
         raise SiteError(
-            f"{folder} is no folder: a published site is a folder with {SETTINGS_FILE} and {GEOPACKAGE_FILE}"
+            f"{folder} is no folder: a published site is a folder with {SETTINGS_FILE} and "
+            f"{geopackage.GEOPACKAGE_FILE}"
         )
     return read_settings(folder / SETTINGS_FILE)
 
@@ -277,26 +255,33 @@ def read_site(folder: Path | str) -> Site:
     """
     folder = Path(folder)
     settings = check_site(folder)
-    file = folder / GEOPACKAGE_FILE
+    file = folder / geopackage.GEOPACKAGE_FILE
     cache = _cache(folder, settings) if file.is_file() else None
-    specs = (*(() if cache else (OBSTACLES,)), CENTRELINES, SURFACES, KEEPOUTS)
-    *obstacles, centrelines, surfaces, keepouts = read_layers(file, specs, settings.crs, settings.stamp)
-    outlines = cache.outlines if cache else outlines_of(obstacles[0], settings.frame, str(file))
+    specs = (
+        *(() if cache else (geopackage.OBSTACLES,)),
+        geopackage.CENTRELINES,
+        geopackage.SURFACES,
+        geopackage.KEEPOUTS,
+    )
+    *obstacles, centrelines, surfaces, keepouts = geopackage.read_layers(
+        file, specs, settings.crs, settings.stamp
+    )
+    outlines = cache.outlines if cache else site_layers.outlines_of(obstacles[0], settings.frame, str(file))
     if cache is None and len(outlines) > MANY:
         log.warning(
             "%s: %d outlines are read from %s, which takes its time and memory; publish the site again, and "
             "they are mapped from %s",
             folder,
             len(outlines),
-            GEOPACKAGE_FILE,
+            geopackage.GEOPACKAGE_FILE,
             CACHE_FILE,
         )
     site = Site(
         settings=settings,
         outlines=outlines,
-        centrelines=centrelines_of(centrelines, settings.frame, str(file)),
-        surfaces=surfaces_of(surfaces, settings.frame, str(file)),
-        keepouts=areas_of(keepouts, settings.frame, str(file)),
+        centrelines=site_layers.centrelines_of(centrelines, settings.frame, str(file)),
+        surfaces=site_layers.surfaces_of(surfaces, settings.frame, str(file)),
+        keepouts=site_layers.areas_of(keepouts, settings.frame, str(file)),
         cache=cache,
     )
     # Robots would wait for it.
@@ -313,7 +298,9 @@ def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles:
     largest = value_text(text, "maps", "largest_whole_bytes") or ""
     most = int(largest) if largest.isdecimal() else settings.maps.largest_whole_bytes
     publication = _publication(settings)
-    obstacles.write(folder / CACHE_FILE, folder / GEOPACKAGE_FILE, publication, whole_head(settings), most)
+    obstacles.write(
+        folder / CACHE_FILE, folder / geopackage.GEOPACKAGE_FILE, publication, whole_head(settings), most
+    )
 
 
 def cache_writer(partial: Path, frame: SiteFrame) -> CacheWriter:
@@ -329,9 +316,11 @@ def _cache(folder: Path, settings: SiteSettings) -> SiteCache | None:
     if not file.is_file():
         return None
     try:
-        return read_cache(file, folder / GEOPACKAGE_FILE, _publication(settings))
+        return read_cache(file, folder / geopackage.GEOPACKAGE_FILE, _publication(settings))
     except (CacheError, OSError) as error:
-        log.warning("%s; the obstacles are read from %s, which takes longer", error, GEOPACKAGE_FILE)
+        log.warning(
+            "%s; the obstacles are read from %s, which takes longer", error, geopackage.GEOPACKAGE_FILE
+        )
         return None
 
 
@@ -348,9 +337,9 @@ def write_site(
     folder: Path | str,
     settings: SiteSettings,
     obstacles: Outlines,
-    centrelines: Sequence[Centreline] = (),
+    centrelines: Sequence[geopackage.Centreline] = (),
     surfaces: Sequence[Surface] = (),
-    keepouts: Sequence[Area] = (),
+    keepouts: Sequence[geopackage.Area] = (),
 ) -> None:
     """Publish a site in ``folder``: all geometry in the site frame, in metres.
 
@@ -364,13 +353,13 @@ def write_site(
     check_settings(settings, folder / SETTINGS_FILE)
     frame = settings.frame
     layers = (
-        obstacle_layer(obstacles, frame),
-        centreline_layer(centrelines, frame),
-        surface_layer(surfaces, frame),
-        area_layer(KEEPOUTS, keepouts, frame),
+        site_layers.obstacle_layer(obstacles, frame),
+        site_layers.centreline_layer(centrelines, frame),
+        site_layers.surface_layer(surfaces, frame),
+        site_layers.area_layer(geopackage.KEEPOUTS, keepouts, frame),
     )
     for layer in layers:
-        check_features(layer, str(folder / GEOPACKAGE_FILE))
+        geopackage.check_features(layer, str(folder / geopackage.GEOPACKAGE_FILE))
     try:
         _write(folder, settings, layers, obstacles)
     except OSError as error:
@@ -379,9 +368,13 @@ def write_site(
         ) from error
 
 
-def _write(folder: Path, settings: SiteSettings, layers: Sequence[Layer], obstacles: Outlines) -> None:
+def _write(
+    folder: Path, settings: SiteSettings, layers: Sequence[geopackage.Layer], obstacles: Outlines
+) -> None:
     with StagedFiles(folder) as staged:
-        write_layers(staged.folder / GEOPACKAGE_FILE, layers, settings.crs, settings.stamp)
+        geopackage.write_layers(
+            staged.folder / geopackage.GEOPACKAGE_FILE, layers, settings.crs, settings.stamp
+        )
         cache = staged.enter(cache_writer(staged.folder, settings.frame))
         cache.add(obstacles)
         write_settings_and_cache(staged, settings, cache, earlier_settings(folder, settings.id))
@@ -409,9 +402,9 @@ def publish_staged(staged: StagedFiles) -> None:
     :raises OSError: the block of ``staged`` is to end by it, so that all is as it was.
     """
     if (staged.folder / CACHE_FILE).is_file():
-        staged.publish([CACHE_FILE, GEOPACKAGE_FILE, SETTINGS_FILE])
+        staged.publish([CACHE_FILE, geopackage.GEOPACKAGE_FILE, SETTINGS_FILE])
     else:
-        staged.publish([GEOPACKAGE_FILE, SETTINGS_FILE], removed=[CACHE_FILE])
+        staged.publish([geopackage.GEOPACKAGE_FILE, SETTINGS_FILE], removed=[CACHE_FILE])
 
 
 # --- The published sites that lie in one folder, and which of them may follow one another on one gateway

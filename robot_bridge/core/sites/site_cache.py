@@ -14,32 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import CacheError, RobotMapError
+from ..robotmap import window_index
 from ..robotmap.binary import encode_pieces
 from ..robotmap.builder import corners_of_rows, rows_of
 from ..robotmap.model import Border
 from ..robotmap.outlines import Outlines, oriented_segments, validate_outlines
-from ..robotmap.window_index import (
-    BoxGrid,
-    GridCells,
-    GroupText,
-    OutlineIndex,
-    OutlineNotes,
-    group_texts,
-    levels_of,
-    size_in_binary,
-)
-from .column_file import (
-    AT_ONCE,
-    HALVES,
-    CodedExtras,
-    CodedTexts,
-    ColumnFiles,
-    ColumnSet,
-    Texts,
-    read_about,
-    read_columns,
-    write_columns,
-)
+from . import column_file
 from .column_writers import CellSorting, NoteColumns, OutlineColumns, bytes_of_texts
 from .fences import FencedRows, fenced_boxes
 from .frame import SiteFrame
@@ -135,7 +115,7 @@ class WholeMap:
     size: int
     is_estimate: bool
     head: str
-    texts: Callable[[], Iterator[GroupText]] | None
+    texts: Callable[[], Iterator[window_index.GroupText]] | None
     content: bytes | None
 
 
@@ -143,7 +123,7 @@ class WholeMap:
 class SiteCache:
     """The arrays of one publication; those of a large site stay on the disk until they are looked at."""
 
-    index: OutlineIndex
+    index: window_index.OutlineIndex
     fenced: FencedRows
     whole: WholeMap
 
@@ -160,9 +140,9 @@ def read_cache(file: Path, geopackage: Path, publication: Publication) -> SiteCa
         do; and OSError.
     """
     try:
-        _check_same(file, read_about(file), {"content": CACHE_CONTENT, **publication})
-        _check_same(file, read_about(file), {"geopackage": geopackage_digest(geopackage)})
-        columns = read_columns(file)
+        _check_same(file, column_file.read_about(file), {"content": CACHE_CONTENT, **publication})
+        _check_same(file, column_file.read_about(file), {"geopackage": geopackage_digest(geopackage)})
+        columns = column_file.read_columns(file)
         return _cache_of(columns)
     except CacheError as error:
         raise CacheError(f"{error}. {_NOT_USED}") from error
@@ -179,7 +159,7 @@ def _check_same(file: Path, about: Mapping[str, Any], expected: Mapping[str, Any
             )
 
 
-def _cache_of(columns: ColumnSet) -> SiteCache:
+def _cache_of(columns: column_file.ColumnSet) -> SiteCache:
     about, arrays = columns
     index = index_of(arrays, about["grid"])
     _require(arrays["rows"].ndim == 2 and arrays["rows"].shape[1] == 7, "rows")
@@ -191,26 +171,28 @@ def _cache_of(columns: ColumnSet) -> SiteCache:
     return SiteCache(index, fenced, _whole(about["whole"], arrays))
 
 
-def index_of(arrays: Arrays, grid: Mapping[str, Any]) -> OutlineIndex:
+def index_of(arrays: Arrays, grid: Mapping[str, Any]) -> window_index.OutlineIndex:
     """Return the index that ``arrays`` hold; ``grid`` is what is said of its grid.
 
     :raises ValueError: naming what is wrong, or KeyError for a column that is missing.
     """
-    notes = OutlineNotes(
-        Texts(arrays["note_text"], arrays["note_offsets"]),
+    notes = window_index.OutlineNotes(
+        column_file.Texts(arrays["note_text"], arrays["note_offsets"]),
         arrays["note_low"],
         arrays["note_high"],
         arrays["note_everywhere"],
     )
-    return OutlineIndex(_outlines(arrays), arrays["rows"], _grid(grid, arrays, "grid"), notes)
+    return window_index.OutlineIndex(_outlines(arrays), arrays["rows"], _grid(grid, arrays, "grid"), notes)
 
 
-def parts_of(text: NDArray[Any], groups: Iterable[Sequence[Any]]) -> Iterator[GroupText]:
+def parts_of(text: NDArray[Any], groups: Iterable[Sequence[Any]]) -> Iterator[window_index.GroupText]:
     """Yield the parts of ``text``, each of a group and so many bytes."""
     end = 0
     for group, length in groups:
         end += length
-        yield GroupText(group, text[end - length : end].tobytes().decode("utf-8", HALVES))
+        yield window_index.GroupText(
+            group, text[end - length : end].tobytes().decode("utf-8", column_file.HALVES)
+        )
 
 
 def _whole(about: Mapping[str, Any], arrays: Arrays) -> WholeMap:
@@ -230,7 +212,7 @@ def _whole(about: Mapping[str, Any], arrays: Arrays) -> WholeMap:
 def _outlines(arrays: Arrays) -> Outlines:
     extras = None
     if "ext_codes" in arrays:
-        extras = CodedExtras(_decoded("ext", arrays), lambda text: extras_of(text, CACHE_FILE))
+        extras = column_file.CodedExtras(_decoded("ext", arrays), lambda text: extras_of(text, CACHE_FILE))
     outlines = Outlines(
         coordinates=arrays["coordinates"],
         offsets=arrays["offsets"],
@@ -239,7 +221,7 @@ def _outlines(arrays: Arrays) -> Outlines:
         height=arrays["height"],
         outdoor=arrays["outdoor"],
         semantics=_decoded("semantics", arrays),
-        source=Texts(arrays["source_text"], arrays["source_offsets"]),
+        source=column_file.Texts(arrays["source_text"], arrays["source_offsets"]),
         base=arrays.get("base"),
         ext=extras,
     )
@@ -252,16 +234,18 @@ def _outlines(arrays: Arrays) -> Outlines:
     return outlines
 
 
-def _grid(about: Mapping[str, Any], arrays: Arrays, name: str) -> BoxGrid:
+def _grid(about: Mapping[str, Any], arrays: Arrays, name: str) -> window_index.BoxGrid:
     keys, starts = arrays[f"{name}_keys"], arrays[f"{name}_starts"]
     _require(len(starts) == len(keys) + 1, f"{name}_starts")
     origin = [float(edge) for edge in about["origin"]]
-    return BoxGrid(GridCells(keys, starts, origin, int(about["placed"]), tuple(map(int, about["levels"]))))
+    return window_index.BoxGrid(
+        window_index.GridCells(keys, starts, origin, int(about["placed"]), tuple(map(int, about["levels"])))
+    )
 
 
-def _decoded(name: str, arrays: Arrays) -> CodedTexts:
-    table = Texts(arrays[f"{name}_text"], arrays[f"{name}_offsets"])
-    return CodedTexts(table, arrays[f"{name}_codes"])
+def _decoded(name: str, arrays: Arrays) -> column_file.CodedTexts:
+    table = column_file.Texts(arrays[f"{name}_text"], arrays[f"{name}_offsets"])
+    return column_file.CodedTexts(table, arrays[f"{name}_codes"])
 
 
 def _require(fine: bool | np.bool_, column: str) -> None:
@@ -287,7 +271,7 @@ class CacheWriter:
         self._folder, self._frame = folder, frame
         self._waiting: list[Outlines] = []
         self._points = 0
-        self._columns = ColumnFiles(folder)
+        self._columns = column_file.ColumnFiles(folder)
         self._outlines = OutlineColumns(self._columns)
         self._notes = NoteColumns(folder)
         self._segments = CellSorting(folder, "segments")
@@ -307,7 +291,7 @@ class CacheWriter:
         for some in _pieces(outlines):
             self._waiting.append(some)
             self._points += len(some.coordinates) + len(some)
-            if self._points >= AT_ONCE:
+            if self._points >= column_file.AT_ONCE:
                 self._add_waiting()
 
     def write(self, file: Path, geopackage: Path, publication: Publication, head: str, most: int) -> None:
@@ -333,7 +317,9 @@ class CacheWriter:
                 "whole": whole,
             }
             made = self._columns.all()
-            write_columns(file, about, {name: made[name] for name in CACHE_COLUMNS if name in made})
+            column_file.write_columns(
+                file, about, {name: made[name] for name in CACHE_COLUMNS if name in made}
+            )
 
     def remove(self) -> None:
         """Delete what was kept; nothing may be added or written any more."""
@@ -354,11 +340,13 @@ class CacheWriter:
         segments = oriented_segments(found.outlines, found.usable)
         rows = rows_of(segments, found.outlines.height, (self._count, self._last_number))
         low, high = corners_of_rows(rows)
-        self._segments.add(low, levels_of(low, high), rows)
+        self._segments.add(low, window_index.levels_of(low, high), rows)
         if len(segments.number):
             self._last_number += float(segments.number[-1])
         groups, low, high = fenced_boxes(found.outlines)
-        self._fences.add(low, levels_of(low, high), np.column_stack([groups + self._count, low, high]))
+        self._fences.add(
+            low, window_index.levels_of(low, high), np.column_stack([groups + self._count, low, high])
+        )
         self._count += len(outlines)
 
     def _sort_fences(self) -> dict[str, Any]:
@@ -378,9 +366,11 @@ class CacheWriter:
         columns.remove("fences")
         return grid
 
-    def _add_whole(self, index: OutlineIndex, bounds: Border, head: str, most: int) -> dict[str, Any]:
+    def _add_whole(
+        self, index: window_index.OutlineIndex, bounds: Border, head: str, most: int
+    ) -> dict[str, Any]:
         """Return what is said of the map of the whole site, whose columns are added where it is small."""
-        size, is_estimate, groups = size_in_binary(index, bounds), True, []
+        size, is_estimate, groups = window_index.size_in_binary(index, bounds), True, []
         if size <= SURELY_TOO_LARGE * most:
             groups = self._add_text(index.outlines, bounds)
             content = self._encoded(head, groups)
@@ -393,7 +383,7 @@ class CacheWriter:
     def _add_text(self, outlines: Outlines, bounds: Border) -> list[list[Any]]:
         """Add the text of the map, and return the group of each of its parts and how many bytes that has."""
         column, groups = self._columns.make("whole_text", np.uint8), []
-        for part in group_texts(outlines, bounds):
+        for part in window_index.group_texts(outlines, bounds):
             text, lengths = bytes_of_texts([part.text])
             column.append(text)
             groups.append([part.group, int(lengths[0])])
@@ -414,7 +404,7 @@ class CacheWriter:
 
 def _pieces(outlines: Outlines) -> Iterator[Outlines]:
     """Yield ``outlines``, many of them some at a time."""
-    if len(outlines.coordinates) <= AT_ONCE:
+    if len(outlines.coordinates) <= column_file.AT_ONCE:
         yield outlines
         return
     for first, last in row_spans(outlines, _OBSTACLES):

@@ -13,26 +13,15 @@ from ..errors import LayerError
 from ..roads.centrelines import DRAWN, GENERATED, Surface
 from ..robotmap.model import ShapeType
 from ..robotmap.outlines import OutlineRow, Outlines, is_closed
+from . import geopackage
 from .frame import Points, SiteFrame
-from .geopackage import (
-    CENTRELINES,
-    OBSTACLES,
-    SURFACES,
-    Area,
-    Centreline,
-    Layer,
-    LayerSpec,
-    extras_of,
-    extras_text,
-    layer_of,
-)
 
 # --- Obstacle outlines as features of the layer ``obstacles``, and back ---
 
 _RINGS = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
 
 
-def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> Layer:
+def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> geopackage.Layer:
     """Return ``outlines`` as features in the site CRS.
 
     A courtyard becomes a hole of the ring before it; a flight of stairs one multi line string of risers.
@@ -41,12 +30,12 @@ def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> Layer:
         risers are not pairs of points.
     """
     geometries: list[Any] = []
-    columns: dict[str, list[Any]] = {name: [] for name in OBSTACLES.fields}
+    columns: dict[str, list[Any]] = {name: [] for name in geopackage.OBSTACLES.fields}
     for first, last in outline_groups(outlines):
         geometries.append(_geometry(outlines, first, last, frame))
         for name, value in obstacle_values(outlines.row(first)).items():
             columns[name].append(value)
-    return layer_of(OBSTACLES, geometries, columns)
+    return geopackage.layer_of(geopackage.OBSTACLES, geometries, columns)
 
 
 def obstacle_values(row: OutlineRow) -> dict[str, Any]:
@@ -58,11 +47,11 @@ def obstacle_values(row: OutlineRow) -> dict[str, Any]:
         "outdoor": row.outdoor,
         "shape_type": int(row.shape_type),
         "base_m": row.base,
-        "ext": extras_text(row.ext),
+        "ext": geopackage.extras_text(row.ext),
     }
 
 
-def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
+def outlines_of(layer: geopackage.Layer, frame: SiteFrame, place: str) -> Outlines:
     """Return the outlines in ``layer``; ``place`` is its file, for messages.
 
     :raises LayerError: naming the feature whose geometry, shape type or extras are not those of an obstacle.
@@ -72,12 +61,12 @@ def outlines_of(layer: Layer, frame: SiteFrame, place: str) -> Outlines:
     known: dict[str | None, dict[str, str]] = {}
     for k in range(len(layer)):
         shape_type = int(layer.values["shape_type"][k])
-        where = f"{place}, layer {OBSTACLES.name}, feature {layer.ids[k]}"
+        where = f"{place}, layer {geopackage.OBSTACLES.name}, feature {layer.ids[k]}"
         if shape_type not in {int(member) for member in ShapeType}:
             raise LayerError(f"{where}: shape_type is {shape_type}; write 1 to 6 (paper 1, section II).")
         text = layer.values["ext"][k]
         if text not in known:
-            known[text] = extras_of(text, where)
+            known[text] = geopackage.extras_of(text, where)
         for points, courtyard in _lines(layer.geometries[k], ShapeType(shape_type), where):
             rows.append(
                 OutlineRow(
@@ -210,7 +199,7 @@ def _parts(geometry: Any) -> Any:
 # --- Centrelines, road surfaces and keepouts as features of their layers, and back ---
 
 
-def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Layer:
+def centreline_layer(centrelines: Sequence[geopackage.Centreline], frame: SiteFrame) -> geopackage.Layer:
     """Return ``centrelines`` as line strings in the site CRS.
 
     :raises LayerError: naming the first centreline with fewer than two points.
@@ -220,8 +209,8 @@ def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Lay
     for k, line in enumerate(centrelines, start=1):
         if len(line.points) < 2:
             raise LayerError(f"Centreline {k} has {len(line.points)} point(s): a road needs two or more.")
-    return layer_of(
-        CENTRELINES,
+    return geopackage.layer_of(
+        geopackage.CENTRELINES,
         [shapely.LineString(frame.to_crs(line.points)) for line in centrelines],
         {
             "width_m": [line.width_m for line in centrelines],
@@ -234,7 +223,9 @@ def centreline_layer(centrelines: Sequence[Centreline], frame: SiteFrame) -> Lay
     )
 
 
-def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreline, ...]:
+def centrelines_of(
+    layer: geopackage.Layer, frame: SiteFrame, place: str
+) -> tuple[geopackage.Centreline, ...]:
     """Return the centrelines in ``layer``; ``place`` is its file, for messages.
 
     :raises LayerError: naming a road whose width is not above 0 or that is not a line.
@@ -250,7 +241,7 @@ def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreli
             )
     columns = [layer.values[name] for name in layer.spec.fields]
     return tuple(
-        Centreline(
+        geopackage.Centreline(
             frame.to_site(np.asarray(geometry.coords)[:, :2]),
             width_m=float(width),
             surface=surface or "",
@@ -265,14 +256,16 @@ def centrelines_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Centreli
     )
 
 
-def area_layer(spec: LayerSpec, areas: Sequence[Area], frame: SiteFrame) -> Layer:
+def area_layer(
+    spec: geopackage.LayerSpec, areas: Sequence[geopackage.Area], frame: SiteFrame
+) -> geopackage.Layer:
     """Return ``areas`` as polygons in the site CRS, each label in the one field of ``spec``."""
     (label,) = spec.fields
     polygons = [_polygon(area.rings, frame) for area in areas]
-    return layer_of(spec, polygons, {label: [area.label for area in areas]})
+    return geopackage.layer_of(spec, polygons, {label: [area.label for area in areas]})
 
 
-def areas_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Area, ...]:
+def areas_of(layer: geopackage.Layer, frame: SiteFrame, place: str) -> tuple[geopackage.Area, ...]:
     """Return the polygons in ``layer``; ``place`` is its file, for messages.
 
     :raises LayerError: naming a feature that is not a polygon.
@@ -280,15 +273,15 @@ def areas_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Area, ...]:
     _require(layer, "Polygon", place)
     (label,) = layer.spec.fields
     return tuple(
-        Area(tuple(frame.to_site(ring) for ring in _rings(geometry)), text or "")
+        geopackage.Area(tuple(frame.to_site(ring) for ring in _rings(geometry)), text or "")
         for geometry, text in zip(layer.geometries, layer.values[label], strict=True)
     )
 
 
-def surface_layer(surfaces: Sequence[Surface], frame: SiteFrame) -> Layer:
+def surface_layer(surfaces: Sequence[Surface], frame: SiteFrame) -> geopackage.Layer:
     """Return ``surfaces`` as polygons in the site CRS."""
-    return layer_of(
-        SURFACES,
+    return geopackage.layer_of(
+        geopackage.SURFACES,
         [_polygon(one.rings, frame) for one in surfaces],
         {
             "surface": [one.label for one in surfaces],
@@ -298,7 +291,7 @@ def surface_layer(surfaces: Sequence[Surface], frame: SiteFrame) -> Layer:
     )
 
 
-def surfaces_of(layer: Layer, frame: SiteFrame, place: str) -> tuple[Surface, ...]:
+def surfaces_of(layer: geopackage.Layer, frame: SiteFrame, place: str) -> tuple[Surface, ...]:
     """Return the road surfaces in ``layer``; ``place`` is its file, for messages.
 
     :raises LayerError: naming a feature that is not a polygon.
@@ -327,7 +320,7 @@ def _rings(polygon: Any) -> list[Any]:
     return [np.asarray(ring.coords)[:, :2] for ring in (polygon.exterior, *polygon.interiors)]
 
 
-def _require(layer: Layer, kind: str, place: str) -> None:
+def _require(layer: geopackage.Layer, kind: str, place: str) -> None:
     for feature, geometry in zip(layer.ids, layer.geometries, strict=True):
         if geometry.geom_type != kind:
             raise LayerError(

@@ -22,6 +22,7 @@ from ..storage.database import Database, to_its_end
 from ..storage.owner_fence import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from ..storage.repositories import commands
 from ..storage.repositories.commands import StoredCommand
+from . import persistence
 from .active_command import (
     ABORTED,
     GATEWAY,
@@ -33,20 +34,6 @@ from .active_command import (
     ended_by,
     given_up_by,
     restart_commands,
-)
-from .persistence import (
-    Also,
-    NamedLocks,
-    RobotLocks,
-    UnstoredAborts,
-    insert_commands,
-    opened,
-    write_acknowledged,
-    write_again,
-    write_driven,
-    write_late,
-    write_recalls,
-    write_steps,
 )
 from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
 
@@ -89,10 +76,10 @@ class CommandService(CommandReader):
         self._clock = clock
         self._events = events
         self._fence = fence
-        self._held = RobotLocks(database, self, fence)
-        self._turns = NamedLocks()
+        self._held = persistence.RobotLocks(database, self, fence)
+        self._turns = persistence.NamedLocks()
         self._late: set[tuple[str, int]] = set()
-        self._unstored = UnstoredAborts()
+        self._unstored = persistence.UnstoredAborts()
 
     def set_tolerance(self, tolerance: float) -> None:
         """Let a target count as reached within ``tolerance`` metres from now on."""
@@ -117,7 +104,9 @@ class CommandService(CommandReader):
             self._unstored.drop(robot)
             self._late = {late for late in self._late if late[0] != robot}
 
-    async def issue(self, orders: list[CommandOrder], also: Also | None = None) -> list[CommandReport]:
+    async def issue(
+        self, orders: list[CommandOrder], also: persistence.Also | None = None
+    ) -> list[CommandReport]:
         """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
 
         A command whose id is known already is returned as it stands and changes nothing. An Abort that the
@@ -279,16 +268,16 @@ class CommandService(CommandReader):
             if (robot := self.robot_of(command)) is not None:
                 by_robot.setdefault(robot, {})[command] = metres
         try:
-            await self._held.run(by_robot, write_driven, driven)
+            await self._held.run(by_robot, persistence.write_driven, driven)
         except FencedError:
             for robot, theirs in by_robot.items():
                 with contextlib.suppress(FencedError):
-                    await self._held.run([robot], write_driven, theirs)
+                    await self._held.run([robot], persistence.write_driven, theirs)
         self._open.note_progress(driven)
 
     # --- what has to be done to its end, with the robots' locks held --------------------------------------
 
-    async def _issue(self, orders: list[CommandOrder], also: Also | None) -> list[CommandReport]:
+    async def _issue(self, orders: list[CommandOrder], also: persistence.Also | None) -> list[CommandReport]:
         robots = {order.robot for order in orders}
         async with self._turns.of(() if all(order.is_emergency for order in orders) else robots):
             # What takes long first: nothing may come between the checks and the transaction. And before the
@@ -320,11 +309,13 @@ class CommandService(CommandReader):
             self._unstored.discard(order)
 
     async def _store(
-        self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: Also | None
+        self, orders: list[CommandOrder], found: Sequence[RefusedError | None], also: persistence.Also | None
     ) -> list[CommandReport]:
         now = self._clock.time()
         drafts = [self.drafting.draft(order, fault, now) for order, fault in zip(orders, found, strict=True)]
-        issued, changed = await self._held.run([o.robot for o in orders], insert_commands, drafts, also)
+        issued, changed = await self._held.run(
+            [o.robot for o in orders], persistence.insert_commands, drafts, also
+        )
         for command in changed:
             self._apply(command)
         for command in issued:
@@ -360,7 +351,7 @@ class CommandService(CommandReader):
                 command.acknowledgement_waits = False
             steps = [] if command is None else self._answered(command, ack)
             # One transaction: a message that is gone from SA with its step unsaved would be lost.
-            await self._held.run([robot], write_acknowledged, robot, ack.id, steps)
+            await self._held.run([robot], persistence.write_acknowledged, robot, ack.id, steps)
             for step in steps:
                 self._apply(step)
             return command.written_at if command is not None and command.is_on_its_way else None
@@ -368,7 +359,7 @@ class CommandService(CommandReader):
     async def _note_late(self, robot: str, sa_id: int) -> None:
         """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
         try:
-            report = await self._held.run([robot], write_late, robot, sa_id, self._clock.time())
+            report = await self._held.run([robot], persistence.write_late, robot, sa_id, self._clock.time())
         except DataRefusedError:
             raise
         except StoreError:
@@ -411,7 +402,9 @@ class CommandService(CommandReader):
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
             again = anew.again, anew.ended
-            for command in await self._held.run([robot], write_again, robot, welcome, *again, note_run):
+            for command in await self._held.run(
+                [robot], persistence.write_again, robot, welcome, *again, note_run
+            ):
                 self._apply(command)
             self._events.publish(OutboxChanged(robot))
 
@@ -423,7 +416,7 @@ class CommandService(CommandReader):
             recalls = [Recall(c, c.step(CommandState.EXPIRED, now, GATEWAY, reason)) for c in late]
             if recalls:
                 robots = [recall.queued.report.robot for recall in recalls]
-                for command in await self._held.run(robots, write_recalls, recalls):
+                for command in await self._held.run(robots, persistence.write_recalls, recalls):
                     self._apply(command)
 
     async def _give_up(self, robot: str, reason: str) -> None:
@@ -441,7 +434,7 @@ class CommandService(CommandReader):
 
     def _restored(self, stored: StoredCommand) -> ActiveCommand:
         seen = self._robots.pose(stored.report.robot)
-        command = dataclasses.replace(opened(stored), handed=seen or NOWHERE, out_of_sight=True)
+        command = dataclasses.replace(persistence.opened(stored), handed=seen or NOWHERE, out_of_sight=True)
         if stored.report.state is CommandState.ACKNOWLEDGED:
             command.arrival = arrival_judge(
                 command.message, self._tolerance, driven=stored.driven, under_way=True, handed=seen
@@ -450,7 +443,7 @@ class CommandService(CommandReader):
 
     async def _save(self, steps: list[ActiveCommand]) -> None:
         if steps:
-            await self._held.run([step.report.robot for step in steps], write_steps, steps)
+            await self._held.run([step.report.robot for step in steps], persistence.write_steps, steps)
             for command in steps:
                 self._apply(command)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import functools
 import gzip
 import hashlib
 import http
@@ -11,6 +12,7 @@ import json
 import math
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from importlib import resources
 from typing import Any, NamedTuple
 from urllib.parse import urlsplit
@@ -20,10 +22,8 @@ from numpy.typing import NDArray
 from websockets.http11 import Request, Response
 
 from ...core.errors import CrsError
-from ...core.sites.frame import Points, SiteFrame
-from ...core.sites.settings import SiteBounds
+from ...core.sites.frame import Points, SiteBounds, SiteFrame, lonlat_of
 from ...core.sites.site import Site
-from ...core.sites.transforms import lonlat_of
 from ..auth.port import http_response
 from ..monitoring import gateway_version
 from ..site.site_maps import SiteMaps
@@ -44,11 +44,19 @@ _WORTH_PACKING = 1000
 _HOST = re.compile(r"[A-Za-z0-9.:\[\]-]+")
 
 
-class _Content(NamedTuple):
+@dataclass
+class _Content:
     kind: str
     plain: bytes
-    packed: bytes
-    tag: str
+
+    @functools.cached_property
+    def packed(self) -> bytes:
+        """The same compressed: for whoever asks first, not for those who start a gateway."""
+        return gzip.compress(self.plain, mtime=0)
+
+    @functools.cached_property
+    def tag(self) -> str:
+        return f'"{hashlib.sha256(self.plain).hexdigest()[:16]}"'
 
 
 class FieldPage:
@@ -57,7 +65,7 @@ class FieldPage:
     def __init__(self, maps: SiteMaps) -> None:
         self._maps = maps
         self._files = {
-            f"{PAGE}/{file.name}": _content(KINDS[_suffix(file.name)], _with_version(file.read_bytes()))
+            f"{PAGE}/{file.name}": _Content(KINDS[_suffix(file.name)], _with_version(file.read_bytes()))
             for file in (resources.files(__package__) / "assets").iterdir()
             if _suffix(file.name) in KINDS
         }
@@ -100,7 +108,7 @@ class FieldPage:
             "tiles": tiles if field.tiles else None,
             "gateway": gateway_version(),
         }
-        return _content("application/json", json.dumps(content, separators=(",", ":")).encode())
+        return _Content("application/json", json.dumps(content, separators=(",", ":")).encode())
 
     def _answer(self, request: Request, content: _Content) -> Response:
         headers = [
@@ -145,11 +153,6 @@ def origin_of(url: str) -> str:
     """Return scheme, host and port of the address of tiles; empty where it has none."""
     parts = urlsplit(url)
     return f"{parts.scheme}://{parts.netloc}" if parts.netloc else ""
-
-
-def _content(kind: str, plain: bytes) -> _Content:
-    tag = f'"{hashlib.sha256(plain).hexdigest()[:16]}"'
-    return _Content(kind, plain, gzip.compress(plain, mtime=0), tag)
 
 
 def _with_version(content: bytes) -> bytes:

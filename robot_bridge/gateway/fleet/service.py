@@ -36,17 +36,9 @@ from ..cluster.cluster import Cluster
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
+from ..model import events
 from ..model.arrival import Planner, StraightPlanner
 from ..model.clocks import ClockStep
-from ..model.events import (
-    CommandChanged,
-    EventBus,
-    Listeners,
-    ObservationChanged,
-    OutboxChanged,
-    QueueChanged,
-    RobotReturned,
-)
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring import Counters, Steps
@@ -67,9 +59,8 @@ from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
 from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
-from .registration import Decommissioning, Registration
+from .registration import Decommissioning, Registration, Takeover
 from .robot_answers import MapSender, RobotAnswers
-from .takeover import Takeover
 
 log = logging.getLogger(__name__)
 
@@ -96,9 +87,9 @@ class Fleet:
         self._database = database
         self._clock = clock
         self._cluster = cluster
-        self.listeners = Listeners()
+        self.listeners = events.Listeners()
         """the operators' sessions, told what happens."""
-        self.events = EventBus()
+        self.events = events.EventBus()
         self.robots = Robots(site.report.stale_after, site.report.lost_after, self.events)
         self.links = LinkWatch(self.robots, self.listeners)
         self.snapshots = Snapshots(self.robots, clock)
@@ -190,25 +181,25 @@ class Fleet:
     def _subscribe(self) -> None:
         """Say who is told of what; each is told in this order, whatever becomes of those before."""
         subscribe = self.events.subscribe
-        subscribe(OutboxChanged, lambda event: self.mailboxes.changed(event.robot))
-        subscribe(CommandChanged, self._assign)
-        subscribe(CommandChanged, lambda event: self.emergency.note_step(event.report))
-        subscribe(CommandChanged, lambda event: self.driving.note_step(event.report))
-        subscribe(CommandChanged, lambda event: self.roads.note_step(event.report))
-        subscribe(CommandChanged, self._announce_command)
-        subscribe(QueueChanged, lambda event: self.driving.schedule(event.robot))
-        subscribe(RobotReturned, lambda event: self.driving.note_return(event.robot, event.away_s))
-        subscribe(ObservationChanged, self._announce_observation)
+        subscribe(events.OutboxChanged, lambda event: self.mailboxes.changed(event.robot))
+        subscribe(events.CommandChanged, self._assign)
+        subscribe(events.CommandChanged, lambda event: self.emergency.note_step(event.report))
+        subscribe(events.CommandChanged, lambda event: self.driving.note_step(event.report))
+        subscribe(events.CommandChanged, lambda event: self.roads.note_step(event.report))
+        subscribe(events.CommandChanged, self._announce_command)
+        subscribe(events.QueueChanged, lambda event: self.driving.schedule(event.robot))
+        subscribe(events.RobotReturned, lambda event: self.driving.note_return(event.robot, event.away_s))
+        subscribe(events.ObservationChanged, self._announce_observation)
 
-    def _assign(self, event: CommandChanged) -> None:
+    def _assign(self, event: events.CommandChanged) -> None:
         robot = event.report.robot
         self.robots.assign(robot, self._book.busy_with(robot))
 
-    def _announce_command(self, event: CommandChanged) -> None:
+    def _announce_command(self, event: events.CommandChanged) -> None:
         self.tally.steps[event.report.state.value] += 1
         self.listeners.announce("command", event.report.command, to_json(event.report))
 
-    def _announce_observation(self, event: ObservationChanged) -> None:
+    def _announce_observation(self, event: events.ObservationChanged) -> None:
         self.listeners.announce("observation", str(event.report.observation), to_json(event.report))
 
     @property

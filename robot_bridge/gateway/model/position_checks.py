@@ -8,7 +8,8 @@ from typing import Literal
 
 from ...core.messages.robots import SendGPS, SendPos
 from ...core.messages.validation import SPEED
-from ...core.sites.settings import SettingsSource, SiteBounds
+from ...core.sites.frame import SiteBounds
+from ...core.sites.settings import SettingsSource
 from .robots import AcceptedArea, Robot
 
 # --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was

@@ -28,16 +28,8 @@ from ..commands.active_command import GATEWAY
 from ..queues.registry import QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.road_planning import RoadPlanner
+from . import model
 from .following import FollowedPlans
-from .model import (
-    LONGEST_PAUSE_REASON,
-    FollowedPlan,
-    PlanTerms,
-    check_proposal,
-    problem_in_words,
-    stops_of,
-    superseded,
-)
 from .persistence import save_plan
 
 log = logging.getLogger(__name__)
@@ -53,7 +45,7 @@ PATIENCE = 5.0
 class ReplanGround:
     """What plans are made on: ``placed`` cones, robots that are ``standing`` by name, roads; metres."""
 
-    terms: PlanTerms
+    terms: model.PlanTerms
     placed: list[Place]
     standing: Mapping[str, Place]
     planner: RoadPlanner | None
@@ -143,7 +135,7 @@ class Replanner:
         self._making: dict[str, Replanning] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
-    async def hold(self, one: FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
+    async def hold(self, one: model.FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
         """Hold the robots of a plan and begin to plan what is left.
 
         :raises RefusedError: when that is under way, or no robot is left; StoreError.
@@ -156,11 +148,13 @@ class Replanner:
             raise RefusedError(
                 f"no robot of plan {plan.name!r} is left to take over; connect one, and plan anew"
             )
-        why = "plan of what is left" + (f": {problem_in_words(one.problem)}" if one.problem else "")
+        why = "plan of what is left" + (f": {model.problem_in_words(one.problem)}" if one.problem else "")
         held = {robot: at for robot, at in plan.held.items() if robot in self._plans.still_held(plan)}
         for robot in staying:
             if self._plans.queue(robot).running or self._plans.has_failed(robot):
-                report = await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
+                report = await self._editor.pause(
+                    PauseQueue(robot, why[: model.LONGEST_PAUSE_REASON]), operator
+                )
                 held[robot] = report.at
         # Up to its pause a robot may have begun a cone: it is to be counted as that robot's.
         await self._plans.follow(one)
@@ -169,7 +163,7 @@ class Replanner:
         self.begin(one, try_again=try_again)
         return begun
 
-    def begin(self, one: FollowedPlan, *, try_again: bool) -> None:
+    def begin(self, one: model.FollowedPlan, *, try_again: bool) -> None:
         """Begin to plan what is left of a plan that is stored as being planned again."""
         plan, robots = one.plan, self._context.robots
         places = {
@@ -196,16 +190,16 @@ class Replanner:
         """Let nothing come of the plan of what is left that is in the making."""
         self._making.pop(plan, None)
 
-    async def confirm(self, one: FollowedPlan, operator: str, override: str | None) -> PlanReport:
+    async def confirm(self, one: model.FollowedPlan, operator: str, override: str | None) -> PlanReport:
         """Enter the tasks of the proposed plan in place of what is left.
 
         :raises RefusedError: where there is no proposal, or its tasks cannot be entered; StoreError.
         """
         plan, progress = one.plan, one.progress
-        proposal = check_proposal(plan, progress)
+        proposal = model.check_proposal(plan, progress)
         tasks = tasks_of(proposal, plan.name, plan.terms.cones, under_way=current_stops(progress))
         away = [one.robot.id for one in proposal.robots if one.lost and one.robot.id in plan.staying]
-        stops, gone = stops_of(proposal, tasks), superseded(progress, away)
+        stops, gone = model.stops_of(proposal, tasks), model.superseded(progress, away)
         after = plan.changed(
             PlanState.DRIVEN,
             operator,
@@ -241,7 +235,7 @@ class Replanner:
         self._making.clear()
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def _make(self, one: FollowedPlan, making: Replanning, ground: ReplanGround) -> None:
+    async def _make(self, one: model.FollowedPlan, making: Replanning, ground: ReplanGround) -> None:
         try:
             document = await asyncio.to_thread(making.run)
             meetings = await asyncio.to_thread(count_meetings, document, ground)
@@ -256,7 +250,7 @@ class Replanner:
             await self._made(one, making, _Proposal(document, meetings, closed), None)
 
     async def _made(
-        self, one: FollowedPlan, making: Replanning, proposal: _Proposal | None, why: str | None
+        self, one: model.FollowedPlan, making: Replanning, proposal: _Proposal | None, why: str | None
     ) -> None:
         try:
             async with self._plans.lock:
@@ -274,7 +268,7 @@ class Replanner:
             # It is stored as being planned again: it is, when the gateway starts next, or somebody asks.
             log.error("plan %s: %s", one.plan.name, error)
 
-    async def _propose(self, one: FollowedPlan, proposal: _Proposal) -> None:
+    async def _propose(self, one: model.FollowedPlan, proposal: _Proposal) -> None:
         """Store a proposal, and confirm it where that was chosen and nothing speaks against it."""
         one.meetings, one.closed = proposal.meetings, proposal.closed
         await self._plans.change(

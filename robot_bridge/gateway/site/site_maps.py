@@ -26,9 +26,9 @@ from ...core.robotmap.parametric_shapes import template
 from ...core.robotmap.text_format import write_obstacles
 from ...core.robotmap.window_index import GroupText, OutlineIndex, merged
 from ...core.sites.fences import FencedPolygons, Fences
+from ...core.sites.frame import CrsTransform, GpsTransform, is_near
 from ...core.sites.settings import SiteSettings
 from ...core.sites.site import Site
-from ...core.sites.transforms import CrsTransform, GpsTransform, is_near
 
 # --- What robots saw and operators accepted: new objects on the maps, and what is not there any more off
 
@@ -184,7 +184,8 @@ def _encoded(drawn: MapContent) -> bytes | None:
     content = None if drawn.objects or drawn.objects.missing else site.whole_binary()
     if content is not None:
         return content if len(content) <= limit else None
-    if site.is_too_large(limit):
+    # The size of a small one is known sooner than estimated.
+    if site.segment_count > AT_ONCE and site.is_too_large(limit):
         return None
     try:
         content = encode(_whole(drawn))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
@@ -180,6 +180,8 @@ def _touching(boxes: Floats) -> tuple[Ints, Ints]:
 # Exact for robots that drive their ways as planned: between two points of time both drive straight at one
 # speed, so that the distance between them squared is a parabola.
 
+Span = tuple[float, float]
+"""When a conflict begins and ends (inf: never), s."""
 HEAD_ON, CROSSING, FOLLOWING, STANDING = "head-on", "crossing", "following", "standing"
 
 _ALIKE = math.cos(math.radians(45.0))
@@ -249,30 +251,46 @@ class OtherMovements:
 
     def conflicts(self, movement: Movement) -> list[Conflict]:
         """Return the conflicts of ``movement`` with the others, soonest first."""
+        found: list[Conflict] = []
+        for other, begins, ends in self._near(movement):
+            found += _conflicts_between(movement, other, self._margin, self._now, begins, ends)
+        return sorted(found, key=lambda one: one.begins)
+
+    def spans(self, movement: Movement) -> list[Span]:
+        """Return when ``movement`` is too near to each of the others: of its conflicts the times alone."""
+        found: list[Span] = []
+        for other, begins, ends in self._near(movement):
+            found += _spans_between(movement, other, self._margin, self._now, begins, ends)
+        return found
+
+    def _near(self, movement: Movement) -> Iterator[tuple[Movement, float, float]]:
+        """Yield whom ``movement`` may come near to, and between which two times."""
         box, boxes = self._windows.boxes(movement, movement.radius), self._boxes
         meet = (boxes[:, :, :2] <= box[:, 2:]) & (boxes[:, :, 2:] >= box[:, :2])
         touch: NDArray[np.bool_] = np.all(meet, axis=2)
-        found: list[Conflict] = []
         for number in np.flatnonzero(touch.any(axis=1)).tolist():
             windows = np.flatnonzero(touch[number])
-            span = self._windows.span(int(windows[0]), int(windows[-1]))
-            found += _conflicts_between(movement, self._others[number], self._margin, self._now, *span)
-        return sorted(found, key=lambda one: one.begins)
+            yield self._others[number], *self._windows.span(int(windows[0]), int(windows[-1]))
 
 
 def _conflicts_between(
     one: Movement, two: Movement, margin: float, now: float, begins: float, ends: float
 ) -> list[Conflict]:
     """Return the conflicts from ``now`` on; none of them reaches beyond ``begins`` and ``ends``."""
-    if one.stands and two.stands:
-        return []
     if one.stands:
         one, two = two, one
+    return [_conflict(one, two, *span) for span in _spans_between(one, two, margin, now, begins, ends)]
+
+
+def _spans_between(
+    one: Movement, two: Movement, margin: float, now: float, begins: float, ends: float
+) -> list[Span]:
+    """Return the times of the conflicts from ``now`` on, each from when to when, the first first."""
+    if one.stands and two.stands:
+        return []
     limit = one.radius + two.radius + margin - _ROOM
     times = _times(one, two, now, begins, ends)
-    apart = one.at(times) - two.at(times)
-    spans = _spans(times, apart, limit)
-    return [_conflict(one, two, *span) for span in _joined(spans)]
+    return _joined(_spans(times, one.at(times) - two.at(times), limit))
 
 
 def _times(one: Movement, two: Movement, now: float, begins: float, ends: float) -> Floats:
@@ -290,32 +308,31 @@ def _times(one: Movement, two: Movement, now: float, begins: float, ends: float)
     return within
 
 
-def _spans(times: Floats, apart: Floats, limit: float) -> list[tuple[float, float]]:
+def _spans(times: Floats, apart: Floats, limit: float) -> list[Span]:
     """Return when the way from one to the other, ``apart`` (n, 2) at ``times``, is shorter than ``limit``."""
-    begin, step = apart[:-1], np.diff(apart, axis=0)
+    begin, step = apart[:-1], apart[1:] - apart[:-1]
     a = (step * step).sum(axis=1)
     b = (begin * step).sum(axis=1)
     c = (begin * begin).sum(axis=1) - limit * limit
-    with np.errstate(divide="ignore", invalid="ignore"):
-        root = np.sqrt(b * b - a * c)
-        low, high = (-b - root) / a, (-b + root) / a
     # Where the distance does not change it is too short all the time or never.
-    still = a < 1e-18
-    low = np.where(still, np.where(c < 0, 0.0, np.inf), np.nan_to_num(low, nan=np.inf))
-    high = np.where(still, np.where(c < 0, 1.0, -np.inf), np.nan_to_num(high, nan=-np.inf))
-    low, high = np.maximum(low, 0.0), np.minimum(high, 1.0)
-    some = np.flatnonzero(high > low)
-    seconds = np.diff(times)
-    spans = [
-        (float(times[k] + low[k] * seconds[k]), float(times[k] + high[k] * seconds[k])) for k in some.tolist()
-    ]
+    still, square = a < 1e-18, b * b - a * c
+    spans: list[Span] = []
+    # Hardly ever are there any, so that these are calculated one by one.
+    for k in np.flatnonzero(np.where(still, c < 0, square > 0)).tolist():
+        low, high = 0.0, 1.0
+        if not still[k]:
+            root = math.sqrt(square[k])
+            low, high = max((-b[k] - root) / a[k], 0.0), min((-b[k] + root) / a[k], 1.0)
+        if high > low:
+            seconds = times[k + 1] - times[k]
+            spans.append((float(times[k] + low * seconds), float(times[k] + high * seconds)))
     if len(apart) and math.hypot(*apart[-1]) < limit:
         spans.append((float(times[-1]), math.inf))
     return spans
 
 
-def _joined(spans: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    joined: list[tuple[float, float]] = []
+def _joined(spans: list[Span]) -> list[Span]:
+    joined: list[Span] = []
     for begins, ends in spans:
         if joined and begins <= joined[-1][1] + 1e-6:
             joined[-1] = joined[-1][0], max(ends, joined[-1][1])

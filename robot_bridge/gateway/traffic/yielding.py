@@ -31,7 +31,7 @@ from ..storage.database import Database
 from ..storage.repositories import closures as stored
 from ..storage.repositories.closures import HoldRow
 from .closures import Detours
-from .conflicts import Movement, OtherMovements, conflicts_with, driving_movement
+from .conflicts import Movement, OtherMovements, Span, conflicts_with, driving_movement
 from .robot_paths import RobotPath, TrafficSnapshot, hold_report
 
 # --- Giving way: where and how long a robot waits so that others, who go on as they are, pass first ---
@@ -78,11 +78,12 @@ def yield_on_path(
         return YieldWait(movement, 0.0, 0.0)
     first = min(found, key=lambda one: one.begins)
     met = first.stations[0] if first.robot == movement.robot else first.stations[1]
+    unless_waiting = [(one.begins, one.ends) for one in found]
     best: YieldWait | None = None
     for station in _places(met):
-        wait = _wait_at(movement, station, around, longest)
-        if wait is not None and (best is None or wait.movement.ends < best.movement.ends - 1.0):
-            best = wait
+        # Elsewhere it waits only where it is on its way again a second earlier.
+        below = math.inf if best is None else best.seconds - 1.0
+        best = _wait_at(movement, station, around, unless_waiting, longest, below) or best
     return best
 
 
@@ -92,30 +93,41 @@ def _places(met: float) -> list[float]:
     return [*(place for place in places if place > 1e-6), 0.0]
 
 
-def _wait_at(movement: Movement, station: float, around: OtherMovements, longest: float) -> YieldWait | None:
-    """Return the wait at ``station`` metres, as short as can be within a tenth of a second or so."""
-    short, seconds = 0.0, 0.0
+def _wait_at(
+    movement: Movement,
+    station: float,
+    around: OtherMovements,
+    unless_waiting: list[Span],
+    longest: float,
+    below: float,
+) -> YieldWait | None:
+    """Return the wait at ``station`` metres, as short as can be within a tenth of a second or so.
+
+    ``unless_waiting`` are the times of the conflicts where it does not wait. None where no wait below
+    ``below`` seconds helps.
+    """
+    short, seconds, found = 0.0, 0.0, unless_waiting
     arrives = movement.time_at(station)
     # Once everybody stands nothing changes any more.
     longest = min(longest, around.ends - arrives + 2 * _STEP)
-    while True:
-        found = around.conflicts(movement.waiting(station, seconds))
-        if not found:
-            break
-        if any(math.isinf(one.ends) or one.begins < arrives + seconds for one in found):
+    while found:
+        if any(math.isinf(ends) or begins < arrives + seconds for begins, ends in found):
             # Nobody moves out of the way by being waited for, and here the robot is itself in the way.
             return None
         short = seconds
-        seconds += max(max(one.ends - one.begins for one in found) / 2, _STEP)
-        if seconds > longest:
+        seconds += max(max(ends - begins for begins, ends in found) / 2, _STEP)
+        if seconds > longest or short >= below:
             return None
+        found = around.spans(movement.waiting(station, seconds))
     for _ in range(_HALVINGS):
         middle = (short + seconds) / 2
-        if around.conflicts(movement.waiting(station, middle)):
+        if around.spans(movement.waiting(station, middle)):
             short = middle
         else:
             seconds = middle
-    return YieldWait(movement.waiting(station, seconds), station, seconds)
+        if short >= below:
+            return None
+    return YieldWait(movement.waiting(station, seconds), station, seconds) if seconds < below else None
 
 
 # --- The nearest free place that a standing robot can go to, off the ways of all others; no I/O ---
@@ -152,7 +164,7 @@ def yield_beside_path(
     around = OtherMovements(others, margin, now)
     for x, y in places[:MOST_TRIED].tolist():
         moving = driving_movement(robot.robot, [start, (x, y)], speed, now, robot.radius)
-        if not around.conflicts(moving.waiting(0.0, SETS_OUT_AFTER)):
+        if not around.spans(moving.waiting(0.0, SETS_OUT_AFTER)):
             return [start, (round(x, 3), round(y, 3))]
     return None
 

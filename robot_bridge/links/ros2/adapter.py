@@ -16,23 +16,11 @@ from ...core.messages.robots import SendGPS, SendPos, SetPath, SetPosEnd, SetPos
 from ..base.adapter import Adapter, Link
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings, read_settings
+from ..ros import messages
 from ..ros.adapter import RobotNotes, RosAdapter
 from ..ros.effects import Abilities, CancelGoals, PublishTask, RosAction, SendGoal
 from ..ros.errors import FaultError, RosError
 from ..ros.goals import GoalStatus, Statuses, feedback_text, missed_of, statuses_of
-from ..ros.messages import (
-    ACTIONS,
-    GET_MAP,
-    LATCHED,
-    READ,
-    SERVICES,
-    TRIGGER,
-    TWIST,
-    WRITTEN,
-    Outgoing,
-    Pose,
-    action_type,
-)
 from ..ros.robot import RosRobot
 from ..ros.sensing import Sensing
 from ..ros.settings import RobotSettings, check_robots
@@ -149,7 +137,7 @@ class DdsSubscriptions:
         if subscription is not None and subscription.offers == keys:
             return
         # Another node that publishes nonsense under the topic's name takes no robot's own away.
-        strange = [one for one in offered if type_from_dds(one.type_name) not in READ[kind]]
+        strange = [one for one in offered if type_from_dds(one.type_name) not in messages.READ[kind]]
         offered = [one for one in offered if one not in strange] or offered
         found = type_from_dds(offered[0].type_name)
         type_name = self._sensing.check_type(kind, topic, found, offered[0].type_name)
@@ -195,7 +183,7 @@ class DdsActions:
         settings: Ros2Settings,
         participant: Participant,
         types: Interfaces,
-        outgoing: Outgoing,
+        outgoing: messages.Outgoing,
         sensing: Sensing,
     ) -> None:
         self._robot = robot
@@ -218,14 +206,14 @@ class DdsActions:
     def connect(self, offers: Offers) -> None:
         """Meet the servers and listeners that are there now."""
         self.server = None
-        for action, setting in ACTIONS.items():
+        for action, setting in messages.ACTIONS.items():
             with self._noting_permission(setting):
                 self._connect_action(action, setting, offers)
-        for setting in SERVICES:
+        for setting in messages.SERVICES:
             if setting in self._patterns:
                 with self._noting_permission(setting):
                     self._connect_service(setting, offers)
-        for setting, known in WRITTEN.items():
+        for setting, known in messages.WRITTEN.items():
             if setting in self._patterns:
                 with self._noting_permission(setting):
                     self._connect_topic(setting, known, offers)
@@ -267,7 +255,7 @@ class DdsActions:
                     effects += tasks.cone_answered(bool(reply.success), str(reply.message))
         return effects
 
-    def send_goal(self, request: SendGoal, here: Pose | None) -> None:
+    def send_goal(self, request: SendGoal, here: messages.Pose | None) -> None:
         """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
         client = self._actions[request.action]
         client.send_goal(request.goal_id, **self._outgoing.goal(request.action, request.task, here))
@@ -285,39 +273,39 @@ class DdsActions:
     def call(self, setting: str) -> None:
         """Call a service of type Trigger."""
         if setting in self._services:
-            self._services[setting].call(self._types.make(f"{TRIGGER}_Request"))
+            self._services[setting].call(self._types.make(f"{messages.TRIGGER}_Request"))
 
-    def publish_task(self, request: PublishTask, here: Pose | None) -> None:
+    def publish_task(self, request: PublishTask, here: messages.Pose | None) -> None:
         """Publish a target or a path; raises ValueError where it has no place there."""
         if isinstance(request.task, SetPath):
             self._publish("path", self._outgoing.path(request.task))
         else:
             self.publish_target(request.task, here)
 
-    def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
+    def publish_target(self, target: SetPosEnd, here: messages.Pose | None) -> None:
         """Publish a target."""
         fields = self._outgoing.goal(RosAction.TO_POSE, target, here)
         self._publish("goal_pose", fields["pose"])
 
     def publish_zero(self) -> None:
         """Publish speed 0, with or without a time as its listeners want it."""
-        type_name = self._writers["cmd_vel"][0] if "cmd_vel" in self._writers else TWIST
+        type_name = self._writers["cmd_vel"][0] if "cmd_vel" in self._writers else messages.TWIST
         self._publish("cmd_vel", self._types.make(type_name))
 
-    def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
+    def publish_start(self, start: SetPosIni, here: messages.Pose | None) -> None:
         """Publish where the robot is to take itself to be."""
         self._publish("initial_pose", self._outgoing.start(start, here))
 
     def publish_latched(self, setting: str, message: bytes) -> None:
         """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
         if setting not in self._writers:
-            self._write_to(setting, LATCHED[setting])
+            self._write_to(setting, messages.LATCHED[setting])
         self._writers[setting][1].write(message)
 
     def serve_map(self, grid: bytes) -> None:
         """Answer with a map that is encoded who asks for it by the service ``get_map``."""
         if self._map_server is None:
-            names = service_names(self._topic("get_map"), GET_MAP)
+            names = service_names(self._topic("get_map"), messages.GET_MAP)
             self._map_server = ServiceServer(self._participant, names)
         # The map is the whole of the reply, so both are the same bytes.
         self._map_server.set_reply(grid)
@@ -334,20 +322,20 @@ class DdsActions:
             self._sensing.fault(f"permission {setting}", str(error))
 
     def _connect_service(self, setting: str, offers: Offers) -> None:
-        names = service_names(self._topic(setting), TRIGGER)
+        names = service_names(self._topic(setting), messages.TRIGGER)
         servers = offers.get((names.request, True), [])
         if not servers:
             self._services.pop(setting, None)
         elif setting not in self._services:
             self._services[setting] = ServiceClient(
-                self._participant, self._types, names, TRIGGER, framed=is_framed(servers[0])
+                self._participant, self._types, names, messages.TRIGGER, framed=is_framed(servers[0])
             )
 
     def _connect_action(self, action: RosAction, setting: str, offers: Offers) -> None:
         if setting not in self._patterns:
             return
         topic = self._topic(setting)
-        names = action_names(topic, action_type(action))
+        names = action_names(topic, messages.action_type(action))
         servers = offers.get((names.send_goal.request, True), [])
         right = [one for one in servers if one.type_name == names.send_goal.request_type]
         if not right:
@@ -400,7 +388,7 @@ class DdsActions:
         return offers.get((topic_to_dds(self._topic(setting)), True), [])
 
     def _write_to(self, setting: str, type_name: str) -> None:
-        latched = setting in LATCHED
+        latched = setting in messages.LATCHED
         quality = Quality(latched=latched, depth=1 if latched else 10)
         topic = topic_to_dds(self._topic(setting))
         self._writers[setting] = (
@@ -464,7 +452,7 @@ class Ros2Adapter(RosAdapter[Offers]):
             participant = Participant(settings.dds(link.settings.folder))
         except RosError as error:
             raise LinkError(f"{link.settings.file}: ros2: {error}") from None
-        outgoing = Outgoing(types, link.frame, settings.map_frame)
+        outgoing = messages.Outgoing(types, link.frame, settings.map_frame)
         grids = Grids(types.encode, outgoing, settings.map_resolution_m)
         masks = Masks(types.encode, outgoing, settings.map_resolution_m, link)
 

@@ -21,17 +21,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 from ...protocol.credentials import AccessError
 from ..base.errors import LinkError
 from ..ros.errors import FaultError
-from .decoding import (
-    LARGEST_FRAME,
-    ActionFeedback,
-    ActionResult,
-    Operation,
-    Publication,
-    ServiceCall,
-    ServiceResponse,
-    StatusText,
-    decode_frame,
-)
+from . import decoding
 from .settings import Server
 
 # --- ROS messages as JSON, as they are sent to a rosbridge server: it fills in what is left out ---
@@ -110,7 +100,7 @@ UNANSWERED_AFTER = 3.0
 """seconds without an answer to that after which nothing waits until one comes: stops have to go out."""
 
 Frame = bytes | Callable[[], bytes]
-Answer = ServiceResponse | ActionFeedback | ActionResult
+Answer = decoding.ServiceResponse | decoding.ActionFeedback | decoding.ActionResult
 
 
 @dataclass
@@ -264,7 +254,7 @@ class RosbridgeConnection:
             try:
                 async with connect(
                     self._server.url,
-                    max_size=LARGEST_FRAME,
+                    max_size=decoding.LARGEST_FRAME,
                     close_timeout=1,
                     ping_interval=PING_EVERY,
                     ping_timeout=PING_EVERY,
@@ -315,30 +305,30 @@ class RosbridgeConnection:
         count = 0
         async for frame in connection:
             try:
-                self._receive(decode_frame(frame))
+                self._receive(decoding.decode_frame(frame))
             except FaultError as error:
                 self._note(str(error))
             count += 1
             if count % TOGETHER == 0:
                 await asyncio.sleep(0)
 
-    def _receive(self, came: Operation) -> None:
-        if isinstance(came, Publication):
+    def _receive(self, came: decoding.Operation) -> None:
+        if isinstance(came, decoding.Publication):
             known = self._subscribed.get(came.topic)
             if known is not None:
                 known[1].waiting.append(came.msg)
-        elif isinstance(came, ServiceCall):
+        elif isinstance(came, decoding.ServiceCall):
             self._answer(came)
-        elif isinstance(came, StatusText):
+        elif isinstance(came, decoding.StatusText):
             if came.level == "error":
                 self._note(f"the server said {came.msg[:200]!r}")
         else:
-            last = not isinstance(came, ActionFeedback)
+            last = not isinstance(came, decoding.ActionFeedback)
             answered = self._pending_calls.pop(came.id, None) if last else self._pending_calls.get(came.id)
             if answered is not None:
                 answered(came)
 
-    def _answer(self, came: ServiceCall) -> None:
+    def _answer(self, came: decoding.ServiceCall) -> None:
         """Answer a call, unless so much waits already that whoever calls does not read."""
         if came.service in self._served and len(self._others) < MOST_ANSWERS_WAITING:
             reply = self._served[came.service][1]

@@ -7,7 +7,7 @@ from contextlib import closing
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.layers.publishing.spatial_index import BoxTree
+from fleet_supervisor.plugin.layers.publishing.site_file import BoxTree
 
 FITS = 51
 """Boxes in a node of SQLite's, at the usual size of a page."""

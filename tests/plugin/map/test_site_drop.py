@@ -9,7 +9,8 @@ import pytest
 from fleet_supervisor.plugin.layers.publishing.publication import PLAIN, PLAIN_EDGE
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
-from fleet_supervisor.robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from fleet_supervisor.robot_bridge.core.sites.frame import SiteBounds
+from fleet_supervisor.robot_bridge.core.sites.settings import SiteSettings
 from fleet_supervisor.robot_bridge.core.sites.site import write_site
 from qgis.core import (
     QgsDirectoryItem,

@@ -12,8 +12,8 @@ import pyogrio
 import pytest
 import shapely
 from fleet_supervisor.plugin.processing.algorithms import assign_cones
-from fleet_supervisor.plugin.processing.algorithms import assign_cones as job_travel
-from fleet_supervisor.robot_bridge.core.assignment import job, solver
+from fleet_supervisor.plugin.processing.common import road_sources
+from fleet_supervisor.robot_bridge.core.assignment import job, pyvrp_search, solver
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, check_plan, plan_from_json
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
 
@@ -139,11 +139,11 @@ def test_pyvrp_is_used_where_it_is(run, layers):
 
 
 PHASES = {
-    "network": (job_travel, "network_of_roads"),
+    "network": (road_sources, "network_of_roads"),
     "distances": (job, "road_matrix"),
     "savings": (solver, "trips_by_savings"),
     "improving": (solver, "improved"),
-    "pyvrp": (solver, "trips_by_pyvrp"),
+    "pyvrp": (pyvrp_search, "trips_by_pyvrp"),
     "paths": (solver, "plan_of"),
     "writing": (assign_cones, "write_whole"),
 }

@@ -15,7 +15,7 @@ from fleet_supervisor.plugin.processing.common.navigation_files import FORMAT_WR
 from fleet_supervisor.robot_bridge.core.robotmap.binary import encode
 from fleet_supervisor.robot_bridge.core.robotmap.exporters.vector_files import write_geopackage
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
-from fleet_supervisor.robot_bridge.core.sites.transforms import frame_of_map
+from fleet_supervisor.robot_bridge.core.sites.frame import frame_of_map
 from PIL import Image
 from pyproj import Transformer
 from qgis.core import (

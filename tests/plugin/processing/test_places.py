@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.processing.algorithms.cone_layout import ConeLayout
+from fleet_supervisor.plugin.processing.algorithms.cone_layouts import ConeLayout
 from fleet_supervisor.plugin.processing.algorithms.export_robot_map import ExportRobotMap
 from fleet_supervisor.plugin.processing.common.algorithm import ParameterError
 from fleet_supervisor.plugin.processing.common.parameters import extent_in, point_in

@@ -15,7 +15,7 @@ from fleet_supervisor.plugin.ui.errors import PublicationError
 from fleet_supervisor.robot_bridge.core.sites.settings import SETTINGS_FILE, read_settings
 from fleet_supervisor.robot_bridge.core.sites.site import read_site
 from fleet_supervisor.robot_bridge.core.sites.site_database import FORMAT, SITE_FILES, read_site_address
-from fleet_supervisor.robot_bridge.gateway.site_copy import SiteCopy
+from fleet_supervisor.robot_bridge.gateway.site_updates import SiteCopy
 from osgeo import ogr
 from qgis.core import (
     QgsDataSourceUri,

@@ -22,7 +22,7 @@ from robot_bridge.core.errors import SiteError
 from robot_bridge.core.sites.settings import SETTINGS_FILE, read_settings
 from robot_bridge.core.sites.site import read_site, write_site
 from robot_bridge.core.sites.site_database import SITE_FILES, TABLES, digest_text, read_site_address
-from robot_bridge.gateway.site_copy import SiteCopy, SiteCopyError
+from robot_bridge.gateway.site_updates import SiteCopy, SiteCopyError
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command
 from tests.support.patience import BUSY, START

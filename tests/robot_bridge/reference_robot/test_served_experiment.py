@@ -15,7 +15,8 @@ from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.robotmap.builder import build_map
 from robot_bridge.core.robotmap.model import ShapeType, Window
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import read_site, write_site
 from robot_bridge.reference_robot.localisation.experiment import Carried, ExperimentSettings, route_from
 from robot_bridge.reference_robot.localisation.experiment_report import figures, table_text

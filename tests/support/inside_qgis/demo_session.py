@@ -13,6 +13,7 @@ DRIVE_TIMEOUT = 90
 def work(session: Session) -> None:
     """Do what an operator would, and write down each thing that really happened."""
     plan, operator = session.plan, session.operator
+    session.draw_only_what_is_seen()
     layers = session.open_project()
     session.happened("project", f"QGIS opened the sample project: {layers} layers, all valid", layers=layers)
     session.size_window(1440, 900)

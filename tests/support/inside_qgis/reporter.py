@@ -66,12 +66,12 @@ class Reporter(QObject):
             "widget": self._widget,
             "entry": _entry,
             "button": _button,
-            "buttons": _buttons,
+            "buttons": self._buttons,
             "field": _field,
-            "tab": _tab,
+            "tab": self._tab,
             "panel_tab": _panel_tab,
-            "row": _row,
-            "panel": _panel,
+            "row": self._row,
+            "panel": self._panel,
             "place": _place,
             "desk": lambda: _desk(self._view),
             "layers": _layers,
@@ -106,6 +106,65 @@ class Reporter(QObject):
         """A widget by its object name, or its C++ class: where it can be clicked, and what it shows."""
         widget = self._found.get(name, search=lambda: _widget(name), holds=_is_first)
         return {**UNSEEN, "there": False} if widget is None else _how_it_stands(widget)
+
+    def _buttons(self, name: str) -> dict[str, Any]:
+        """Where a panel is, and each button that is seen in it: its name and place by what it is known by."""
+        panel = self._find(QWidget, name)
+        # A conflict's buttons bear the names of its robots, which change: the widget is the same.
+        seen = [one for one in panel.findChildren(QAbstractButton) if not one.visibleRegion().isEmpty()]
+        buttons = {
+            str(unwrapinstance(one)): [one.objectName() or one.text(), _on_screen(one, one.rect())]
+            for one in seen
+            if isinstance(one, (QPushButton, QToolButton)) and not isinstance(one.parent(), QLineEdit)
+        }
+        return {"rect": _on_screen(panel, panel.rect()), "buttons": buttons}
+
+    def _tab(self, name: str, text: str) -> list[int] | None:
+        """Where the tab is that begins with ``text``; ``name`` is the object name of its tab widget."""
+        tabs = self._find(QTabWidget, name).tabBar()
+        return _tab_of(tabs, text)
+
+    def _row(self, name: str, path: list[str], column: int = 0) -> list[int] | None:
+        """Where a cell of a table, tree or list is, by what the first column reads from the root on.
+
+        ``name`` is the view's object name, or that of what holds it: QGIS names not all of its views.
+        """
+        view = self._item_view(name)
+        if view is None:
+            return None
+        index = QModelIndex()
+        for text in path:
+            rows = range(view.model().rowCount(index))
+            children = (view.model().index(row, 0, index) for row in rows)
+            found = next((child for child in children if str(child.data()).strip() == text), None)
+            if found is None:
+                return None
+            index = found
+        cell = index.sibling(index.row(), column)
+        seen = view.visualRect(cell) & view.viewport().rect()
+        return _on_screen(view.viewport(), seen) if not seen.isEmpty() else None
+
+    def _item_view(self, name: str) -> QAbstractItemView | None:
+        """Return the view that is called so or lies in what is called so, None while it is not to be seen."""
+        holder = self._find(QWidget, name)
+        views = [holder, *holder.findChildren(QAbstractItemView)]
+        return next((one for one in views if isinstance(one, QAbstractItemView) and one.isVisible()), None)
+
+    def _panel(self, name: str) -> dict[str, Any]:
+        """Where a panel is, and the cross that closes it."""
+        dock = self._find(QDockWidget, name)
+        cross = dock.findChild(QAbstractButton, "qt_dockwidget_closebutton")
+        seen = cross is not None and cross.isVisible()
+        return {
+            "rect": _on_screen(dock, dock.rect()),
+            "cross": _on_screen(cross, cross.rect()) if seen else None,
+        }
+
+    def _find(self, kind: type, name: str) -> Any:
+        found = self._found.get((kind, name), search=lambda: _find(kind, name), holds=QWidget.isVisible)
+        if found is None:
+            raise NotHappenedError(f"the window has no {kind.__name__} named {name}")
+        return found
 
     def _logged(self, text: str, tag: str, level: Qgis.MessageLevel) -> None:
         if tag.startswith(PYTHON) and level in (Qgis.MessageLevel.Warning, Qgis.MessageLevel.Critical):
@@ -175,19 +234,6 @@ def _button(text: str) -> list[int] | None:
     return None
 
 
-def _buttons(name: str) -> dict[str, Any]:
-    """Where a panel is, and each button that is seen in it: its name and place by what it is known by."""
-    panel = _find(QWidget, name)
-    # A conflict's buttons bear the names of its robots, which change: the widget is the same.
-    seen = [one for one in panel.findChildren(QAbstractButton) if not one.visibleRegion().isEmpty()]
-    buttons = {
-        str(unwrapinstance(one)): [one.objectName() or one.text(), _on_screen(one, one.rect())]
-        for one in seen
-        if isinstance(one, (QPushButton, QToolButton)) and not isinstance(one.parent(), QLineEdit)
-    }
-    return {"rect": _on_screen(panel, panel.rect()), "buttons": buttons}
-
-
 def _field(label: str, of: str) -> dict[str, Any] | None:
     """The field of a dialog beneath the label that begins so, or the button beside it (``of`` "button").
 
@@ -218,12 +264,6 @@ def _entry(text: str) -> list[int] | None:
     return None
 
 
-def _tab(name: str, text: str) -> list[int] | None:
-    """Where the tab is that begins with ``text``; ``name`` is the object name of its tab widget."""
-    tabs = _find(QTabWidget, name).tabBar()
-    return _tab_of(tabs, text)
-
-
 def _panel_tab(text: str) -> list[int] | None:
     """Where the tab of a panel is that lies over others, in the window over the main one or else in that."""
     bars = [bar for bar in (_over() or iface.mainWindow()).findChildren(QTabBar) if bar.isVisible()]
@@ -235,42 +275,6 @@ def _tab_of(tabs: QTabBar, text: str) -> list[int] | None:
         if tabs.tabText(number).replace("&", "").startswith(text):
             return _on_screen(tabs, tabs.tabRect(number))
     return None
-
-
-def _row(name: str, path: list[str], column: int = 0) -> list[int] | None:
-    """Where a cell of a table, tree or list is, by what the first column reads from the root on.
-
-    ``name`` is the view's object name, or that of what holds it: QGIS names not all of its views.
-    """
-    view = _view(name)
-    if view is None:
-        return None
-    index = QModelIndex()
-    for text in path:
-        rows = range(view.model().rowCount(index))
-        children = (view.model().index(row, 0, index) for row in rows)
-        found = next((child for child in children if str(child.data()).strip() == text), None)
-        if found is None:
-            return None
-        index = found
-    cell = index.sibling(index.row(), column)
-    seen = view.visualRect(cell) & view.viewport().rect()
-    return _on_screen(view.viewport(), seen) if not seen.isEmpty() else None
-
-
-def _view(name: str) -> QAbstractItemView | None:
-    """Return the view that is called so or lies in what is called so, None while it is not to be seen."""
-    holder = _find(QWidget, name)
-    views = [holder, *holder.findChildren(QAbstractItemView)]
-    return next((one for one in views if isinstance(one, QAbstractItemView) and one.isVisible()), None)
-
-
-def _panel(name: str) -> dict[str, Any]:
-    """Where a panel is, and the cross that closes it."""
-    dock = _find(QDockWidget, name)
-    cross = dock.findChild(QAbstractButton, "qt_dockwidget_closebutton")
-    seen = cross is not None and cross.isVisible()
-    return {"rect": _on_screen(dock, dock.rect()), "cross": _on_screen(cross, cross.rect()) if seen else None}
 
 
 def _place(x: float, y: float, crs: str) -> dict[str, Any]:
@@ -353,13 +357,11 @@ def _desk(view: DeskView) -> dict[str, Any]:
     }
 
 
-def _find(kind: type, name: str):
+def _find(kind: type, name: str) -> QWidget | None:
     """Return a widget by its object name; QGIS gives none to some, which are found by their C++ class."""
     widgets = [widget for widget in QApplication.allWidgets() if isinstance(widget, kind)]
     found = [widget for widget in widgets if name in (widget.objectName(), widget.metaObject().className())]
-    if not found:
-        raise NotHappenedError(f"the window has no {kind.__name__} named {name}")
-    return next((widget for widget in found if widget.isVisible()), found[0])
+    return next((widget for widget in found if widget.isVisible()), next(iter(found), None))
 
 
 def _text(widget: QWidget) -> str:

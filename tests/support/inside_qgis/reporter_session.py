@@ -10,6 +10,7 @@ from tests.support.inside_qgis.session import Session, start
 
 def work(session: Session) -> None:
     """Answer questions until QGIS is closed."""
+    session.draw_only_what_is_seen()
     Reporter(session.plan["socket"], iface.mainWindow())
     session.happened("ready", "QGIS is open")
 

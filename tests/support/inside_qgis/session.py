@@ -55,6 +55,11 @@ class Session:
             raise NotHappenedError(f"QGIS complains about {self.plan['project']}: {complaint.text()}")
         return len(layers)
 
+    def draw_only_what_is_seen(self) -> None:
+        """Have no map of what lies beside the one that is shown drawn ahead: nobody drags it by hand."""
+        for canvas in iface.mapCanvases():
+            canvas.setPreviewJobsEnabled(False)
+
     def size_window(self, width: int, height: int) -> None:
         """Give the QGIS window this size in pixels."""
         window = iface.mainWindow()

@@ -40,6 +40,7 @@ def work(session: Session) -> None:
     """Do what an operator of the proving ground would."""
     plan, operator = session.plan, session.operator
     session.size_window(*plan["window"])
+    session.draw_only_what_is_seen()
     layers = session.open_project()
     operator.close_panel("Browser")
     operator.show_map(plan["track"], plan["crs"])
@@ -70,6 +71,7 @@ def second_map(session: Session) -> None:
     canvas = iface.createNewMapCanvas("Dynamic platform: six recorded cars")
     if canvas is None:
         raise NotHappenedError("QGIS opened no second map")
+    session.draw_only_what_is_seen()
     canvas.setExtent(QgsRectangle(*session.plan["platform"]))
     dock = _dock_of(canvas)
     dock.setFloating(False)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
-from sqlalchemy import Connection, Select, bindparam, delete, exists, insert, or_, select, update
+from sqlalchemy import Connection, Select, Update, bindparam, delete, exists, insert, or_, select, update
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
@@ -19,6 +20,15 @@ from ..schema import plan_stops, plans, queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
 _OPEN = [state.value for state in TaskState if state not in ENDS]
+
+# Built once: SQLAlchemy takes longer to build a statement than the database to do it.
+_OF_ROBOT = queues.c.robot == bindparam("of")
+_IS_STORED = select(queues.c.robot).where(_OF_ROBOT)
+_REVISION = select(queues.c.revision, queues.c.state).where(_OF_ROBOT)
+_QUEUE_COLUMNS = ("revision", "state", "reason", "by", "at")
+_SAVE_QUEUE = (
+    update(queues).where(_OF_ROBOT).values({name: bindparam(f"new_{name}") for name in _QUEUE_COLUMNS})
+)
 
 
 class ChangedError(RefusedError):
@@ -159,23 +169,17 @@ def forget_plans(connection: Connection, before: float, limit: int) -> int:
 
 
 def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
-    row = {
-        "revision": after.revision,
-        "state": after.state.value,
-        "reason": after.reason,
-        "by": after.by,
-        "at": after.at,
-    }
-    of = queues.c.robot == after.robot
-    if before.revision == 0 and connection.execute(select(queues.c.robot).where(of)).first() is None:
-        connection.execute(insert(queues).values(robot=after.robot, **row))
+    values = after.revision, after.state.value, after.reason, after.by, after.at
+    row, of = dict(zip(_QUEUE_COLUMNS, values, strict=True)), {"of": after.robot}
+    if before.revision == 0 and connection.execute(_IS_STORED, of).first() is None:
+        connection.execute(insert(queues), {"robot": after.robot, **row})
         return
     # Asked for, since MariaDB does not count a row that it was told nothing new about.
-    found = connection.execute(select(queues.c.revision, queues.c.state).where(of)).first()
+    found = connection.execute(_REVISION, of).first()
     if found is None or (found.revision, found.state) != (before.revision, before.state.value):
         raise ChangedError(f"the queue of robot {after.robot!r} was changed meanwhile; look at it again")
     if (before.revision, before.state) != (after.revision, after.state):
-        connection.execute(update(queues).where(of).values(row))
+        connection.execute(_SAVE_QUEUE, {**of, **{f"new_{name}": value for name, value in row.items()}})
 
 
 def _save_tasks(
@@ -196,10 +200,14 @@ def _save_tasks(
 def _update(connection: Connection, changes: Sequence[tuple[str, dict[str, Any]]]) -> None:
     if not changes:
         return
-    values: dict[str, Any] = {name: bindparam(f"new_{name}") for name in changes[0][1]}
-    statement = update(queue_tasks).where(queue_tasks.c.id == bindparam("key")).values(values)
     rows = [{"key": id, **{f"new_{name}": v for name, v in row.items()}} for id, row in changes]
-    connection.execute(statement, rows)
+    connection.execute(_update_of(tuple(changes[0][1])), rows)
+
+
+@functools.cache
+def _update_of(names: tuple[str, ...]) -> Update:
+    values: dict[str, Any] = {name: bindparam(f"new_{name}") for name in names}
+    return update(queue_tasks).where(queue_tasks.c.id == bindparam("key")).values(values)
 
 
 def _content(task: QueuedTask) -> dict[str, Any]:

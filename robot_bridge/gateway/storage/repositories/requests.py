@@ -156,6 +156,7 @@ _UNFILLED_MAPS = select(sa.c.id).where(
 )
 _FILL = update(sa).where(sa.c.id == bindparam("one")).values(payload=bindparam("content"))
 _NAMES = ("robot", "op", "params", "payload", "urgent")
+_ADD_NUMBERED = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
@@ -195,8 +196,7 @@ def add_numbered(connection: Connection, rows: Sequence[tuple[str, Answer]]) -> 
     """Write many answers, each with its robot; return their ids in the same order."""
     if not rows:
         return []
-    ids = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
-    return list(connection.scalars(ids, [_named(robot, answer) for robot, answer in rows]))
+    return list(connection.scalars(_ADD_NUMBERED, [_named(robot, answer) for robot, answer in rows]))
 
 
 def _named(robot: str, answer: Answer) -> dict[str, object]:

@@ -21,6 +21,7 @@ _ENCODER = msgspec.json.Encoder()
 
 LONGEST_POSE = 16_000
 """characters; a longer one has a status that its column does not hold everywhere, and is stored without."""
+_COUNT = select(func.count()).select_from(robots)
 NAMES = ("name", "magic", "link", "received_at", "ended_in_order", "pose", "pose_at", "paths", "abilities")
 
 
@@ -105,7 +106,7 @@ def names(connection: Connection) -> list[str]:
 def missing(connection: Connection, stored: Set[str]) -> set[str]:
     """Return those of the robots ``stored`` that are not there any more."""
     # Asked every second, and the answer nearly always: none.
-    if connection.scalar(select(func.count()).select_from(robots)) == len(stored):
+    if connection.scalar(_COUNT) == len(stored):
         return set()
     return set(stored).difference(names(connection))
 

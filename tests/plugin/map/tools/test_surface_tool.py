@@ -7,7 +7,7 @@ import time
 import pytest
 from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
 from fleet_supervisor.plugin.layers.roles import ROAD_SURFACE, set_role
-from fleet_supervisor.plugin.map.tools.surface_tool import SurfaceAction
+from fleet_supervisor.plugin.map.tools.road_tools import SurfaceAction
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,

@@ -16,7 +16,7 @@ from robot_bridge.core.robotmap.binary import encode, encode_pieces
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.robotmap.window_index import BoxGrid, OutlineIndex, levels_of
-from robot_bridge.core.sites import column_file, column_writers, site_cache
+from robot_bridge.core.sites import column_file, column_writers
 from robot_bridge.core.sites.column_file import CodedTexts, ColumnFiles, RowFile, Texts
 from robot_bridge.core.sites.column_writers import CellSorting, CodedTextColumns, median
 from robot_bridge.core.sites.fences import FencedRows
@@ -26,7 +26,7 @@ from robot_bridge.core.sites.site_cache import CACHE_FILE, CacheWriter
 from robot_bridge.core.sites.site_layers import as_read_back
 from tests.robot_bridge.core.sites.test_site_cache import SETTINGS, town
 
-PIECEWISE = (site_cache, column_writers, column_file)
+PIECEWISE = (column_writers, column_file)
 
 
 @pytest.fixture(params=[40, 700, 100_000])
@@ -187,7 +187,7 @@ _KILLED = """
 import sys
 from pathlib import Path
 from dataclasses import replace
-from robot_bridge.core.sites import column_writers, site_cache
+from robot_bridge.core.sites import column_file, column_writers, site_cache
 from robot_bridge.core.sites.site import write_site
 from tests.robot_bridge.core.sites.test_site_cache import SETTINGS, town
 
@@ -195,7 +195,7 @@ place, count = sys.argv[2], 0
 def stop(*_, **__):
     print("here", flush=True)
     sys.stdin.read()
-site_cache.AT_ONCE = 1000
+column_file.AT_ONCE = 1000
 owner, name = {"reading": (site_cache.OutlineColumns, "add"), "sorting": (column_writers._Runs, "merged"),
                "writing": (site_cache, "geopackage_digest")}[place]
 setattr(owner, name, stop)

@@ -17,8 +17,9 @@ from robot_bridge.core.roads.centrelines import GENERATED, Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.robotmap.text_format import write_text
+from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.geopackage import Area, Centreline
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import read_site, write_site
 
 SETTINGS = SiteSettings(

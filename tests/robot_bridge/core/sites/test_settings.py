@@ -5,7 +5,8 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import SettingsError
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings, read_settings, settings_text
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings, read_settings, settings_text
 from robot_bridge.core.sites.settings_tables import (
     CommandSettings,
     GatewayOptions,

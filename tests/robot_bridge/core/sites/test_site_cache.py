@@ -21,8 +21,9 @@ from robot_bridge.core.robotmap.text_format import write_text
 from robot_bridge.core.sites import column_file
 from robot_bridge.core.sites.column_file import ColumnFile, ColumnFiles, Texts
 from robot_bridge.core.sites.column_writers import TextColumns
+from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.geopackage import Area
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import read_site, write_site
 from robot_bridge.core.sites.site_cache import CACHE_FILE
 from robot_bridge.gateway.site.site_maps import SiteMaps

@@ -10,9 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import CrsError
-from robot_bridge.core.sites.frame import SiteFrame
-from robot_bridge.core.sites.settings import SiteBounds
-from robot_bridge.core.sites.transforms import GpsTransform, is_near, lonlat_of
+from robot_bridge.core.sites.frame import GpsTransform, SiteBounds, SiteFrame, is_near, lonlat_of
 
 metres = st.floats(-5_000, 5_000)
 angles = st.floats(-math.pi, math.pi)

@@ -9,10 +9,8 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import CrsError
-from robot_bridge.core.sites.frame import SiteFrame
-from robot_bridge.core.sites.settings import SiteBounds
+from robot_bridge.core.sites.frame import SiteBounds, SiteFrame, lonlat_of
 from robot_bridge.core.sites.site import read_site
-from robot_bridge.core.sites.transforms import lonlat_of
 from robot_bridge.gateway.field import page as module
 from robot_bridge.gateway.field.page import earth_polynomial, site_outline
 

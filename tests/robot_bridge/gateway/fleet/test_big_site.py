@@ -15,7 +15,8 @@ from robot_bridge.core.messages.robots import Ready, SetMap
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.robotmap.model import PART_OF
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.settings_tables import MapSettings
 from robot_bridge.core.sites.site import Site
 from robot_bridge.gateway.fleet.outbox import RequestOutcome

@@ -10,7 +10,8 @@ from typing import ClassVar
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.model.events import EventBus, RobotReturned
 from robot_bridge.gateway.model.position_checks import PlaceChecks

@@ -7,8 +7,10 @@ import math
 import numpy as np
 import pytest
 
+from robot_bridge.gateway.traffic import yielding
 from robot_bridge.gateway.traffic.conflicts import (
     Movement,
+    OtherMovements,
     conflicts_of,
     conflicts_with,
     driving_movement,
@@ -93,6 +95,8 @@ def test_what_is_found_quickly_is_exactly_what_every_pair_on_its_own_has(block):
         assert [one.begins for one in quick] == sorted(one.begins for one in quick)
         mine = [one for other in fleet[1:] for one in conflicts_of(fleet[0], other, 0.5, now)]
         assert sorted(conflicts_with(fleet[0], fleet[1:], 0.5, now), key=repr) == sorted(mine, key=repr)
+        spans = OtherMovements(fleet[1:], 0.5, now).spans(fleet[0])
+        assert sorted(spans) == sorted((one.begins, one.ends) for one in mine), seed
         found += len(each)
     assert found > 100
 
@@ -163,6 +167,33 @@ def test_who_gives_way_meets_nobody_in_a_simulation(seed):
     for other in others:
         _, near, _ = simulated(wait.movement, other, 0.5 + other.radius + margin - 0.02, now, last)
         assert not near.any()
+
+
+def test_places_that_cannot_be_better_are_given_up_and_the_best_is_found_all_the_same(monkeypatch):
+    tried, spans, places = [], OtherMovements.spans, yielding._places
+    monkeypatch.setattr(
+        OtherMovements, "spans", lambda self, movement: tried.append(1) or spans(self, movement)
+    )
+    given_up = 0
+    for seed in range(1000, 1030):
+        random = np.random.default_rng(seed)
+        others = [random_movement(random, f"o{k}", 0.0) for k in range(3)]
+        mine = driving_movement("me", random.uniform(0, 30, (4, 2)), 1.5, 0.0, 0.5)
+        tried.clear()
+        found, looks, best, met = yield_on_path(mine, others, 0.5, 0.0), len(tried), None, []
+        tried.clear()
+        with monkeypatch.context() as one_by_one:
+            one_by_one.setattr(yielding, "_places", lambda at, met=met: met.append(at) or [])
+            yield_on_path(mine, others, 0.5, 0.0)
+            for place in places(*met) if met else [0.0]:
+                one_by_one.setattr(yielding, "_places", lambda _, place=place: [place])
+                wait = yield_on_path(mine, others, 0.5, 0.0)
+                if wait is not None and (best is None or wait.seconds < best.seconds - 1.0):
+                    best = wait
+        assert (found is None) == (best is None)
+        assert best is None or (found.station, found.seconds) == (best.station, best.seconds)
+        given_up += len(tried) - looks
+    assert given_up > 100
 
 
 def test_most_random_conflicts_can_be_waited_out():

@@ -10,8 +10,9 @@ import numpy as np
 from robot_bridge.core.roads.centrelines import Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
+from robot_bridge.core.sites.frame import SiteBounds
 from robot_bridge.core.sites.geopackage import Area
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import Site
 from robot_bridge.gateway.traffic.conflicts import driving_movement, standing_movement
 from robot_bridge.gateway.traffic.yielding import yield_beside_path

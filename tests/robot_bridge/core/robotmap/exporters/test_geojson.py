@@ -15,8 +15,7 @@ from robot_bridge.core.errors import CrsError, GeoreferenceError
 from robot_bridge.core.robotmap.exporters.geometries import obstacle_shapes, segment_shapes
 from robot_bridge.core.robotmap.exporters.vector_files import geojson_of
 from robot_bridge.core.robotmap.model import ShapeType
-from robot_bridge.core.sites.frame import SiteFrame
-from robot_bridge.core.sites.transforms import frame_of_map, lonlat_of
+from robot_bridge.core.sites.frame import SiteFrame, frame_of_map, lonlat_of
 
 FRAME = SiteFrame("EPSG:32633", (640420.0, 5193480.0), math.radians(30))
 OUTER = [(2, 2), (18, 2), (18, 18), (2, 18), (2, 2)]

@@ -13,7 +13,7 @@ from osgeo import ogr
 
 from robot_bridge.core.errors import ExportError, MissingExportPackageError
 from robot_bridge.core.robotmap.exporters.vector_files import write_geopackage
-from robot_bridge.core.sites.transforms import frame_of_map
+from robot_bridge.core.sites.frame import frame_of_map
 
 
 @pytest.fixture

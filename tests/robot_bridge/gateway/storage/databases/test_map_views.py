@@ -16,8 +16,8 @@ from sqlalchemy import create_engine, insert, make_url, text
 from sqlalchemy.exc import DBAPIError
 
 from robot_bridge.core.robotmap.outlines import Outlines
-from robot_bridge.core.sites.frame import SiteFrame, projections
-from robot_bridge.core.sites.settings import SiteBounds, SiteSettings
+from robot_bridge.core.sites.frame import SiteBounds, SiteFrame, projections
+from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.site import write_site
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.map_views import MapViewError, map_views_on, views_made_again
