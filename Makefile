@@ -36,7 +36,7 @@ $(READY): pyproject.toml tools/setup.sh
 build/run:
 	@mkdir -p -m 700 $@
 
-demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/ (PARTS=zalazone)
+demo: $(READY) build/run ## run the main job once, headless, on the sample site; see build/demo/ (PARTS=cluster, zalazone)
 	@$(HEADLESS) $(RUN) -m tools.demo $(PARTS)
 
 test: $(READY) build/run ## run every test, style and import rules included, headless

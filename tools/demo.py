@@ -1,9 +1,9 @@
 """Run the main job once, for real and without a display, and leave build/demo/.
 
-    .venv/bin/python -m tools.demo [zalazone]
+    .venv/bin/python -m tools.demo [cluster|zalazone]
 
-`zalazone` is another demonstration, on the real proving ground (:mod:`tools.zalazone`), and leaves
-build/zalazone/.
+`cluster` is another demonstration, of several gateways (:mod:`tools.cluster_demo`), and `zalazone` one on the
+real proving ground (:mod:`tools.zalazone`); they leave build/cluster/ and build/zalazone/.
 
 A gateway with SQLite, three simulated robots, a robot map exported by qgis_process, QGIS Desktop with the
 plugin on a virtual screen, and an operator who clicks. The exit status is 0 only when every step really
@@ -31,6 +31,7 @@ from tests.support.qgis import Profile, virtual_screen
 from tests.support.report import PAPER_BYTES_PER_M2, Report
 from tests.support.session import play
 from tests.support.verdict import Errand, Outcome, judge
+from tools import cluster_demo
 from tools.plugin_files import ROOT, version
 from tools.zalazone import demonstration
 
@@ -139,13 +140,18 @@ def run() -> None:
     print(f"see {FOLDER}: report.md, canvas.png, site.map, site.bin")
 
 
-PARTS = {"": (run, FOLDER), "zalazone": (demonstration.run, demonstration.FOLDER)}
+PARTS = {
+    "": (run, FOLDER),
+    "cluster": (cluster_demo.run, cluster_demo.FOLDER),
+    "zalazone": (demonstration.run, demonstration.FOLDER),
+}
+KNOWN = ", ".join(f"PARTS={part}" for part in PARTS if part)
 
 
 def main() -> int:
     part = " ".join(sys.argv[1:])
     if part not in PARTS:
-        print(f"demo: error: there is no PARTS={part}; write PARTS=zalazone, or nothing", file=sys.stderr)
+        print(f"demo: error: there is no PARTS={part}; write {KNOWN}, or nothing", file=sys.stderr)
         return 1
     work, folder = PARTS[part]
     return ended("demo", work, f"logs: {folder / 'logs'}")

@@ -72,6 +72,14 @@ def serve(
             envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
         ),
     ] = None,
+    public_address: Annotated[
+        str,
+        typer.Option(
+            help="Where robots reach this gateway, one of several, ws://HOST:PORT or wss://HOST:PORT; "
+            "unless given, where it listens.",
+            envvar="ROBOT_BRIDGE_PUBLIC_ADDRESS",
+        ),
+    ] = "",
     site_as_given: Annotated[
         bool,
         typer.Option("--site-as-given", help="Serve --site, whatever site a supervisor chose at a desk."),
@@ -106,7 +114,7 @@ def serve(
     gc.enable()
     set_up_log(log_format, log_level)
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
-    cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file)
+    cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)
     settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings, until_stdin_closes))
@@ -147,10 +155,12 @@ def gateway_settings(
     )
 
 
-def cluster_settings(site: Path, name: str, bus: str, password_file: Path | None) -> ClusterSettings | None:
+def cluster_settings(
+    site: Path, name: str, bus: str, password_file: Path | None, public_address: str = ""
+) -> ClusterSettings | None:
     """Return how a gateway is one of several, None for one that has its database alone.
 
-    :raises BridgeError: for a password that cannot be read, and for a bus without a name.
+    :raises BridgeError: for a password that cannot be read, and for a bus or an address without a name.
     """
     from ..core.sites.settings import SETTINGS_FILE, read_settings
     from ..core.sites.settings_tables import GatewayOptions
@@ -158,14 +168,21 @@ def cluster_settings(site: Path, name: str, bus: str, password_file: Path | None
     from ..gateway.storage.database import read_password
 
     if not name:
-        if bus:
-            raise BridgeError(
-                "--bus is for gateways with names; give this one a name with --gateway-name, too"
-            )
+        for option, value in (("--bus", bus), ("--public-address", public_address)):
+            if value:
+                raise BridgeError(
+                    f"{option} is for gateways with names; give this one a name with --gateway-name, too"
+                )
         return None
     given = read_settings(site / SETTINGS_FILE).gateway if site.is_dir() else GatewayOptions()
     password = None if password_file is None else read_password(password_file)
-    return ClusterSettings(name, bus or given.bus or "postgresql", password, given.when_cut_off == "stop")
+    return ClusterSettings(
+        name,
+        bus or given.bus or "postgresql",
+        password,
+        given.when_cut_off == "stop",
+        public_address or given.public_address or None,
+    )
 
 
 async def _serve(settings: GatewaySettings, until_stdin_closes: bool) -> None:

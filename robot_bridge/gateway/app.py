@@ -389,6 +389,8 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         gate.warn()
         stack.push_async_callback(notify_clients, server, fleet)
         address = _address(server, tls is not None)
+        if cluster is not None:
+            cluster.listens(address, everywhere=address_here(settings.host) != settings.host)
         started(address)
         works = {**gateway.works(address), "site": watch.run, **holding}
         if relays is None:

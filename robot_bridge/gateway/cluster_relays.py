@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
+from .cluster.detail_relay import DetailRelay
 from .cluster.messages import Wake
 from .cluster.position_relay import PositionRelay
 from .cluster.request_relay import RequestRelay
@@ -46,6 +47,7 @@ class ClusterRelays:
         fleet.emergency.relay_by(self.stops)
         self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database)
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
+        self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
@@ -67,6 +69,7 @@ class ClusterRelays:
             "requests of others": self.requests.run,
             "steps of others": self._steps.run,
             "positions of others": self._positions.run,
+            "details of others": self._details.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
             ),

@@ -5,25 +5,24 @@ from __future__ import annotations
 import asyncio
 import itertools
 import logging
-import random
 from urllib.parse import quote
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+from websockets.frames import CloseCode
 
 from ..core.errors import BridgeError
 from ..core.messages.json_values import to_json
-from ..core.messages.robots import Observed, OpAck, Ready, Request
+from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
 from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
-from ..protocol.credentials import ClientCredentials
+from ..protocol.credentials import AccessError, ClientCredentials
+from ..protocol.gateway_addresses import GatewayAddresses
 from .agent import Agent
 
 log = logging.getLogger(__name__)
 
-FIRST_WAIT = 0.5
-LONGEST_WAIT = 10.0
 SAY_AGAIN = 1.0
 """seconds after which an observation that the gateway could not store is said once more."""
 REPLACED = 4001
@@ -37,17 +36,24 @@ class RobotWebSocketLink:
     """Carries what the agent says while connected; what it says in between is dropped as out of date.
 
     Observations are kept, and said again after the next Ready, until the gateway has acknowledged them.
+    Where several gateways serve the fleet it goes on at another one when its own does not answer.
     """
 
     def __init__(self, url: str, robot: str, credentials: ClientCredentials | None = None) -> None:
         self._credentials = credentials or ClientCredentials()
-        self._url = f"{url}{'&' if '?' in url else '?'}robot={quote(robot)}"
+        self._addresses = GatewayAddresses(url)
+        self._robot = robot
         self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
         """What is to be sent, in order: a reply does not overtake what was said before it."""
         self._connected = False
         self._ids = itertools.count(1)
         self._untold: list[Observed] = []
         self._pending_requests: dict[int, Request] = {}
+
+    @property
+    def _url(self) -> str:
+        address = self._addresses.current
+        return f"{address}{'&' if '?' in address else '?'}robot={quote(self._robot)}"
 
     @property
     def unacknowledged_observations(self) -> int:
@@ -67,29 +73,29 @@ class RobotWebSocketLink:
 
     async def run(self, agent: Agent) -> None:
         """Carry messages until cancelled; raises BridgeError for a URL that cannot be right."""
-        wait = FIRST_WAIT
         while True:
+            url, ends = self._url, False
             try:
-                options = self._credentials.options(self._url)
-                async with connect(
-                    self._url, max_size=LARGEST_FRAME, close_timeout=1, **options
-                ) as connection:
-                    wait = FIRST_WAIT
+                options = {**self._credentials.options(url), **self._addresses.options()}
+                async with connect(url, max_size=LARGEST_FRAME, **options) as connection:
                     await self._carry(connection, agent)
                 reason = "the gateway closed the connection"
-            except InvalidURI as error:
-                raise BridgeError(f"{error}; write the URL as ws://127.0.0.1:8765/robot") from None
-            except ConnectionClosed as error:
-                if error.rcvd is not None and error.rcvd.code == REPLACED:
-                    raise BridgeError(
-                        f"{self._url}: another robot has connected under this name; give each its own --name"
-                    ) from None
+            except (InvalidURI, AccessError) as error:
+                if self._addresses.is_given:
+                    raise _to_put_right(error) from None
                 reason = str(error)
+            except ConnectionClosed as error:
+                code = None if error.rcvd is None else error.rcvd.code
+                if code == REPLACED:
+                    raise BridgeError(
+                        f"{url}: another robot has connected under this name; give each its own --name"
+                    ) from None
+                reason, ends = str(error), code == CloseCode.SERVICE_RESTART
             except (OSError, InvalidHandshake) as error:
                 reason = _reason(error)
-            log.warning("%s: %s; trying again in %.1f s", self._url, reason, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
-            wait = min(wait * 2, LONGEST_WAIT)
+            wait = self._addresses.next_wait(ends=ends)
+            log.warning("%s: %s; trying again in %.1f s at %s", url, reason, wait, self._addresses.current)
+            await asyncio.sleep(wait)
 
     async def _carry(self, connection: ClientConnection, agent: Agent) -> None:
         self._outgoing = asyncio.Queue()
@@ -129,7 +135,11 @@ class RobotWebSocketLink:
         self._connected = True
         id = message.id if isinstance(message.id, int) else None
         try:
-            ack = agent.receive(decode_answer(message.method, message.params), id)
+            answer = decode_answer(message.method, message.params)
+            if isinstance(answer, Start):
+                self._addresses.answered()
+                self._addresses.learn(answer.gateways)
+            ack = agent.receive(answer, id)
         except MessageError as error:
             self._outgoing.put_nowait(jsonrpc.error(message.id, jsonrpc.INVALID_PARAMS, str(error)))
             return
@@ -139,6 +149,7 @@ class RobotWebSocketLink:
     def _receive_reply(self, agent: Agent, reply: jsonrpc.Reply) -> None:
         request = self._pending_requests.pop(reply.id, None) if isinstance(reply.id, int) else None
         ack = _acknowledgement(reply)
+        self._addresses.learn(ack.gateways)
         if isinstance(request, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
             # What could not be stored just now is said again; what is wrong is not.
             asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, request)
@@ -157,6 +168,12 @@ def _acknowledgement(reply: jsonrpc.Reply) -> OpAck:
     except MessageError as error:
         return OpAck(ok=False, reason=f"its answer cannot be read: {error}")
     return answer if isinstance(answer, OpAck) else OpAck()
+
+
+def _to_put_right(error: InvalidURI | AccessError) -> BridgeError:
+    if isinstance(error, BridgeError):
+        return error
+    return BridgeError(f"{error}; write the URL as ws://127.0.0.1:8765/robot")
 
 
 def _reply(id: int | str, ack: OpAck) -> str:

@@ -22,6 +22,7 @@ def environment(tmp_path) -> dict[str, str]:
     kept = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
     return {
         **kept,
+        "FLEET_CLUSTER_FOLDER": str(tmp_path / "cluster"),
         "FLEET_DEMO_FOLDER": str(tmp_path / "demo"),
         "FLEET_DESKTOP_FOLDER": str(tmp_path / "desktop"),
     }
@@ -47,6 +48,34 @@ def test_the_demo_does_what_it_says(root, tmp_path, environment):
     assert decode_text((folder / "site.bin").read_bytes()) == text
     assert f"| {len(text.encode())} |" in report
     assert (folder / "canvas.png").stat().st_size > 100_000, "an empty canvas is a small file"
+    assert not left_running(tmp_path)
+
+
+@pytest.mark.again("tests/robot_bridge/gateway/cluster/test_two_gateways.py shows what dies, step by step")
+def test_the_demo_of_several_gateways_does_what_it_says(root, tmp_path, environment):
+    pytest.importorskip("nats", reason="nats-py is not installed; run make setup")
+    done = subprocess.run(
+        [sys.executable, "-m", "tools.demo", "cluster"],
+        cwd=root,
+        env=environment,
+        capture_output=True,
+        text=True,
+        timeout=600,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    for claim in (
+        "4 gateways serve",
+        "gateway south is killed",
+        "the desk has its robots again: r5",
+        "in force at 3 of 3 gateways, 8 of 8 robots acknowledged and seen to stand",
+        "each gateway says the same",
+    ):
+        assert claim in done.stdout
+    folder = tmp_path / "cluster"
+    assert (folder / "steps.txt").read_text(encoding="utf-8") in done.stdout
+    pictures = sorted(file.stem for file in folder.glob("*.png") if file.stat().st_size > 100_000)
+    assert pictures == ["driving", "emergency-stop", "gateway-killed"]
     assert not left_running(tmp_path)
 
 

@@ -73,7 +73,7 @@ def test_the_whole_of_it_happens_on_the_real_proving_ground(demo, data, tmp_path
 def test_an_unknown_part_is_named(demo):
     done = demo("zalazon")
     assert done.returncode == 1
-    assert "there is no PARTS=zalazon; write PARTS=zalazone, or nothing" in done.stderr
+    assert "there is no PARTS=zalazon; write PARTS=cluster, PARTS=zalazone, or nothing" in done.stderr
 
 
 def test_missing_data_is_named(demo, tmp_path):

@@ -1,4 +1,4 @@
-"""A real NATS server of one's own, on loopback, ended by its id."""
+"""A real NATS server of one's own, or a cluster of them, on loopback, each ended by its id."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ import signal
 import socket
 import subprocess
 import time
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 from tests.support.errors import StageError
@@ -78,3 +80,33 @@ class NatsServer:
             self._process.kill()
             self._process.wait()
             self._process = None
+
+
+class NatsCluster:
+    """A context in which some servers run that pass on what each other's clients publish."""
+
+    def __init__(self, folder: Path, names: Sequence[str] = ("nats-1", "nats-2", "nats-3")) -> None:
+        ports = {name: free_port() for name in names}
+        routes = ", ".join(f'"nats://127.0.0.1:{port}"' for port in ports.values())
+        self.servers: dict[str, NatsServer] = {}
+        for name, port in ports.items():
+            own = folder / name
+            own.mkdir(parents=True)
+            cluster = f'{{name: fleet, listen: "127.0.0.1:{port}", routes: [{routes}]}}'
+            self.servers[name] = NatsServer(own, f"server_name: {name}\ncluster: {cluster}")
+        self._running = ExitStack()
+
+    @property
+    def url(self) -> str:
+        """Where they are, with commas between them."""
+        return ",".join(server.url for server in self.servers.values())
+
+    def __enter__(self) -> NatsCluster:
+        with ExitStack() as stack:
+            for server in self.servers.values():
+                stack.enter_context(server)
+            self._running = stack.pop_all()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._running.close()

@@ -34,6 +34,7 @@ from .validation import (
     check_texts,
     direction,
     one_line,
+    usable_addresses,
 )
 
 _SURELY_NEAR = 10_000.0
@@ -100,7 +101,8 @@ class OpAck:
     """The other side received message ``id``; with ``ok`` false it will not do it, and ``reason`` says why.
 
     The answer to Ready carries the robot's ``magic`` number back, the name it is known by, and the
-    ``database`` that the ids of the server's messages belong to.
+    ``database`` that the ids of the server's messages belong to. ``gateways`` are as in :class:`Start`, in
+    the answer to Ready and in the next one after they have changed.
     """
 
     id: int | None = None
@@ -109,10 +111,13 @@ class OpAck:
     magic: int | None = None
     robot: str | None = None
     database: str | None = None
+    gateways: list[str] | None = None
     acknowledged: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
         check_stored_number(id=self.id, magic=self.magic)
+        if self.gateways is not None:
+            object.__setattr__(self, "gateways", usable_addresses(self.gateways))
 
 
 @dataclass(frozen=True)
@@ -324,9 +329,18 @@ class SendImage:
 
 @dataclass(frozen=True)
 class Start:
-    """The server listens to requests from now on, with ``database`` behind it."""
+    """The server listens to requests from now on, with ``database`` behind it.
+
+    ``gateways`` are the URLs of all gateways that serve the fleet, this one's first, where several do: at any
+    of them the robot may connect, under its name, when its own does not answer.
+    """
 
     database: str | None = None
+    gateways: list[str] | None = None
+
+    def __post_init__(self) -> None:
+        if self.gateways is not None:
+            object.__setattr__(self, "gateways", usable_addresses(self.gateways))
 
 
 @dataclass(frozen=True)

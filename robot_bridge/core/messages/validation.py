@@ -8,8 +8,9 @@ import math
 import re
 import types
 import typing
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
+from urllib.parse import urlsplit
 
 # --- How large what a robot says may be: every bound of its messages, in one place ---
 # The guide for integrators and the JSON Schemas say the same. What a site may set stands in table
@@ -42,6 +43,10 @@ AREA = (0.0, 1e14)
 """square metres of a map."""
 CUT = "…"
 """The end of a text that was cut."""
+LONGEST_ADDRESS = 256
+"""characters of the address of a gateway."""
+MOST_GATEWAYS = 16
+"""gateways whose addresses a robot is told."""
 
 
 def one_line(text: str, longest: int) -> str:
@@ -65,6 +70,7 @@ Ranges = Mapping[str, tuple[float, float]]
 Texts = Mapping[str, int]
 """The most characters of texts, by the name of the parameter."""
 
+GATEWAY_ADDRESS = re.compile(r"wss?://[A-Za-z0-9_.~\[\]:-]+(/[A-Za-z0-9_.~/-]*)?")
 CRS_CODE = re.compile(r"EPSG:[0-9]{4,6}")
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 LARGEST_NUMBER = 2**63 - 1
@@ -113,6 +119,26 @@ def check_robot_name(name: str) -> str:
             "beginning with a letter or digit"
         )
     return name
+
+
+def is_gateway_address(address: str) -> bool:
+    """Tell whether a gateway can be reached at ``address``, ``ws://host:port`` or ``wss://``, and a path."""
+    if len(address) > LONGEST_ADDRESS or not GATEWAY_ADDRESS.fullmatch(address):
+        return False
+    try:
+        parts = urlsplit(address)
+        return bool(parts.hostname) and parts.port != 0
+    except ValueError:
+        return False
+
+
+def usable_addresses(addresses: Sequence[str] | None) -> list[str] | None:
+    """Return the first :data:`MOST_GATEWAYS` of ``addresses`` that can be used, None where there is none.
+
+    For others nobody is refused: where a robot may connect when its gateway dies is no reason to lose it now.
+    """
+    usable = [address for address in addresses or () if is_gateway_address(address)]
+    return list(dict.fromkeys(usable))[:MOST_GATEWAYS] or None
 
 
 def check_crs(crs: str | None) -> None:

@@ -285,7 +285,8 @@ class GatewayOptions:
 
     ``certificate`` and ``key`` are files in PEM; a relative one lies in the folder of ``site.toml``. ``bus``
     is that between several gateways of one fleet, and ``when_cut_off`` what becomes of the robots of one that
-    reaches neither the database nor any other gateway for five seconds.
+    reaches neither the database nor any other gateway for five seconds; ``public_address`` is where robots
+    reach this one, ``ws://host:port`` or ``wss://``.
     """
 
     host: str | None = None
@@ -295,6 +296,7 @@ class GatewayOptions:
     key: str | None = None
     bus: str | None = None
     when_cut_off: Literal["stop", "go on"] = "stop"
+    public_address: str | None = None
 
 
 @dataclass(frozen=True)

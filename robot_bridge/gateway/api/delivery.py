@@ -31,6 +31,10 @@ class Channel(Protocol):
         """What operators see as the robot's link: ``websocket``, or the name of the link."""
 
     @property
+    def endpoint(self) -> str:
+        """The path at a gateway that its connection was made to."""
+
+    @property
     def round_trip(self) -> float | None:
         """Seconds that the last ping took there and back, None before the first."""
 

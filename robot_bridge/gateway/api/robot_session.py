@@ -7,6 +7,7 @@ import contextlib
 import logging
 from collections.abc import AsyncIterator, Coroutine, Iterator
 from contextlib import AbstractAsyncContextManager, nullcontext
+from dataclasses import replace
 from typing import Any
 
 from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
@@ -18,6 +19,8 @@ from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
 from ...core.messages.validation import LARGEST_MESSAGE, MessageError
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, decode_position, decode_request, error_code
+from ..auth.accounts import TokenKind
+from ..auth.authorisation import PATHS
 from ..auth.client_connection import ClientConnection
 from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims
@@ -84,6 +87,7 @@ class RobotSession:
         self._delivery = Delivery(fleet, channel, robot)
         self._closing: asyncio.Task[None] | None = None
         self._due: asyncio.Task[None] | None = None
+        self._told_gateways: list[str] | None = None
 
     # --- what its connection asks of it -----------------------------------------------------------------
 
@@ -212,9 +216,17 @@ class RobotSession:
             await channel.send(channel.error(call.id, jsonrpc.INTERNAL_ERROR, text))
             return
         if call.id is not None:
-            await channel.send(channel.result(call.id, to_json(outcome.ack or OpAck())))
+            await channel.send(channel.result(call.id, to_json(self._acknowledgement(outcome))))
         if call.method == Ready.__name__ and outcome.admitted:
             self._delivery.begin()
+
+    def _acknowledgement(self, outcome: RequestOutcome) -> OpAck:
+        """Return the OpAck of a call, with the gateways of the fleet where they are not as told last."""
+        ack, gateways = outcome.ack or OpAck(), self._fleet.gateway_urls(self._channel.endpoint)
+        if gateways == self._told_gateways and not outcome.admitted:
+            return ack
+        self._told_gateways = gateways
+        return replace(ack, gateways=gateways)
 
     async def _ask(self, request: Request, id: int | None) -> RequestOutcome:
         if not isinstance(request, Ready):
@@ -291,6 +303,7 @@ class RobotChannel:
     """The WebSocket of one robot, as its :class:`.robot_session.Channel`."""
 
     name = NAME
+    endpoint = PATHS[TokenKind.ROBOT]
 
     def __init__(self, connection: ClientConnection) -> None:
         self._connection = connection
@@ -343,8 +356,8 @@ class RobotConnection:
     async def run(self) -> bool:
         """Serve the connection to its end; return true if the robot closed it in good order."""
         try:
-            greeting = to_json(self._fleet.reception.greeting())
-            await self._connection.send(self._channel.call("Start", greeting))
+            greeting = self._fleet.greeting(self._channel.endpoint)
+            await self._connection.send(self._channel.call("Start", to_json(greeting)))
             if (call_id := self._fleet.emergency.call_id) is not None:
                 self.session.stop_now(call_id)
             self._connection.handle_at_once(self._take_at_once)

@@ -32,8 +32,8 @@ from ...core.position_frame import entries_in, poses_in_frame
 from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, error_code
-from ..auth.accounts import speaks_for
-from ..auth.authorisation import ANY_LINK, AuthGate
+from ..auth.accounts import TokenKind, speaks_for
+from ..auth.authorisation import ANY_LINK, PATHS, AuthGate
 from ..auth.client_connection import ClientConnection
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
@@ -94,7 +94,7 @@ class LinkConnection:
     async def run(self) -> None:
         """Serve the connection to its end."""
         try:
-            await self.send(jsonrpc.call("Start", to_json(self._fleet.reception.greeting())))
+            await self.send(jsonrpc.call("Start", to_json(self._fleet.greeting(PATHS[TokenKind.LINK]))))
             if (call_id := self._fleet.emergency.call_id) is not None:
                 self.stop_all(call_id)
             async for frame in self._connection:

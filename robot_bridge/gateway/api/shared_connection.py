@@ -16,6 +16,8 @@ from ...core.messages.json_values import to_json
 from ...core.messages.links import Released
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
+from ..auth.accounts import TokenKind
+from ..auth.authorisation import PATHS
 from ..auth.rate_limit import RateLimit
 from ..fleet.service import Fleet
 from .robot_session import RobotSession, RobotSessions
@@ -83,6 +85,11 @@ class LinkedRobotChannel:
     def name(self) -> str:
         """The name of the link."""
         return self._shared.name
+
+    @property
+    def endpoint(self) -> str:
+        """The path that links connect to."""
+        return PATHS[TokenKind.LINK]
 
     @property
     def round_trip(self) -> float | None:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 
 from sqlalchemy import URL
 
 from ...core.errors import BridgeError
+from ...core.messages.validation import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
 from .bus import Bus, NatsBus, NoBus, NotifyBus
 from .exchange import Exchange, fleet_key
@@ -14,6 +16,10 @@ from .leases import check_gateway_name
 from .membership import LEASE_PATIENCE_S, Membership
 from .ownership import Ownership
 
+log = logging.getLogger(__name__)
+
+LONGEST_PUBLIC = LONGEST_ADDRESS - 16
+"""characters of an address, which has the path of an endpoint behind it where robots are told."""
 BUSES = "none, postgresql, or nats://HOST:PORT (several with commas between them; tls:// with TLS)"
 
 
@@ -23,13 +29,15 @@ class ClusterSettings:
 
     ``bus`` is ``none``, ``postgresql``, or the URLs of NATS servers with commas between them; ``password`` is
     that of the account in those. ``stops_when_cut_off``: whether the robots of this gateway stop when it
-    reaches neither the database nor any other gateway.
+    reaches neither the database nor any other gateway. ``public_address`` is where robots reach it, such as
+    ``wss://north.example.org:8765``; None for where it listens.
     """
 
     name: str
     bus: str = "postgresql"
     password: str | None = None
     stops_when_cut_off: bool = True
+    public_address: str | None = None
 
     def check(self, database: URL) -> None:
         """Raise BridgeError for what cannot be."""
@@ -42,6 +50,12 @@ class ClusterSettings:
             )
         if self.bus not in ("none", "postgresql") and not self.servers():
             raise BridgeError(f"bus {self.bus!r:.80} is none of these: {BUSES}")
+        address = self.public_address
+        if address is not None and not (is_gateway_address(address) and len(address) <= LONGEST_PUBLIC):
+            raise BridgeError(
+                f"public address {address!r:.80} cannot be told to robots; write it as ws://HOST:PORT or "
+                f"wss://HOST:PORT, with a path if robots need one, at most {LONGEST_PUBLIC} characters"
+            )
 
     def servers(self) -> list[str]:
         """Return the URLs of NATS servers, none for another bus or for what is no such URL."""
@@ -65,6 +79,20 @@ class Cluster:
         self.ownership = ownership
         self.exchange = exchange
         self.lease = lease
+
+    def listens(self, address: str, *, everywhere: bool) -> None:
+        """Note that this gateway listens on ``address``, to which nobody can connect if ``everywhere``."""
+        if self.settings.public_address is not None:
+            self.membership.reached_at(self.settings.public_address.rstrip("/"))
+        elif not everywhere:
+            self.membership.reached_at(address)
+        else:
+            self.membership.reached_at("")
+            log.warning(
+                "gateway %s listens on all addresses and does not know by which one robots reach it; they "
+                "are not told of it unless you give --public-address wss://HOST:PORT",
+                self.settings.name,
+            )
 
     @property
     def has_small_messages(self) -> bool:

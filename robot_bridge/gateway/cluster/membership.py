@@ -67,6 +67,19 @@ class Membership:
         """Return the time by the database's clock, which all gateways go by."""
         return self._clock.time() + self.clock_offset
 
+    def reached_at(self, address: str) -> None:
+        """Note where robots reach this gateway, ``ws://host:port``, or that nobody knows (empty)."""
+        self.me = self.me._replace(address=address)
+
+    def addresses(self) -> list[str]:
+        """Return where the gateways of the fleet are reached, as far as they say: this one, then who lives.
+
+        Those come last that did not end in good order: they may be back by the time that somebody asks there.
+        """
+        others = [member for member in self.members if member.gw != self.name]
+        known = [self.me, *sorted(others, key=lambda member: (not member.alive, member.since, member.gw))]
+        return [member.address for member in known if member.address]
+
     async def join(self) -> None:
         """Enter the fleet; raises BridgeError where another gateway has this name, or has the database alone.
 

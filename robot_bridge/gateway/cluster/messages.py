@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+from collections.abc import Iterable, Iterator
 from typing import Annotated, Literal
 
 import msgspec
@@ -17,6 +18,8 @@ import numpy.typing as npt
 from msgspec import Meta
 
 from ...core.errors import BridgeError
+from ...core.messages.safety import PathDeclaration
+from ...core.messages.validation import LONGEST_STATUS
 
 FORM = b"\x01"
 """The form of all messages; gateways that speak another one do not understand each other."""
@@ -24,6 +27,8 @@ LARGEST = 256 * 1024
 """bytes of a message."""
 SIGNATURE = 16
 """bytes."""
+FRAME = 128
+"""bytes of a message at most beside the robots in it."""
 MOST_ROBOTS = 8192
 """in one message of positions."""
 COLUMNS = 6
@@ -34,6 +39,7 @@ Gateway = Annotated[str, Meta(max_length=32)]
 Robot = Annotated[str, Meta(max_length=63)]
 Id = Annotated[str, Meta(max_length=64)]
 Line = Annotated[str, Meta(max_length=600)]
+Status = Annotated[str, Meta(max_length=LONGEST_STATUS)]
 Names = Annotated[list[Robot], Meta(max_length=50)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
 
@@ -107,7 +113,26 @@ class PositionBatch(BusMessage, frozen=True, tag="positions"):
         return np.frombuffer(self.numbers, dtype="<f4").reshape(len(self.names), COLUMNS)
 
 
-AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch
+class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
+    """What changes seldom of a robot, as :class:`~..model.robots.Robot` and its pose have it."""
+
+    name: Robot
+    battery: Annotated[float, Meta(ge=0, le=1)] | None = None
+    status: Status | None = None
+    doubt: Status | None = None
+    latency: Annotated[float, Meta(ge=0, le=1e6)] | None = None
+    paths: PathDeclaration | None = None
+    abilities: Annotated[str, Meta(max_length=128)] | None = None
+
+
+class DetailBatch(BusMessage, frozen=True, tag="details"):
+    """Details of robots of the gateway, at the database's time ``t``, in seconds."""
+
+    t: float
+    robots: Annotated[list[RobotDetails], Meta(max_length=MOST_ROBOTS)]
+
+
+AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch | DetailBatch
 _DECODER = msgspec.msgpack.Decoder(AnyMessage)
 _ENCODER = msgspec.msgpack.Encoder()
 
@@ -147,6 +172,21 @@ class Codec:
 
     def _signature(self, content: bytes) -> bytes:
         return hashlib.blake2b(content, digest_size=SIGNATURE, key=self._key).digest()
+
+
+def in_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[list[RobotDetails]]:
+    """Yield the details in lists that fit into messages of ``largest`` bytes."""
+    some: list[RobotDetails] = []
+    size = FRAME
+    for one in robots:
+        more = len(_ENCODER.encode(one))
+        if some and (size + more > largest or len(some) == MOST_ROBOTS):
+            yield some
+            some, size = [], FRAME
+        some.append(one)
+        size += more
+    if some:
+        yield some
 
 
 def _check_lengths(batch: PositionBatch) -> None:

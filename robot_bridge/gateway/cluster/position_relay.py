@@ -90,12 +90,15 @@ class PositionRelay:
             if not math.isfinite(age_of):
                 continue
             has_pose = all(map(math.isfinite, (x, y, theta, v, pose_age)))
+            before = self._robots.pose(name)
+            # What changes seldom comes by itself.
+            battery, status = (None, None) if before is None else (before.battery, before.status)
             seen = ReportedElsewhere(
                 received_at=wall - age_of,
                 ended_in_order=bool(flags & ENDED),
                 located=bool(flags & LOCATED),
                 only_seen=bool(flags & ONLY_SEEN),
-                pose=SendPos(x, y, theta, v) if has_pose else None,
+                pose=SendPos(x, y, theta, v, battery=battery, status=status) if has_pose else None,
                 pose_at=wall - pose_age if has_pose else None,
             )
             self._robots.observe_elsewhere(name, batch.gw, seen)

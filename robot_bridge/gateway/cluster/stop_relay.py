@@ -80,6 +80,8 @@ class EmergencyStopRelay:
         self._clock = clock
         self._seen: dict[str, StopSeen] = {}
         """what each other gateway said of the stop in force."""
+        self._named: list[str] = []
+        """the other gateways that were to answer when operators were told last of those."""
         self._changed = asyncio.Event()
         self._look_now = asyncio.Event()
         self._tasks: set[asyncio.Task[None]] = set()
@@ -107,7 +109,9 @@ class EmergencyStopRelay:
 
     def add_counts(self, counts: dict[str, Any], stop: str) -> dict[str, Any]:
         """Return ``counts`` of a stop with those of the other gateways."""
-        seen = {name: one for name, one in self._seen.items() if one.id == stop}
+        others = self._others()
+        # The robots of one that is gone are counted by whoever has them now.
+        seen = {name: one for name, one in self._seen.items() if one.id == stop and name in others}
         sums = {
             name: counts[name] + sum(getattr(one, name) for one in seen.values())
             for name in ("robots", "acknowledged", "standing")
@@ -118,7 +122,6 @@ class EmergencyStopRelay:
             ]
             for name in ("waiting", "refused")
         }
-        others = self._others(seen)
         missing = [name for name in others if name not in seen]
         return {**sums, **names, "gateways": StoppedGateways(1 + len(seen), 1 + len(others), missing)}
 
@@ -182,9 +185,12 @@ class EmergencyStopRelay:
             stop = self._stops.current
             if stop is None or not self._stops.in_force:
                 continue
-            if any(
-                name not in self._seen or self._seen[name].id != stop.id for name in self._others(self._seen)
-            ):
+            others = self._others()
+            if others != self._named:
+                # Nobody is to watch for one that is gone.
+                self._named = others
+                self._stops.announce()
+            if any(name not in self._seen or self._seen[name].id != stop.id for name in others):
                 self._exchange.send(
                     STOP, StopCall(self._exchange.gateway, stop.id, stop.at, stop.by[:200], stop.reason)
                 )
@@ -206,7 +212,7 @@ class EmergencyStopRelay:
             ),
         )
 
-    def _others(self, seen: object) -> list[str]:
+    def _others(self) -> list[str]:
         """Return the other gateways that are to answer: those that live, and those that are heard."""
         return sorted({*self._membership.others(), *self._exchange.heard()})
 

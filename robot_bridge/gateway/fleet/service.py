@@ -28,9 +28,10 @@ from ...core.messages.robots import (
     Request,
     SendGPS,
     SendPos,
+    Start,
     Stopped,
 )
-from ...core.messages.validation import LONGEST_REFUSAL, one_line
+from ...core.messages.validation import LONGEST_REFUSAL, MOST_GATEWAYS, one_line
 from ..cluster.cluster import Cluster
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
@@ -85,6 +86,7 @@ class Fleet:
         self.site = site
         self._database = database
         self._clock = clock
+        self._cluster = cluster
         self.listeners = events.Listeners()
         """the operators' sessions, told what happens."""
         self.events = events.EventBus()
@@ -235,6 +237,17 @@ class Fleet:
         await self.mailboxes.finish(greetings, [], acks=False)
 
     # --- robots ---------------------------------------------------------------------------------------
+
+    def greeting(self, endpoint: str) -> Start:
+        """Return what is told who connects to ``endpoint``, such as ``/robot``."""
+        return replace(self.reception.greeting(), gateways=self.gateway_urls(endpoint))
+
+    def gateway_urls(self, endpoint: str) -> list[str] | None:
+        """Return the URLs of ``endpoint`` at the gateways of the fleet, None where one serves it alone."""
+        if self._cluster is None:
+            return None
+        addresses = self._cluster.membership.addresses()[:MOST_GATEWAYS]
+        return [f"{address}{endpoint}" for address in addresses] or None
 
     async def receive(
         self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False

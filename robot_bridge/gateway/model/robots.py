@@ -67,6 +67,17 @@ class ReportedElsewhere(NamedTuple):
     pose_at: float | None
 
 
+class DescribedElsewhere(NamedTuple):
+    """What another gateway says of a robot when it has changed, as a :class:`Robot` and its pose have it."""
+
+    battery: float | None
+    status: str | None
+    doubt: str | None
+    latency: float | None
+    paths: PathDeclaration | None
+    abilities: str | None
+
+
 @dataclass
 class Robot:
     """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
@@ -378,6 +389,17 @@ class Robots:
         robot.abilities = "" if seen.only_seen else robot.abilities
         if seen.pose is not None:
             robot.pose, robot.pose_at = seen.pose, seen.pose_at
+        self._touch(robot)
+
+    def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
+        """Take in the details that another gateway tells of a robot that it has."""
+        robot = self._robots.get(name)
+        if robot is None or robot.gateway != gateway:
+            return
+        robot.doubt, robot.latency = said.doubt, said.latency
+        robot.paths, robot.abilities = said.paths, said.abilities
+        if robot.pose is not None:
+            robot.pose = replace(robot.pose, battery=said.battery, status=said.status)
         self._touch(robot)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:

@@ -349,7 +349,8 @@ audit = Table(
 )
 
 # The gateways of a fleet that several serve. Each lives until ``lease_until``, by the database's own clock,
-# unless it renews that; ``run`` tells one process from the next of the same name.
+# unless it renews that; ``run`` tells one process from the next of the same name. ``address`` is where robots
+# reach it, ``ws://host:port``, null where that is not known.
 gateways = Table(
     "gateways",
     metadata,
@@ -360,6 +361,7 @@ gateways = Table(
     Column("process", BigInteger, nullable=False),
     Column("since", Double, nullable=False),
     Column("lease_until", Double, nullable=False),
+    Column("address", String(256), nullable=True),
 )
 
 # Which run of which gateway has a robot: only that one writes what concerns it. ``fence`` counts its owners.

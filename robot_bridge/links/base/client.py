@@ -6,7 +6,6 @@ import asyncio
 import contextlib
 import itertools
 import logging
-import random
 import signal
 from collections import deque
 from collections.abc import Callable, Coroutine, Sequence
@@ -16,7 +15,9 @@ from urllib.parse import quote
 import msgspec
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
+from websockets.frames import CloseCode
 
+from ...core.errors import BridgeError
 from ...core.logs import log_and_continue
 from ...core.messages.administration import Playback, SiteReport
 from ...core.messages.json_values import site_report, to_json
@@ -28,7 +29,8 @@ from ...core.parent_process import call_at_end_of_input, notify
 from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
-from ...protocol.credentials import ClientCredentials
+from ...protocol.credentials import AccessError, ClientCredentials
+from ...protocol.gateway_addresses import GatewayAddresses
 from .adapter import Adapter
 from .errors import CommandRefusedError, LinkError
 from .frames import LinkFrame
@@ -40,8 +42,6 @@ from .settings import LinkSettings
 
 log = logging.getLogger(__name__)
 
-FIRST_WAIT, LONGEST_WAIT = 0.5, 10.0
-"""seconds between two attempts to connect."""
 TOGETHER = 0.05
 """seconds within which positions are told in one frame."""
 SAY_AGAIN = 1.0
@@ -64,6 +64,7 @@ class LinkClient:
             None if gateway.token_file is None else folder / gateway.token_file,
             None if gateway.ca is None else folder / gateway.ca,
         )
+        self._addresses = GatewayAddresses(gateway.url)
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
         self._ids = itertools.count(1)
@@ -208,25 +209,31 @@ class LinkClient:
             watching.cancel()
 
     async def _connect_for_ever(self) -> None:
-        wait = FIRST_WAIT
-        url = f"{self._settings.gateway.url}?link={quote(self.name)}"
         while True:
+            url, ends = f"{self._addresses.current}?link={quote(self.name)}", False
             try:
-                options = self._credentials.options(url)
-                async with connect(url, max_size=LARGEST_FRAME, close_timeout=1, **options) as connection:
+                options = {**self._credentials.options(url), **self._addresses.options()}
+                async with connect(url, max_size=LARGEST_FRAME, **options) as connection:
                     await self._carry(connection)
                 reason = "the gateway closed the connection"
-            except InvalidURI as error:
-                raise LinkError(f"{self._settings.file}: gateway.url: {error}") from None
+            except (InvalidURI, AccessError) as error:
+                if self._addresses.is_given:
+                    raise self._to_put_right(error) from None
+                reason = str(error)
             except ConnectionClosed as error:
                 reason = str(error)
+                ends = error.rcvd is not None and error.rcvd.code == CloseCode.SERVICE_RESTART
             except (OSError, InvalidHandshake) as error:
                 reason = _reason(error)
-            wait = FIRST_WAIT if self._is_welcome else wait
             self._lose()
-            log.warning("%s: %s; trying again in %.1f s", url, reason, wait)
-            await asyncio.sleep(wait * random.uniform(0.8, 1.2))  # nosec B311 # no secret
-            wait = min(wait * 2, LONGEST_WAIT)
+            wait = self._addresses.next_wait(ends=ends)
+            log.warning("%s: %s; trying again in %.1f s at %s", url, reason, wait, self._addresses.current)
+            await asyncio.sleep(wait)
+
+    def _to_put_right(self, error: InvalidURI | AccessError) -> BridgeError:
+        if isinstance(error, BridgeError):
+            return error
+        return LinkError(f"{self._settings.file}: gateway.url: {error}")
 
     async def _carry(self, connection: ClientConnection) -> None:
         self._urgent.clear()
@@ -323,6 +330,7 @@ class LinkClient:
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
         if call.method == Start.__name__:
+            self._addresses.learn(params.get("gateways"))
             hello = to_json(LinkHello(LINK_PROTOCOL, self._adapter.kind))
             self._call(LinkHello.method, hello, self._welcomed)
         elif call.method == Playback.method:
@@ -386,6 +394,7 @@ class LinkClient:
                 log.warning("%s", self._frame.fit.text)
         self._site = site
         self._is_welcome = True
+        self._addresses.answered()
         self._is_known.set()
         self._say_status()
         for robot in list(self._robots.values()):
@@ -431,6 +440,7 @@ class LinkClient:
     def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:
         ack = reply.result if isinstance(reply.result, dict) else {}
         if reply.error is None and ack.get("ok", True):
+            self._addresses.learn(ack.get("gateways"))
             robot.admit()
             self._adapter.admitted(robot.name)
             self._wake_soon()
@@ -481,7 +491,9 @@ class LinkClient:
             kept.answer.set_exception(CommandRefusedError(reply.error))
             return
         ack = decode_answer(OpAck.__name__, reply.result)
-        kept.answer.set_result(ack if isinstance(ack, OpAck) else OpAck())
+        ack = ack if isinstance(ack, OpAck) else OpAck()
+        self._addresses.learn(ack.gateways)
+        kept.answer.set_result(ack)
 
 
 def _areas_came(answer: asyncio.Future[SiteAreas], reply: jsonrpc.Reply) -> None:

@@ -20,7 +20,8 @@ _ALIVE = f"g.lease_until > {_NOW}"
 class Member(NamedTuple):
     """A gateway of the fleet; ``since`` is when it joined, ``left`` the seconds that its lease has left.
 
-    Who joins later has a later ``since``, also where the database's clock was set back.
+    Who joins later has a later ``since``, also where the database's clock was set back. ``address`` is where
+    robots reach it: empty where that is not known, None where it is not known yet and the one before holds.
     """
 
     gw: str
@@ -30,6 +31,7 @@ class Member(NamedTuple):
     process: int = 0
     since: float = 0.0
     left: float = 0.0
+    address: str | None = None
 
     @property
     def alive(self) -> bool:
@@ -64,11 +66,13 @@ class NoMemberError(StoreError):
 
 _JOIN = text(
     f"""
-    insert into gateways (gw, run, version, host, process, since, lease_until)
-    select :gw, :run, :version, :host, :process, greatest({_NOW}, max(since) + 0.001), {_NOW} + :lease
+    insert into gateways (gw, run, version, host, process, since, lease_until, address)
+    select :gw, :run, :version, :host, :process, greatest({_NOW}, max(since) + 0.001), {_NOW} + :lease,
+        :address
     from gateways
     on conflict (gw) do update set run = excluded.run, version = excluded.version, host = excluded.host,
-        process = excluded.process, since = excluded.since, lease_until = excluded.lease_until
+        process = excluded.process, since = excluded.since, lease_until = excluded.lease_until,
+        address = coalesce(excluded.address, gateways.address)
     where gateways.run = excluded.run or gateways.lease_until <= {_NOW}
     returning run
     """  # nosec B608 # names of ours
@@ -76,12 +80,13 @@ _JOIN = text(
 _ONE_JOINS = text("lock table gateways in share row exclusive mode")
 _RENEW = text(
     f"""
-    update gateways set lease_until = {_NOW} + :lease
+    update gateways set lease_until = {_NOW} + :lease, address = coalesce(:address, address)
     where gw = :gw and run = :run and lease_until > {_NOW} returning since
     """  # nosec B608 # names of ours
 )
 _MEMBERS = text(
-    f"select gw, run, version, host, process, since, lease_until - {_NOW} from gateways order by since, gw"  # nosec B608 # names of ours
+    f"select gw, run, version, host, process, since, lease_until - {_NOW}, address "  # nosec B608 # names of ours
+    "from gateways order by since, gw"
 )
 _LEAVE = text("delete from gateways where gw = :gw and run = :run")
 
@@ -95,8 +100,8 @@ def join(connection: Connection, me: Member, lease_s: float, now: float | None =
 
 
 def renew(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
-    """Let a gateway live ``lease_s`` seconds from now; false where its lease has run out."""
-    values = {"gw": me.gw, "run": me.run, "lease": lease_s, "now": now}
+    """Let a gateway live ``lease_s`` seconds from now, at its address; false where its lease has run out."""
+    values = {"gw": me.gw, "run": me.run, "address": me.address, "lease": lease_s, "now": now}
     return connection.execute(_RENEW, values).first() is not None
 
 

@@ -11,6 +11,7 @@ import pytest
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster.bus import (
     EVERYBODY,
+    LARGEST_NOTIFICATION,
     MOST_WAITING,
     POSITIONS,
     STOP,
@@ -26,10 +27,13 @@ from robot_bridge.gateway.cluster.messages import (
     Beat,
     BusMessageError,
     Codec,
+    DetailBatch,
     PositionBatch,
+    RobotDetails,
     StopCall,
     StopSeen,
     Wake,
+    in_batches,
 )
 from robot_bridge.gateway.storage.database import read_address
 from tests.support.patience import BUSY
@@ -68,11 +72,28 @@ def test_a_message_comes_out_as_it_went_in():
         (lambda data: Codec(KEY).encode(Wake("a", "nonsense")), "cannot be read"),
         (lambda data: Codec(KEY).encode(Beat("a" * 33)), "cannot be read"),
         (lambda data: Codec(KEY).encode(PositionBatch("a", 1.0, ["r1"], b"", b"\0")), "numbers of others"),
+        (lambda data: details(RobotDetails("r1", battery=1.5)), "cannot be read"),
+        (lambda data: details(RobotDetails("r1", status=257 * "a")), "cannot be read"),
+        (lambda data: details(RobotDetails("r1", paths="by air")), "cannot be read"),
     ],
 )
 def test_what_is_no_message_of_the_fleet_is_refused(spoilt, why):
     with pytest.raises(BusMessageError, match=why):
         Codec(KEY).decode(spoilt(Codec(KEY).encode(CALL)))
+
+
+def details(*robots):
+    return Codec(KEY).encode(DetailBatch("a", 1.0, list(robots)))
+
+
+def test_details_of_many_robots_fit_into_messages():
+    long = [
+        RobotDetails(f"robot-{n}", 0.5, 256 * "ű", 256 * "ő", 0.001, "asks", 128 * "a") for n in range(50)
+    ]
+    lists = list(in_batches(long, LARGEST_NOTIFICATION))
+    assert [one for some in lists for one in some] == long
+    assert all(len(details(*some)) <= LARGEST_NOTIFICATION for some in lists)
+    assert len(list(in_batches(long, LARGEST))) == 1
 
 
 def signed(content):

@@ -267,6 +267,24 @@ def test_a_gateway_stops_counting_on_its_lease_a_second_before_it_runs_out():
     assert not trust.holds
 
 
+def test_a_gateway_of_the_version_before_is_a_member_without_an_address(engine):
+    """While a fleet is upgraded both serve it: what that writes names no address."""
+    old, new = Member("old", "run-1"), Member("new", "run-2", address="ws://127.0.0.1:8765")
+    join = "insert into gateways (gw, run, version, host, process, since, lease_until) values "
+    with engine.begin() as connection:
+        connection.execute(text("delete from gateways"))
+        connection.execute(text(f"{join} (:gw, :run, '', '', 0, 1, 100)"), {"gw": old.gw, "run": old.run})
+        assert gateways.join(connection, new, LEASE_S, 50.0)
+        assert [one.address for one in gateways.members(connection, 50.0)] == [None, new.address]
+        # Where it is reached may be known only after it has joined.
+        assert gateways.renew(connection, new._replace(address="ws://10.0.0.2:1"), LEASE_S, 51.0)
+        assert gateways.members(connection, 51.0)[1].address == "ws://10.0.0.2:1"
+        # One that starts again and does not listen yet is where it was.
+        assert gateways.renew(connection, new._replace(address=None), LEASE_S, 52.0)
+        assert gateways.join(connection, Member("new", "run-2"), LEASE_S, 53.0)
+        assert gateways.members(connection, 53.0)[1].address == "ws://10.0.0.2:1"
+
+
 @pytest.fixture
 def fleet(engine):
     machine = type("OnPostgreSql", (Fleet,), {"engine": engine})()

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import itertools
 import signal
+import time
 
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.errors import StageError
+from tests.support.patience import BUSY
+from tests.support.processes import free_port
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
@@ -107,6 +110,26 @@ def test_a_robot_at_one_is_seen_commanded_and_stopped_at_the_other(pair, name):
     at_a.until(lambda: not at_a.emergency["in_force"])
 
 
+def test_what_a_robot_declares_and_says_of_itself_is_seen_at_the_other_gateway(pair, name):
+    robot, desk = pair.a.robot(name), desk_at(pair.b)
+    robot.plug_in(1, asks_path=True, abilities=["targets", "map"])
+    said = {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0, "battery": 0.824, "status": "brush is worn"}
+    robot.tell("SendPos", said)
+    desk.until(lambda: (desk.robots.get(name) or {}).get("battery") == 0.82)
+    seen = desk.robots[name]
+    assert (seen["status"], seen["paths"], seen["abilities"]) == ("brush is worn", "asks", "map targets")
+    # It stays while newer positions come without, until it says something else.
+    robot.tell("SendPos", {**said, "x": 20.5})
+    desk.until(lambda: desk.robots[name]["x"] == 20.5)
+    assert desk.robots[name]["battery"] == 0.82
+    robot.tell("SendPos", {**said, "x": 21.0, "battery": 0.5, "status": None})
+    desk.until(lambda: desk.robots[name]["battery"] == 0.5)
+    assert desk.robots[name].get("status") is None
+    # A place that cannot be is doubted there, too.
+    robot.tell("SendPos", {**said, "x": 1e7})
+    desk.until(lambda: "km" in (desk.robots[name].get("status") or ""))
+
+
 def test_the_newest_connection_counts(pair, name):
     """A robot that connects to the other gateway is commanded there, and the old connection is closed."""
     old = pair.robot(pair.a, name)
@@ -145,6 +168,42 @@ def test_a_gateway_that_dies_is_replaced(pair, name):
     wait_until(lambda: "gateway a serves this fleet, too" in pair.b.output())
     # The one that is back takes nothing away.
     assert pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)]
+
+
+def told_gateways(bridge, name):
+    """Connect as a robot; return the gateways that it is told of."""
+    with bridge.robot(name) as robot:
+        return robot.wait_for("Start")["params"].get("gateways", [])
+
+
+def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, tmp_path):
+    """They were given the address of one, and that says which others there are."""
+    both = [bridge.address for bridge in (pair.a, pair.b)]
+    for bridge, known in ((pair.a, both), (pair.b, both[::-1])):
+        urls = [f"{one}/robot" for one in known]
+        wait_until(lambda bridge=bridge, urls=urls: told_gateways(bridge, f"{name}-probe") == urls)
+    phones = tmp_path / f"{name}.toml"
+    tracker = f'[tracker]\nhttp = "127.0.0.1:{free_port()}"\n[tracker.names]\n845213 = "phone"'
+    phones.write_text(f'[gateway]\nurl = "{both[0]}/link"\n{tracker}\n', encoding="utf-8")
+    started = [pair.a.start_robot(name, (20.0, 8.0, 0.0)), pair.a.start_link("tracker", phones)]
+    at_a, desk = desk_at(pair.a), desk_at(pair.b)
+    at_a.until(lambda: phones.stem in str(at_a.links))
+    desk.wait_for_robots(name)
+    assert desk.robots[name]["link"] == "gateway a"
+    pair.a.kill_gateway()
+    began = time.monotonic()
+    desk.until(lambda: desk.robots[name]["link"] == "websocket" and desk.robots[name]["state"] == "fresh")
+    assert time.monotonic() - began < 4 * BUSY
+    desk.until(lambda: phones.stem in str(desk.links))
+    # The one that was killed may be back soon, and comes behind those that live.
+    assert told_gateways(pair.b, f"{name}-probe") == [f"{one}/robot" for one in both[::-1]]
+    for process in started:
+        process.kill()
+    # A stop is not said to have missed a gateway any longer than that may be there.
+    stop(desk, name)
+    desk.until(lambda: desk.emergency.get("gateways") == {"reached": 1, "of": 1, "missing": []})
+    clear(desk)
+    pair.a.start_gateway()
 
 
 def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
@@ -235,7 +294,13 @@ def test_a_gateway_that_wants_the_database_alone_is_refused(pair, start_bridge, 
         (["--gateway-name", "a"], "sqlite", "on PostgreSQL only"),
         (["--gateway-name", "a b"], "postgresql", "gateway name 'a b' cannot be"),
         (["--gateway-name", "c", "--bus", "kafka://x"], "postgresql", "bus 'kafka://x' is none of these"),
-        (["--bus", "none"], "sqlite", "give this one a name"),
+        (["--bus", "none"], "sqlite", "--bus is for gateways with names"),
+        (["--public-address", "ws://a:1"], "sqlite", "--public-address is for gateways with names"),
+        (
+            ["--gateway-name", "c", "--public-address", "a.example.org:8765"],
+            "postgresql",
+            "public address 'a.example.org:8765' cannot be told to robots",
+        ),
     ],
 )
 def test_what_cannot_be_is_named(start_bridge, site, fleet_url, new_database, options, database, why):
@@ -254,6 +319,12 @@ def test_two_gateways_need_no_further_server(start_bridge, site, new_database, t
     stop(desk, name)
     assert robot.wait_for("Abort")["params"]["emergency"]
     desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
+    # Gateways that come and go are told of with the next acknowledgement.
+    here = pair.robot(pair.b, f"{name}-b")
+    gateways = [f"{pair.b.address}/robot", f"{pair.a.address}/robot"]
+    wait_until(lambda: told_gateways(pair.b, f"{name}-probe") == gateways)
     # The desk of the gateway that takes its leave goes on at the other: its robots are free at once.
     pair.a.end()
+    wait_until(lambda: here.ask("Stopped").get("gateways") == gateways[:1])
+    assert "gateways" not in here.ask("Stopped")
     wait_until(lambda: pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)])

@@ -1,0 +1,122 @@
+"""Which gateway a robot connects to next, what it takes for an address, and what it passes over."""
+
+from __future__ import annotations
+
+import pytest
+
+from robot_bridge.core.messages.robots import OpAck, Start
+from robot_bridge.core.messages.validation import LONGEST_ADDRESS, MOST_GATEWAYS
+from robot_bridge.protocol.codec import decode_answer
+from robot_bridge.protocol.gateway_addresses import FIRST_WAIT, LONGEST_WAIT, SPREAD, GatewayAddresses
+
+A, B, C = (f"ws://{name}:8765/robot" for name in ("127.0.0.1", "south.example.org", "[::1]"))
+
+
+@pytest.fixture
+def addresses():
+    addresses = GatewayAddresses(A)
+    addresses.learn([A, B, C])
+    addresses.answered()
+    return addresses
+
+
+def tries(addresses, count):
+    """Return the addresses that are tried one after the other, and the waits before each."""
+    found = []
+    for _ in range(count):
+        wait = addresses.next_wait()
+        found.append((addresses.current, wait))
+    return [one for one, _ in found], [wait for _, wait in found]
+
+
+def is_about(wait, seconds):
+    return (1 - SPREAD) * seconds <= wait <= (1 + SPREAD) * seconds
+
+
+def test_its_own_is_tried_once_more_and_then_the_others_in_turn(addresses):
+    tried, waits = tries(addresses, 7)
+    assert tried[0] == A
+    assert sorted(tried[1:3]) == sorted((B, C))
+    assert tried == [*tried[:3], *tried[:3], A]
+    assert all(is_about(wait, FIRST_WAIT) for wait in waits[:3])
+    assert all(is_about(wait, 2 * FIRST_WAIT) for wait in waits[3:6])
+
+
+def test_from_one_that_says_that_it_ends_it_goes_to_another_at_once(addresses):
+    addresses.next_wait(ends=True)
+    assert addresses.current != A
+    there = addresses.current
+    addresses.answered()
+    addresses.next_wait()
+    assert addresses.current == there
+
+
+def test_one_alone_is_tried_again_and_again_ever_later():
+    addresses = GatewayAddresses(A)
+    tried, waits = tries(addresses, 8)
+    assert set(tried) == {A}
+    assert all(is_about(wait, min(FIRST_WAIT * 2**n, LONGEST_WAIT)) for n, wait in enumerate(waits))
+
+
+def test_the_robots_of_one_gateway_are_spread_over_all_others():
+    first = set()
+    for _ in range(60):
+        addresses = GatewayAddresses(A)
+        addresses.learn([A, B, C])
+        addresses.next_wait(ends=True)
+        first.add(addresses.current)
+    assert first == {B, C}
+
+
+def test_what_is_told_later_takes_the_place_of_what_was_told_but_not_of_what_was_given(addresses):
+    addresses.learn([B])
+    assert sorted(addresses.known) == sorted((A, B))
+    addresses.learn(None)
+    addresses.learn([])
+    addresses.learn("ws://x/robot")
+    addresses.learn([7, {"url": B}])
+    assert sorted(addresses.known) == sorted((A, B))
+
+
+def test_the_name_by_which_a_gateway_tells_itself_is_tried_last():
+    addresses = GatewayAddresses("ws://localhost:9000/robot")
+    addresses.learn([A, B, C])
+    assert addresses.known[-1] == A
+
+
+def test_who_came_with_tls_goes_nowhere_without():
+    addresses = GatewayAddresses("wss://north.example.org/robot")
+    addresses.learn(["ws://south.example.org/robot", "wss://east.example.org/robot"])
+    assert addresses.known == ["wss://north.example.org/robot", "wss://east.example.org/robot"]
+
+
+@pytest.mark.parametrize("op", ["Start", "OpAck"])
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        "http://x:1/robot",
+        "ws://",
+        "ws:///robot",
+        "ws://x:0/robot",
+        "ws://x:99999/robot",
+        "ws://[::1/robot",
+        "ws://me:secret@x/robot",
+        "ws://x/robot?robot=r2",
+        "ws://x/ro bot",
+        "ws://x/robot\n",
+        "ws://x/" + LONGEST_ADDRESS * "r",
+    ],
+)
+def test_what_is_no_address_is_passed_over_and_no_robot_is_lost_for_it(op, wrong):
+    assert decode_answer(op, {"gateways": [wrong, B, B, 30 * " "]}).gateways == [B]
+    assert decode_answer(op, {"gateways": [wrong]}).gateways is None
+
+
+def test_only_so_many_are_taken():
+    many = [f"ws://gateway-{n}.example.org:8765/robot" for n in range(10_000)]
+    for message in (Start(gateways=many), OpAck(gateways=many)):
+        assert message.gateways == many[:MOST_GATEWAYS]
+    addresses = GatewayAddresses(A)
+    for begin in range(0, 1000, 100):
+        addresses.learn(many[begin:])
+    assert len(addresses.known) <= MOST_GATEWAYS + 2
