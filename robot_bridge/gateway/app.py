@@ -265,7 +265,7 @@ class Gateway:
 
     async def _field_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
         if path != SITE:
-            return self._field.file(request)
+            return await self._field.file(request)
         if refusal := await self._gate.may_read(visitor, request):
             return refusal
         return await self._field.site(request)

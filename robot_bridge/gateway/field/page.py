@@ -78,13 +78,13 @@ class FieldPage:
         """Tell whether ``path`` is the page's or looks as if it were, of a site that has the page."""
         return self._maps.settings.field_page.served and (path == PAGE or path.startswith(f"{PAGE}/"))
 
-    def file(self, request: Request) -> Response:
+    async def file(self, request: Request) -> Response:
         """Return a file of the page, or 404."""
         content = self._files.get(urlsplit(request.path).path)
         if content is None:
             text = f"The field page has no such file; it is at {PAGE}.\n".encode()
             return http_response(http.HTTPStatus.NOT_FOUND, text, [("Content-Type", KINDS[".txt"])])
-        return self._answer(request, content)
+        return await self._answer(request, content)
 
     async def site(self, request: Request) -> Response:
         """Return the site as the page draws it, or 503 with the reason why it cannot be drawn."""
@@ -98,7 +98,7 @@ class FieldPage:
                     kind = [("Content-Type", KINDS[".txt"])]
                     return http_response(http.HTTPStatus.SERVICE_UNAVAILABLE, text, kind)
                 self._site = site, outline
-        return self._answer(request, self._site[1])
+        return await self._answer(request, self._site[1])
 
     def _outline(self, site: Site) -> _Content:
         field = site.settings.field_page
@@ -110,7 +110,7 @@ class FieldPage:
         }
         return _Content("application/json", json.dumps(content, separators=(",", ":")).encode())
 
-    def _answer(self, request: Request, content: _Content) -> Response:
+    async def _answer(self, request: Request, content: _Content) -> Response:
         headers = [
             ("Content-Type", content.kind),
             ("ETag", content.tag),
@@ -125,7 +125,9 @@ class FieldPage:
         if content.tag in request.headers.get("If-None-Match", ""):
             return http_response(http.HTTPStatus.NOT_MODIFIED, b"", headers)
         if "gzip" in request.headers.get("Accept-Encoding", "") and len(content.plain) > _WORTH_PACKING:
-            return http_response(http.HTTPStatus.OK, content.packed, [*headers, ("Content-Encoding", "gzip")])
+            # To compress one the first time takes milliseconds, in which robots' messages would wait.
+            packed = await asyncio.to_thread(getattr, content, "packed")
+            return http_response(http.HTTPStatus.OK, packed, [*headers, ("Content-Encoding", "gzip")])
         return http_response(http.HTTPStatus.OK, content.plain, headers)
 
     def _policy(self, request: Request) -> str:
