@@ -59,7 +59,7 @@ COLUMNS = (
         tr("How far it is beside its path, or from the target that it reached last"),
         True,
     ),
-    Column("Link", tr("Link"), "ws", tr("How it is connected")),
+    Column("Link", tr("Link"), "ws", tr("How it is connected; @ and a name: at another gateway")),
     Column(
         "Position",
         tr("Position"),
@@ -72,14 +72,14 @@ COLUMNS = (
 TITLES = tuple(column.title for column in COLUMNS)
 TASK = TITLES.index("Task")
 POSITION = TITLES.index("Position")
-SHORT = {"websocket": "ws"}
-"""Links whose names do not fit into a column."""
+ELSEWHERE = "gateway "
 
 
-def short_link(values: dict) -> str:
-    """Return how a robot is connected, short."""
-    link = str(values.get("link", ""))
-    return SHORT.get(link, link)
+def short_link(link: str) -> str:
+    """Return how a robot is connected so that it fits into the column, such as ``ws`` or ``@north``."""
+    if link.startswith(ELSEWHERE):
+        return f"@{link[len(ELSEWHERE) :]}"
+    return "ws" if link == "websocket" else link
 
 
 def idle_in_words(*, stopped: bool, paused: bool) -> str:
@@ -231,8 +231,7 @@ class FleetRows:
         return known
 
     def _links(self) -> list[str]:
-        links = self.picture.texts("link")
-        return [SHORT.get(link, link) for link in links]
+        return [short_link(link) for link in self.picture.texts("link")]
 
     def _tasks(self) -> list[str]:
         stopped = self.picture.column("stopped").tolist()
@@ -452,7 +451,7 @@ class RobotModel(QAbstractTableModel):
         if title == "Task":
             return fleet.task(row)
         if title == "Link":
-            return short_link(fleet.row_values(row))
+            return short_link(str(fleet.row_values(row).get("link", "")))
         if title == TITLES[POSITION]:
             return self._view.place_in_words(*fleet.xy[row].tolist())
         value = fleet.off(row) if title == "Off" else float(fleet.numbers[title][row])

@@ -5092,8 +5092,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
-            <source>How it is connected</source>
-            <translation>Com està connectat</translation>
+            <source>How it is connected; @ and a name: at another gateway</source>
+            <translation>Com està connectat; @ i un nom: en una altra passarel·la</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />

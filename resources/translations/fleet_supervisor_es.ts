@@ -5092,8 +5092,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
-            <source>How it is connected</source>
-            <translation>Cómo está conectado</translation>
+            <source>How it is connected; @ and a name: at another gateway</source>
+            <translation>Cómo está conectado; @ y un nombre: en otra pasarela</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />

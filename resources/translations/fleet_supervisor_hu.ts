@@ -5064,8 +5064,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />
-            <source>How it is connected</source>
-            <translation>Hogyan kapcsolódik</translation>
+            <source>How it is connected; @ and a name: at another gateway</source>
+            <translation>Hogyan kapcsolódik; @ és egy név: másik átjárónál</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_model.py" />

@@ -94,6 +94,11 @@ def test_every_column_of_a_robot(table, at_desk):
     ]
 
 
+def test_the_gateway_of_a_robot_elsewhere_fits_into_its_column(table, at_desk, gateway, make_robot, wait):
+    gateway.show(make_robot("r1", 50, 40, link="gateway north"), make_robot("r2", 60, 40, link="gateway b"))
+    wait(lambda: {"@b", "@north"} <= set(column(table, "Link")))
+
+
 def test_what_a_narrow_panel_cuts_of_a_task_is_in_its_tool_tip(table, at_desk, gateway, make_robot, wait):
     gateway.show(make_robot("r1", 50, 40, stopped=True))
     wait(lambda: "stopped" in column(table, "Task"))
