@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import shutil
-import time
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -24,12 +23,12 @@ from tests.support.errors import StageError
 from tests.support.fleet import PROJECT, SITE, Served, Start, serve, start_robots
 from tests.support.nats_server import NatsCluster
 from tests.support.operators import open_desk
-from tests.support.patience import BUSY
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.qgis import virtual_screen
 from tests.support.robots.robot_wires import RobotWire
 from tests.support.session import play
+from tools.demonstration_steps import DemonstrationSteps
 from tools.plugin_files import ROOT
 
 FOLDER = Path(os.environ.get("FLEET_CLUSTER_FOLDER") or ROOT / "build" / "cluster")
@@ -63,24 +62,23 @@ class ClusterDemonstration:
         self._nats = nats
         self._site = read_site(SITE)
         self._gateways: dict[str, Served] = {}
-        self._began = time.monotonic()
-        self._steps: list[str] = []
+        self._steps = DemonstrationSteps(FOLDER, processes)
 
     def run(self) -> None:
         """Do everything.
 
         :raises StageError: at the first step that does not happen.
         """
-        self._happened(f"PostgreSQL and a NATS cluster of {len(self._nats.servers)} servers run")
+        self._steps.happened(f"PostgreSQL and a NATS cluster of {len(self._nats.servers)} servers run")
         for name in PLACES:
             self._serve(name)
-        self._wait("each gateway telling robots of all", self._all_are_told)
+        self._steps.wait("each gateway telling robots of all", self._all_are_told)
         listed = ", ".join(f"{name} at {one.address}" for name, one in self._gateways.items())
-        self._happened(f"{len(PLACES)} gateways serve {self._site.name!r} together: {listed}")
+        self._steps.happened(f"{len(PLACES)} gateways serve {self._site.name!r} together: {listed}")
         for name, robots in PLACES.items():
             starts = [Start(robot, pose) for robot, pose, _ in robots]
             start_robots(self._processes, self._gateways[name].address, Path(), SPEED, starts)
-        self._happened("two robots connect to each; every robot was given the address of one gateway")
+        self._steps.happened("two robots connect to each; every robot was given the address of one gateway")
         display, session = virtual_screen(self._processes, *WINDOW), "cluster_session.py"
         entries = play(
             self._processes,
@@ -92,7 +90,7 @@ class ClusterDemonstration:
             killed=[f"gateway-{DOOMED}"],
         )
         for entry in entries:
-            self._happened(entry["text"])
+            self._steps.happened(entry["text"])
             self._follow(entry["step"])
         for picture in FOLDER.glob("*.png"):
             reduce_colours(picture)
@@ -115,10 +113,10 @@ class ClusterDemonstration:
             self._send()
         elif step == "driving":
             self._nats.servers[FIRST_KILLED].kill()
-            self._happened(f"{FIRST_KILLED} is killed (SIGKILL)")
+            self._steps.happened(f"{FIRST_KILLED} is killed (SIGKILL)")
         elif step == "bus":
             self._gateways[DOOMED].process.kill()
-            self._happened(f"gateway {DOOMED} is killed (SIGKILL)")
+            self._steps.happened(f"gateway {DOOMED} is killed (SIGKILL)")
 
     def _send(self) -> None:
         """Send all robots but one, those of other gateways too."""
@@ -126,7 +124,7 @@ class ClusterDemonstration:
             sent = [(robot, end) for robots in PLACES.values() for robot, _, end in robots if robot != SENT]
             for robot, (x, y) in sent:
                 desk.send(f"demo-cluster-{robot}", robot, "SetPosEnd", x=x, y=y)
-        self._happened(f"a program at {SENDER} sends {len(sent)} robots, two of them its own")
+        self._steps.happened(f"a program at {SENDER} sends {len(sent)} robots, two of them its own")
 
     def _judge(self) -> None:
         """Hold what other gateways say against what the desk showed."""
@@ -137,7 +135,7 @@ class ClusterDemonstration:
                 standing = {robot["robot"] for robot in told if abs(robot["v"]) <= STANDING}
                 if not desk.emergency["in_force"] or standing != robots:
                     raise StageError(f"gateway {name}: stop {desk.emergency}; {standing or 'nobody'} stands")
-        self._happened(f"each gateway says the same: the stop is in force, {len(robots)} robots stand")
+        self._steps.happened(f"each gateway says the same: the stop is in force, {len(robots)} robots stand")
 
     def _plan(self) -> dict[str, object]:
         frame = self._site.frame
@@ -156,20 +154,6 @@ class ClusterDemonstration:
             "extent": frame.to_crs(np.array([EXTENT[:2], EXTENT[2:]])).ravel().tolist(),
             "pictures": str(FOLDER),
         }
-
-    def _wait(self, what: str, condition: Any) -> None:
-        until = time.monotonic() + 20 * BUSY
-        while not condition():
-            self._processes.require_running()
-            if time.monotonic() > until:
-                raise StageError(f"{what} did not come about")
-            time.sleep(0.2)
-
-    def _happened(self, text: str) -> None:
-        line = f"{time.monotonic() - self._began:6.1f} s  {text}"
-        self._steps.append(line)
-        print(line, flush=True)
-        (FOLDER / "steps.txt").write_text("\n".join(self._steps) + "\n", encoding="utf-8")
 
 
 def _told_gateways(address: str) -> list[str]:

@@ -10,8 +10,6 @@ import os
 import shutil
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from dataclasses import asdict
 from pathlib import Path
 
@@ -21,12 +19,12 @@ from robot_bridge.core.sites.site import read_site
 from tests.support.errors import StageError
 from tests.support.fleet import start_gateway
 from tests.support.operators import ask, open_desk
-from tests.support.patience import BUSY
 from tests.support.picture import reduce_colours
 from tests.support.processes import Processes
 from tests.support.qgis import virtual_screen
 from tests.support.session import play
 from tests.support.wire import RefusedError
+from tools.demonstration_steps import DemonstrationSteps
 from tools.plugin_files import ROOT
 from tools.zalazone.links import Links, peer
 from tools.zalazone.places import AWAY, CONE, GOAL, GRASS, ROAD_CLASS, START, same_ground, spellings
@@ -66,8 +64,7 @@ class ZalaZone:
 
     def __init__(self, processes: Processes):
         self._processes = processes
-        self._began = time.monotonic()
-        self._steps: list[str] = []
+        self._steps = DemonstrationSteps(FOLDER, processes)
 
     def run(self) -> None:
         """Do everything.
@@ -78,7 +75,7 @@ class ZalaZone:
         python = peer()
         self._publish()
         self._address = start_gateway(self._processes, FOLDER / "fleet.db", FOLDER / "site")
-        self._happened(f"the gateway serves it at {self._address}")
+        self._steps.happened(f"the gateway serves it at {self._address}")
         self._links = Links(self._processes, python, FOLDER / "links", self._address, self._site.settings)
         self._replay()
         self._robots()
@@ -101,7 +98,7 @@ class ZalaZone:
         roads = self._site.centrelines
         length = sum(float(np.hypot(*np.diff(road.points, axis=0).T).sum()) for road in roads)
         box = self._site.bounds
-        self._happened(
+        self._steps.happened(
             f"published {self._site.name!r}: {len(roads)} road centrelines ({length / 1000:.1f} km), "
             f"{len(self._site.surfaces)} road surfaces, {box.x_max - box.x_min:.0f} × "
             f"{box.y_max - box.y_min:.0f} m, with the drone's orthophoto of the university track"
@@ -110,7 +107,7 @@ class ZalaZone:
     def _replay(self) -> None:
         self._links.start_replay(DATA / RECORDING, CARS)
         names = [f"replay-{name}" for name in CARS.values()]
-        self._wait("the six recorded cars", lambda: self._fresh(names))
+        self._steps.wait("the six recorded cars", lambda: self._fresh(names))
         recorded = read_recording(DATA / RECORDING, 200.0)
         for _ in range(LOOKS):
             told = self._watched(WATCHED_S)
@@ -122,19 +119,21 @@ class ZalaZone:
                 f"the cars are told {found.rate:.1f} times a second, up to {found.furthest:.2f} m beside the "
                 f"recording; right is {RECORDED_HZ:g}, and {LARGEST_ERROR_M} m"
             )
-        self._happened(
+        self._steps.happened(
             f"six recorded cars drive on the dynamic platform, replayed at {found.rate:.1f} Hz (recorded at "
             f"{RECORDED_HZ:g}): {found.samples} places, each within {found.furthest * 1000:.1f} mm of the "
             f"recorded line, 95 % within {found.jitter * 1000:.0f} ms of their time"
         )
-        self._happened(f"they are marked as replay and cannot be commanded: {self._refusal(names[0])!r}")
+        self._steps.happened(
+            f"they are marked as replay and cannot be commanded: {self._refusal(names[0])!r}"
+        )
 
     def _robots(self) -> None:
         self._links.start_robot(FIRST, AWAY, SPEEDS[FIRST])
         self._links.start_robot(SECOND, START, SPEEDS[SECOND])
         self._links.start_ros()
-        self._wait("the two ROS 2 robots", lambda: self._fresh([FIRST, SECOND]))
-        self._happened(
+        self._steps.wait("the two ROS 2 robots", lambda: self._fresh([FIRST, SECOND]))
+        self._steps.happened(
             f"two ROS 2 robots, rclpy nodes with Nav2's actions, were found on their network: "
             f"{FIRST}, {SECOND}"
         )
@@ -151,7 +150,7 @@ class ZalaZone:
         if grass["surfaces"] != [None]:
             raise StageError(f"on the grass at {GRASS} the gateway knows {grass['surfaces']}")
         asked_in = ", ".join(f"{place.text} ({place.called})" for place in self._spelled)
-        self._happened(
+        self._steps.happened(
             f"which surface is there? asphalt at {asked_in}; no road on the grass beside the course"
         )
         (way,) = ask(self._address, ("get_route", {"start": list(START), "x": GOAL[0], "y": GOAL[1]}))
@@ -171,7 +170,7 @@ class ZalaZone:
             raise StageError(f"only {on_road:.0%} of the way lies on a road surface")
         self._metres = way["metres"]
         ground = ", ".join(f"{part['metres']:.0f} m {part['surface']}" for part in way["surfaces"])
-        self._happened(
+        self._steps.happened(
             f"the shortest route across the course: {way['metres']:.0f} m along the roads ({ground}), "
             f"{math.dist(START, GOAL):.0f} m as the crow flies; {on_road:.0%} of it on a road surface"
         )
@@ -180,7 +179,7 @@ class ZalaZone:
         plan = self._plan()
         display, session = virtual_screen(self._processes, *WINDOW), "zalazone_session.py"
         for entry in play(self._processes, FOLDER, session, plan, QGIS_TIMEOUT, display=display):
-            self._happened(entry["text"])
+            self._steps.happened(entry["text"])
         reduce_colours(Path(str(plan["picture"])))
 
     def _plan(self) -> dict[str, object]:
@@ -221,7 +220,7 @@ class ZalaZone:
         placed = [(cone["x"], cone["y"]) for cone in self._links.said(FIRST, "cone")]
         placed = [place for place in placed if math.dist(place, CONE) < 1.0]
         apart, stood, off = same_ground(sent, placed, CONE, CONES)
-        self._happened(
+        self._steps.happened(
             f"the {CONES} cones stand on one point: targets {apart * 1000:.0f} mm apart, placed by the "
             f"robot's own word {stood * 1000:.0f} mm apart and {off * 1000:.0f} mm from the point at most"
         )
@@ -234,7 +233,7 @@ class ZalaZone:
         (goal,) = self._links.said(SECOND, "goal")
         if route["state"] != "reached" or off > self._site.settings.reached_tolerance_m:
             raise StageError(f"{SECOND}'s route is {route['state']}; it stands {off:.2f} m from its end")
-        self._happened(
+        self._steps.happened(
             f"{SECOND} drove the route by Nav2's {goal['kind']}, {len(goal['points'])} points, and stands "
             f"{off:.2f} m from its end"
         )
@@ -272,20 +271,6 @@ class ZalaZone:
                 if not places or (places[-1].x, places[-1].y) != (sample.x, sample.y):
                     places.append(sample)
         return seen
-
-    def _wait(self, what: str, condition: Callable[[], bool]) -> None:
-        until = time.monotonic() + 20 * BUSY
-        while not condition():
-            self._processes.require_running()
-            if time.monotonic() > until:
-                raise StageError(f"{what} did not appear at the gateway")
-            time.sleep(0.3)
-
-    def _happened(self, text: str) -> None:
-        line = f"{time.monotonic() - self._began:6.1f} s  {text}"
-        self._steps.append(line)
-        print(line, flush=True)
-        (FOLDER / "steps.txt").write_text("\n".join(self._steps) + "\n", encoding="utf-8")
 
 
 def check_data() -> None:
