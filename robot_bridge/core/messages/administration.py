@@ -41,7 +41,7 @@ class HelloResult:
     """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
 
     ``database`` tells the gateway's database from every other: with another one, robots and commands of the
-    same names are others.
+    same names are others. ``robots`` is how many there are now; a gateway that tells it knows views.
     """
 
     protocol: int
@@ -50,6 +50,7 @@ class HelloResult:
     role: Role
     emergency: EmergencyReport
     database: str = ""
+    robots: int | None = None
 
 
 @dataclass(frozen=True)
