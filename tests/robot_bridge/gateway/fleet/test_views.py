@@ -304,7 +304,8 @@ def test_each_cell_counts_the_robots_in_it(robots, view):
                 found[name, cell % density.columns, cell // density.columns] = count
     expected = {}
     for at_x, at_y, group in robots:
-        column, row = (at_x - density.x) // density.cell, (at_y - density.y) // density.cell
+        column = at_x // density.cell - density.x / density.cell
+        row = at_y // density.cell - density.y / density.cell
         if 0 <= column < density.columns and 0 <= row < density.rows:
             key = ("fresh", "silent", "offline")[group], int(column), int(row)
             expected[key] = expected.get(key, 0) + 1
