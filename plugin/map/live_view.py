@@ -182,7 +182,7 @@ class LiveView(QObject):
 
     def _robots_removed(self, gone: RemovedRobots) -> None:
         self._trails.drop(gone.rows)
-        self.layer.drop(gone.names)
+        self.layer.drop(gone.all_names)
         self._frame.start()
 
     def _way_changed(self) -> None:
@@ -213,6 +213,9 @@ class LiveView(QObject):
 
     def _go_after(self) -> None:
         if self.following is FollowMode.NOBODY or self._desk.state.site is None:
+            return
+        if self.following is FollowMode.ALL and self._desk.state.robots.fleet is not None:
+            # Those in view are no fleet to go after: the map would never show another one.
             return
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         xy = robots.xy
@@ -251,6 +254,7 @@ class LiveView(QObject):
             },
             draft=desk.drafts.draft,
             cursor=desk.drafts.cursor,
+            fleet=desk.state.robots.fleet,
             rows=rows,
         )
 

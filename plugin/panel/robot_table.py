@@ -276,12 +276,21 @@ class RobotPanel(QWidget):
     def _narrow(self, *_what: object) -> None:
         which = list(RobotChoice)[self._which.currentIndex()]
         self.table.robots.set_filter(self._search.text(), which)
+        self._desk.view.search(self._search.text())
         self.table.refresh()
 
     def _show_count(self) -> None:
-        listed, all_ = self.table.robots.rowCount(), self.table.robots.count()
+        listed, all_ = self.table.robots.rowCount(), self._desk.state.robots.count
         part = tr("{listed} of {all}", listed=listed, all=all_)
         self._count.setText(f"{listed}" if listed == all_ else part)
+        if self._desk.state.robots.fleet is not None:
+            text = tr(
+                "{listed} of {all} robots: those in view, selected, or with an alarm. The search finds "
+                "others by name.",
+                listed=listed,
+                all=all_,
+            )
+            self._count.setToolTip(text)
 
     def _fill_menu(self) -> None:
         menu = self._columns.menu()
