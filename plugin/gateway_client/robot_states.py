@@ -261,6 +261,17 @@ MEETINGS = {
 """How two robots come into each other's way, by the kind of a ConflictReport."""
 
 
+def part_in_words(robots: RobotStates) -> str:
+    """Return of how many of all robots the desk is told; empty where of every one."""
+    if robots.fleet is None:
+        return ""
+    return tr(
+        "This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.",
+        known=len(robots),
+        all=robots.count,
+    )
+
+
 def longest_word(words: dict) -> str:
     """Return the word that needs the widest column."""
     return max(words.values(), key=len)

@@ -10,7 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.robot_states import RemovedRobots, part_in_words
 from ..layers.live_layers import ProjectWatch
 from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import MapTransformError
@@ -144,6 +144,8 @@ class LiveView(QObject):
     def follow(self, mode: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = mode
+        if mode is FollowMode.ALL and (told := part_in_words(self._desk.state.robots)):
+            self._desk.complained.emit(f"{tr('All robots cannot be followed.')} {told}")
         if mode is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")

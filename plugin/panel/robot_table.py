@@ -28,7 +28,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.robot_states import RemovedRobots, part_in_words
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
@@ -283,14 +283,8 @@ class RobotPanel(QWidget):
         listed, all_ = self.table.robots.rowCount(), self._desk.state.robots.count
         part = tr("{listed} of {all}", listed=listed, all=all_)
         self._count.setText(f"{listed}" if listed == all_ else part)
-        if self._desk.state.robots.fleet is not None:
-            text = tr(
-                "{listed} of {all} robots: those in view, selected, or with an alarm. The search finds "
-                "others by name.",
-                listed=listed,
-                all=all_,
-            )
-            self._count.setToolTip(text)
+        if told := part_in_words(self._desk.state.robots):
+            self._count.setToolTip(f"{told} {tr('The search finds others by name.')}")
 
     def _fill_menu(self) -> None:
         menu = self._columns.menu()
