@@ -103,7 +103,8 @@ class ViewSubscription(QObject):
         if now - self._looked_at < LEAST_REST_S:
             return
         self._looked_at = now
-        self._find()
+        if fleet is not None:
+            self._find()
         if (view := self._wanted(site.bounds)) is not None:
             self._subscribe(view)
 

@@ -121,7 +121,11 @@ class RobotStates:
             self.fleet = sightings.view
         self.revision += 1
         if len(gone.rows):
-            self._names, self._by_name, self._orders = [], [], []
+            # To find again what thousands are sorted by takes longer than all else, and robots leave views
+            # all the time.
+            rows = set(gone.rows.tolist())
+            self._orders = [order for row, order in enumerate(self._orders) if row not in rows]
+            self._names, self._by_name = [], []
             self.arrangement += 1
         return gone
 

@@ -16,7 +16,7 @@ from .labels import Labels
 from .primitives import FORMAT
 from .scene import MapScene, Screen
 
-FAINTEST, DARKEST = 0.35, 0.85
+FAINTEST, DARKEST = 0.3, 0.9
 """How much of the map a cell with one robot covers, and the fullest one."""
 LEGEND_AT = 12
 """Pixels of the legend from the left and from below."""
@@ -77,8 +77,8 @@ def _picture(density: Density) -> QImage:
     colours = [STATE_COLOURS[state] for state in (RobotState.FRESH, RobotState.LOST, RobotState.OFFLINE)]
     rgb = np.array([(c.red(), c.green(), c.blue()) for c in colours], dtype=np.float64)
     mixed = (counts / np.maximum(total, 1.0)).T @ rgb
-    most = np.log1p(total.max(initial=1.0))
-    cover = FAINTEST + (DARKEST - FAINTEST) * np.log1p(total) / most
+    # By the root: a cell with four times as many covers twice as much, and the emptiest ones are seen.
+    cover = FAINTEST + (DARKEST - FAINTEST) * np.sqrt(total / total.max(initial=1.0))
     pixels = np.zeros((density.rows * density.columns, 4), dtype=np.uint8)
     cells = np.array(density.cells, dtype=np.intp)
     # Premultiplied, and in memory blue first.
