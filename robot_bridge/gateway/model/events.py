@@ -78,6 +78,16 @@ class RobotLeft:
         return f"robot {self.robot!r} that went to gateway {self.gateway!r}"
 
 
+@dataclass(frozen=True)
+class SiteChosen:
+    """A supervisor chose at this gateway which site is served; that is stored."""
+
+    site: str
+
+    def __str__(self) -> str:
+        return f"the choice of site {self.site}"
+
+
 Event = TypeVar("Event")
 
 

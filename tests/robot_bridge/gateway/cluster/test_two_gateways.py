@@ -11,30 +11,13 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
-
-
-class Gateways:
-    """Gateways a and b of one fleet."""
-
-    def __init__(self, start_bridge, site, url, folder, *options):
-        def start(name):
-            state = folder / name
-            state.mkdir(exist_ok=True)
-            return start_bridge(site, url, ["--gateway-name", name, "--state", state, *options])
-
-        self.a, self.b = start("a"), start("b")
-
-    def robot(self, bridge, name, magic=1, at=(20.0, 8.0)):
-        wire = bridge.robot(name)
-        wire.plug_in(magic)
-        wire.tell("SendPos", {"x": at[0], "y": at[1], "theta": 0.5, "v": 0.0})
-        return wire
 
 
 @pytest.fixture(scope="module")
@@ -44,18 +27,12 @@ def site(limited_site):
 
 @pytest.fixture(scope="module")
 def pair(start_bridge, site, fleet_url, nats, tmp_path_factory):
-    yield Gateways(start_bridge, site, fleet_url, tmp_path_factory.mktemp("state"), "--bus", nats.url)
+    yield GatewayPair(start_bridge, site, fleet_url, tmp_path_factory.mktemp("state"), "--bus", nats.url)
 
 
 @pytest.fixture
 def name():
     return f"robot-{next(NUMBERS)}"
-
-
-def desk_at(bridge):
-    desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 20})
-    return desk
 
 
 def close_code(wire):
@@ -323,7 +300,7 @@ def test_what_cannot_be_is_named(start_bridge, site, fleet_url, new_database, op
 
 def test_two_gateways_need_no_further_server(start_bridge, site, new_database, tmp_path, name):
     """On PostgreSQL's notifications alone."""
-    pair = Gateways(start_bridge, site, new_database("postgresql"), tmp_path)
+    pair = GatewayPair(start_bridge, site, new_database("postgresql"), tmp_path)
     robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
     desk.wait_for_robots(name)
     desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)

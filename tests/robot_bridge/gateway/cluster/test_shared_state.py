@@ -1,0 +1,101 @@
+"""What several gateways share goes for all of them: the chosen site, accepted observations, queues."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import shutil
+import urllib.request
+from dataclasses import replace
+
+import pytest
+
+from robot_bridge.core.robotmap.binary import decode
+from robot_bridge.core.sites.site import read_site, write_site
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.gateway_pair import GatewayPair
+
+NUMBERS = itertools.count(1)
+
+
+def publish(folder, sample, **changes):
+    site = read_site(sample)
+    settings = replace(site.settings, **changes)
+    write_site(folder, settings, site.outlines, site.centrelines, site.surfaces, site.keepouts)
+
+
+@pytest.fixture(scope="module")
+def sites(tmp_path_factory, sample_site):
+    """The sites of each gateway's computer, in a folder of its own."""
+    folders = {}
+    for name in "ab":
+        folders[name] = folder = tmp_path_factory.mktemp(f"sites-{name}")
+        (folder / "north").mkdir()
+        for file in ("site.toml", "site.gpkg"):
+            shutil.copy(sample_site / file, folder / "north")
+        publish(folder / "south", sample_site, id="south", name="South field")
+    publish(folders["a"] / "east", sample_site, id="east", name="East field")
+    return folders
+
+
+@pytest.fixture(scope="module")
+def pair(start_bridge, sites, fleet_url, tmp_path_factory):
+    """On PostgreSQL's notifications alone."""
+    start = {name: sites[name] / "north" for name in "ab"}
+    return GatewayPair(start_bridge, start, fleet_url, tmp_path_factory.mktemp("state"))
+
+
+@pytest.fixture
+def name():
+    return f"robot-{next(NUMBERS)}"
+
+
+def hearing(bridge, operator="Ben"):
+    """Connect as an operator; return the desk, and the notifications that it hears as they come."""
+    desk, told = bridge.desk(operator), []
+    hear = desk._hear
+    desk._hear = lambda frame: (told.append(frame), hear(frame))
+    return desk, told
+
+
+def site_told(told, **values):
+    reports = [frame["params"] for frame in told if frame["method"] == "site"]
+    return bool(reports) and all(reports[-1].get(key) == value for key, value in values.items())
+
+
+def health_of(bridge):
+    url = bridge.address.replace("ws://", "http://") + "/healthz"
+    with urllib.request.urlopen(url, timeout=10) as page:
+        return json.load(page)
+
+
+def test_a_choice_of_a_site_goes_for_all_gateways(pair, name):
+    robot, ada, (ben, told) = pair.robot(pair.b, name), pair.a.desk("Ada"), hearing(pair.b)
+    assert ada.ask("choose_site", {"site": "south"})["id"] == "south"
+    ben.until(lambda: site_told(told, id="south"))
+    assert decode(robot.hear("SetMap")).meta["id"] == "south"
+    # The last choice goes, wherever it was made.
+    ben.ask("choose_site", {"site": "north"})
+    wait_until(lambda: pair.a.desk("Eve").site["id"] == "sample")
+
+
+def test_a_gateway_that_cannot_serve_what_was_chosen_says_so_until_it_can(pair, sites, sample_site):
+    ada, (ben, told) = pair.a.desk("Ada"), hearing(pair.b)
+    ada.ask("choose_site", {"site": "east"})
+    ben.until(lambda: told and "no site in a folder 'east'" in (told[-1]["params"].get("problem") or ""))
+    assert site_told(told, id="sample")
+    health = health_of(pair.b)
+    assert health["site"]["ok"] is False and "east was chosen for the fleet" in health["site"]["text"]
+    # Published there as well it is served.
+    publish(sites["b"] / "east", sample_site, id="east", name="East field")
+    ben.until(lambda: site_told(told, id="east", problem=None))
+    assert health_of(pair.b)["site"]["ok"]
+
+
+def test_a_gateway_takes_the_choice_when_it_starts(pair):
+    pair.a.desk("Ada").ask("choose_site", {"site": "north"})
+    wait_until(lambda: pair.b.desk("Eve").site["id"] == "sample")
+    pair.b.kill_gateway()
+    pair.a.desk("Ada").ask("choose_site", {"site": "south"})
+    pair.b.start_gateway()
+    assert pair.b.desk("Eve").site["id"] == "south"
