@@ -9,6 +9,7 @@ from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
 from .cluster.follower import Followed, Follower
 from .cluster.messages import Wake
+from .cluster.observation_feed import ObservationFeed
 from .cluster.position_relay import PositionRelay
 from .cluster.request_relay import RequestRelay
 from .cluster.step_feed import StepFeed
@@ -52,6 +53,9 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._observations = ObservationFeed(
+            fleet.observations, fleet.listeners, fleet.events, exchange, database
+        )
         self._sites = Follower("site", sites, exchange)
         fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
         self._owners_changed = asyncio.Event()
@@ -75,6 +79,7 @@ class ClusterRelays:
             "steps of others": self._steps.run,
             "positions of others": self._positions.run,
             "details of others": self._details.run,
+            "observations of others": self._observations.run,
             "site of others": self._sites.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally

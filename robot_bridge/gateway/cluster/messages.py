@@ -58,7 +58,7 @@ class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
-WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site"]
+WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site", "observations"]
 """What another gateway had better look at."""
 
 

@@ -99,3 +99,35 @@ def test_a_gateway_takes_the_choice_when_it_starts(pair):
     pair.a.desk("Ada").ask("choose_site", {"site": "south"})
     pair.b.start_gateway()
     assert pair.b.desk("Eve").site["id"] == "south"
+
+
+def sources_on_the_map_of(robot):
+    """Return the sources of the obstacles on the map that a robot is sent around (20, 8)."""
+    robot.calls.clear()
+    robot.ask("GetMap", {"x": 20.0, "y": 8.0, "area": 900})
+    return {obstacle.ext.get("src") for obstacle in decode(robot.hear("SetMap")).obstacles}
+
+
+def test_what_operators_accept_at_one_gateway_is_on_the_maps_of_the_other(pair, name):
+    here, there, (ben, told) = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b"), hearing(pair.b)
+
+    def state():
+        news = [f["params"] for f in told if f["method"] == "observation" and f["params"]["robot"] == name]
+        return news[-1]["state"] if news else None
+
+    here.ask("SetObject", {"x": 21.5, "y": 9.0, "object": "cone-7", "radius": 0.3})
+    ben.until(lambda: state() == "pending")
+    (seen,) = ben.ask("get_observations", {"robot": name})["observations"]
+    source = f"observation:{seen['observation']}"
+    ada = pair.a.desk("Ada")
+    ada.ask("review_observation", {"observation": seen["observation"], "accept": True})
+    wait_until(lambda: source in sources_on_the_map_of(there))
+    ben.until(lambda: state() == "accepted")
+    # Taken off it again, at the other one.
+    ben.ask("review_observation", {"observation": seen["observation"], "accept": False, "revise": True})
+    wait_until(lambda: source not in sources_on_the_map_of(here))
+    # It is told once where it happened: that gateway has looked again when it tells of the next.
+    ben.until(lambda: state() == "rejected")
+    here.ask("SetObject", {"x": 22.5, "y": 9.0, "object": "cone-8"})
+    ben.until(lambda: state() == "pending")
+    assert [f["params"]["state"] for f in told if f["method"] == "observation"].count("rejected") == 1
