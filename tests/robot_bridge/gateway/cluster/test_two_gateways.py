@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import signal
 import time
-from contextlib import contextmanager
 
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
+from tests.support.databases.database_client import DatabaseClient
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port
@@ -43,7 +44,7 @@ def close_code(wire):
         return closed.rcvd.code
 
 
-@contextmanager
+@contextlib.contextmanager
 def standing_still(bridge):
     """Have a gateway do nothing until the block ends, however it ends."""
     bridge.gateway.send_signal(signal.SIGSTOP)
@@ -265,6 +266,57 @@ def test_robots_of_two_gateways_are_aborted_together(pair, name):
     assert {name, f"{name}-b"} <= {command["robot"] for command in found}
     for one in (there, here):
         one.wait_for("Abort")
+
+
+def targets(*robots):
+    return {"positions": [{"robot": robot, "x": 22.0 + n, "y": 8.0} for n, robot in enumerate(robots)]}
+
+
+def test_targets_of_robots_of_two_gateways_are_sent_together(pair, name):
+    there, here = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
+    desk = desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    result = desk.ask("set_positions", targets(name, f"{name}-b"))
+    assert [(one["robot"], one["params"]["x"]) for one in result["commands"]] == [
+        (name, 22.0),
+        (f"{name}-b", 23.0),
+    ]
+    assert "refused" not in result
+    assert (there.hear("SetPosEnd")["x"], here.hear("SetPosEnd")["x"]) == (22.0, 23.0)
+    # What is wrong with all of it is sent to nobody.
+    with pytest.raises(RefusedError, match=r"nobody.*is not known"):
+        desk.ask("set_positions", targets(name, f"{name}-b", "nobody"))
+    with pytest.raises(RefusedError, match="named more than once"):
+        desk.ask("set_positions", targets(name, f"{name}-b", name))
+    # What one gateway refuses is refused of its robots, by name.
+    there.tell("Stopped")
+    wrong = targets(f"{name}-b", name)
+    wrong["positions"][1]["x"] = 9e5
+    result = desk.ask("set_positions", wrong)
+    assert [one["robot"] for one in result["commands"]] == [f"{name}-b"]
+    ((robot, reason),) = [(one["robot"], one["reason"]) for one in result["refused"]]
+    assert robot == name and "site" in reason
+
+
+def test_targets_are_not_sent_again_when_a_gateway_dies_over_them(pair, name):
+    """The one that takes its robots over sends none that the other one may have sent."""
+    pair.robot(pair.a, name)
+    here, desk = pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0)), desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    with contextlib.closing(DatabaseClient(pair.b.database)) as client:
+        client.sql("begin")
+        client.sql("lock table commands in exclusive mode")
+        id = desk.begin("set_positions", targets(name, f"{name}-b"))
+        begun = "select begun_by from relayed_requests where robot = ? and begun_by is not null"
+        wait_until(lambda: pair.b.sql(begun, name))
+        pair.a.kill_gateway()
+    result = desk.answer(id, 20.0)
+    assert here.hear("SetPosEnd")["x"] == 23.0
+    ((robot, reason),) = [(one["robot"], one["reason"]) for one in result["refused"]]
+    assert robot == name and "ended while it did this" in reason
+    sent = pair.b.sql("select robot from commands where robot in (?, ?)", name, f"{name}-b")
+    assert sent == [(f"{name}-b",)]
+    pair.a.start_gateway()
 
 
 def test_a_second_gateway_of_one_name_is_refused(pair, start_bridge, site, fleet_url, nats):
