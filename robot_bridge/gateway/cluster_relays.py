@@ -11,6 +11,7 @@ from .cluster.follower import Followed, Follower
 from .cluster.messages import Wake
 from .cluster.observation_feed import ObservationFeed
 from .cluster.position_relay import PositionRelay
+from .cluster.queue_feed import QueueFeed
 from .cluster.request_relay import RequestRelay
 from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
@@ -53,6 +54,7 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._queues = QueueFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
         self._observations = ObservationFeed(
             fleet.observations, fleet.listeners, fleet.events, exchange, database
         )
@@ -79,6 +81,7 @@ class ClusterRelays:
             "steps of others": self._steps.run,
             "positions of others": self._positions.run,
             "details of others": self._details.run,
+            "queues of others": self._queues.run,
             "observations of others": self._observations.run,
             "site of others": self._sites.run,
             "closures of others": lambda: every(

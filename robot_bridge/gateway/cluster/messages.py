@@ -35,12 +35,15 @@ COLUMNS = 6
 """numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its
 last message."""
 
+MOST_NAMED = 50
+"""robots that are named one by one in a message."""
+
 Gateway = Annotated[str, Meta(max_length=32)]
 Robot = Annotated[str, Meta(max_length=63)]
 Id = Annotated[str, Meta(max_length=64)]
 Line = Annotated[str, Meta(max_length=600)]
 Status = Annotated[str, Meta(max_length=LONGEST_STATUS)]
-Names = Annotated[list[Robot], Meta(max_length=50)]
+Names = Annotated[list[Robot], Meta(max_length=MOST_NAMED)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
 
 
@@ -132,7 +135,13 @@ class DetailBatch(BusMessage, frozen=True, tag="details"):
     robots: Annotated[list[RobotDetails], Meta(max_length=MOST_ROBOTS)]
 
 
-AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch | DetailBatch
+class QueuesChanged(BusMessage, frozen=True, tag="queues"):
+    """Queues of robots of the gateway have changed; that is stored."""
+
+    robots: Names
+
+
+AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch | DetailBatch | QueuesChanged
 _DECODER = msgspec.msgpack.Decoder(AnyMessage)
 _ENCODER = msgspec.msgpack.Encoder()
 

@@ -57,6 +57,16 @@ class QueueChanged:
 
 
 @dataclass(frozen=True)
+class QueueReported:
+    """Operators of this gateway are told of a robot's queue, which is stored."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the report of the queue of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
 class RobotReturned:
     """A robot is heard again that was lost or offline; nobody heard it for ``away_s`` seconds."""
 

@@ -13,7 +13,7 @@ import pytest
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.bridge.gateway_pair import GatewayPair
+from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 
 NUMBERS = itertools.count(1)
 
@@ -131,3 +131,31 @@ def test_what_operators_accept_at_one_gateway_is_on_the_maps_of_the_other(pair, 
     here.ask("SetObject", {"x": 22.5, "y": 9.0, "object": "cone-8"})
     ben.until(lambda: state() == "pending")
     assert [f["params"]["state"] for f in told if f["method"] == "observation"].count("rejected") == 1
+
+
+def tasks(desk, robot):
+    """Return the tasks of a robot's queue as a desk was told of it last, each with its state."""
+    queue = desk.queues.get(robot, {})
+    return [(one["task"], one["state"]) for one in (*queue.get("tasks", ()), *queue.get("ended", ()))]
+
+
+def test_changes_of_a_queue_elsewhere_are_told_by_themselves(pair, name):
+    robot, ada, ben = pair.robot(pair.a, name), desk_at(pair.a), desk_at(pair.b)
+    ben.wait_for_robots(name)
+    first, second = f"{name}-task-1", f"{name}-task-2"
+    wanted = [{"task": first, "x": 22.0, "y": 8.0}, {"task": second, "x": 24.0, "y": 8.0}]
+    ada.ask("set_queue", {"robot": name, "revision": 0, "tasks": wanted})
+    ben.until(lambda: tasks(ben, name) == [(first, "current"), (second, "waiting")])
+    assert ben.queues[name]["robot_state"] == "fresh"
+    # What the robot does, and what an operator elsewhere does.
+    robot.hear("SetPosEnd")
+    robot.tell("SendPos", {"x": 22.0, "y": 8.0, "theta": 0.5, "v": 0.0})
+    ben.until(lambda: tasks(ben, name) == [(second, "current"), (first, "done")])
+    ada.ask("pause_queue", {"robot": name})
+    ben.until(lambda: ben.queues[name]["state"] == "paused")
+    # One who connects later asks for all of them.
+    eve = pair.b.desk("Eve")
+    assert name in {one["robot"] for one in eve.ask("get_queue")["queues"]}
+    # Nobody tells of this one.
+    pair.b.sql("update queues set reason = 'a look finds it' where robot = ?", name)
+    eve.until(lambda: eve.queues.get(name, {}).get("reason") == "a look finds it")
