@@ -64,7 +64,7 @@ class DetailRelay:
         self._newest[batch.gw] = batch.t
         for one in batch.robots:
             described = DescribedElsewhere(
-                one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities
+                one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities, one.magic
             )
             self._robots.describe_elsewhere(one.name, batch.gw, described)
 
@@ -80,4 +80,5 @@ def _details(robot: Robot) -> RobotDetails:
         None if robot.latency is None else round(robot.latency, 3),
         robot.paths,
         robot.abilities,
+        robot.magic,
     )

@@ -126,6 +126,7 @@ class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
     latency: Annotated[float, Meta(ge=0, le=1e6)] | None = None
     paths: PathDeclaration | None = None
     abilities: Annotated[str, Meta(max_length=128)] | None = None
+    magic: int | None = None
 
 
 class DetailBatch(BusMessage, frozen=True, tag="details"):
@@ -141,7 +142,33 @@ class QueuesChanged(BusMessage, frozen=True, tag="queues"):
     robots: Names
 
 
-AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch | DetailBatch | QueuesChanged
+class NameQuery(BusMessage, frozen=True, tag="name?"):
+    """Whether another robot runs at the gateway that this goes to, under the name of one that said Ready."""
+
+    id: Id
+    robot: Robot
+    magic: int
+
+
+class NameAnswer(BusMessage, frozen=True, tag="name"):
+    """The answer to a :class:`NameQuery`: why that robot is refused, None where it is not."""
+
+    id: Id
+    refusal: Line | None = None
+
+
+AnyMessage = (
+    Beat
+    | Wake
+    | StopCall
+    | StopSeen
+    | AbortCall
+    | PositionBatch
+    | DetailBatch
+    | QueuesChanged
+    | NameQuery
+    | NameAnswer
+)
 _DECODER = msgspec.msgpack.Decoder(AnyMessage)
 _ENCODER = msgspec.msgpack.Encoder()
 

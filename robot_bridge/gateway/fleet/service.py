@@ -143,6 +143,7 @@ class Fleet:
             database,
             clock,
             self.takeover,
+            None if cluster is None else cluster.exchange,
         )
         self.removals = Decommissioning(
             self.robots,

@@ -136,6 +136,33 @@ def test_the_newest_connection_counts(pair, name):
     new.hear("SetPosEnd")
 
 
+def test_a_second_robot_of_one_name_is_refused_at_the_other_gateway(pair, name):
+    first, desk = pair.robot(pair.a, name, magic=1), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    second = pair.b.robot(name)
+    for _ in range(3):
+        with pytest.raises(RefusedError, match=rf"at gateway a another robot runs as '{name}' \(magic 1"):
+            second.ask("Ready", {"magic": 2})
+    # The first one has kept its connection and is commanded on it.
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    first.hear("SetPosEnd")
+    assert pair.b.sql("select gw, fence from robot_owners where robot = ?", name) == [("a", 1)]
+    # One that was started anew is let in: its old connection is gone.
+    first.hang_up()
+    pair.robot(pair.b, name, magic=2)
+    desk.until(lambda: desk.robots[name]["link"] == "websocket")
+
+
+def test_a_robot_that_moves_to_another_gateway_is_known_there(pair, name):
+    """Its gateway stands still, and is not waited for."""
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    robot.plug_in(7, asks_path=True)
+    desk.until(lambda: desk.robots.get(name, {}).get("paths") == "asks")
+    with standing_still(pair.a):
+        pair.robot(pair.b, name, magic=7)
+    assert "does not say whether another robot" not in pair.b.output()
+
+
 def test_a_gateway_that_dies_is_replaced(pair, name):
     """Its robot is commanded at the other: what was queued meanwhile is delivered once, by that one alone."""
     pair.robot(pair.a, name)
