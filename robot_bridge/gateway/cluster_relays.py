@@ -9,7 +9,7 @@ from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
 from .cluster.follower import Followed, Follower
 from .cluster.messages import Wake
-from .cluster.observation_feed import ObservationFeed
+from .cluster.observation_relay import ObservationRelay
 from .cluster.position_relay import PositionRelay
 from .cluster.queue_feed import QueueFeed
 from .cluster.request_relay import RequestRelay
@@ -55,7 +55,7 @@ class ClusterRelays:
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
         self._queues = QueueFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
-        self._observations = ObservationFeed(
+        self._observations = ObservationRelay(
             fleet.observations, fleet.listeners, fleet.events, exchange, database
         )
         self._sites = Follower("site", sites, exchange)

@@ -348,8 +348,11 @@ class SiteWatch:
         What cannot be served here is told to all desks for as long as that is so, and tried again once it is
         published anew.
         """
+        # What is published here waits for no database that is away.
+        if await self._chosen() == self._folder.resolve().name and self._maps.report.problem is None:
+            return
         async with self._reading:
-            name = await self._fleet.database.read(metadata.chosen_site) or self._given
+            name = await self._chosen()
             if name == self._folder.resolve().name:
                 self._report_problem(None)
                 return
@@ -366,6 +369,9 @@ class SiteWatch:
                 return
             log.warning("site %s is served, which was chosen at another gateway", name)
             await self._serve(folder, stamp, site)
+
+    async def _chosen(self) -> str:
+        return await self._fleet.database.read(metadata.chosen_site) or self._given
 
     async def _serve(self, folder: Path, stamp: Stamp, site: Site) -> None:
         self._folder, self._seen, self._doubtful = folder, stamp, None

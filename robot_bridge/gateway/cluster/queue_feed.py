@@ -55,7 +55,7 @@ class QueueFeed:
         try:
             while True:
                 if loop.time() - looked_at >= LOOK_S:
-                    await self.look()
+                    await self.find_changes()
                     looked_at = loop.time()
                 self._is_named.clear()
                 await self._tell_named()
@@ -64,7 +64,7 @@ class QueueFeed:
         finally:
             telling.cancel()
 
-    async def look(self) -> None:
+    async def find_changes(self) -> None:
         """Find the queues that have changed since the last look, whoever told of that; raises StoreError."""
         found = await self._database.read(queues.versions_elsewhere, self._exchange.gateway)
         before, self._versions = self._versions, found

@@ -25,7 +25,7 @@ class ObservedMaps(Protocol):
         """Draw what is accepted by now; raises StoreError."""
 
 
-class ObservationFeed:
+class ObservationRelay:
     """Follows what robots of other gateways saw and operators there accepted, and wakes others."""
 
     def __init__(
