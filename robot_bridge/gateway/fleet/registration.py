@@ -301,6 +301,9 @@ class Registration:
         # One that goes on here, as those of a gateway that died do all at once, is not asked about.
         if known.magic == magic or self._silence(known) >= limit:
             return None
+        # A robot that said Ready there a moment ago is stored, and its number not told yet.
+        if any(one.magic == magic for one in await self._database.read(stored_robots.load, [robot])):
+            return None
         return await self._claims.refusal(robot, magic, gateway)
 
     def _silence(self, known: Robot) -> float:
