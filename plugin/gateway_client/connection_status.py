@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import socket
 import ssl
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ...robot_bridge.core.messages.operator_requests import Role
+from ...robot_bridge.core.messages.validation import is_loopback
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 
@@ -122,14 +122,6 @@ def check_address(url: str) -> str:
             )
         )
     return url
-
-
-def is_loopback(host: str) -> bool:
-    """Tell whether a host name or address is this computer's own, which others cannot reach by it."""
-    try:
-        return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
-    except ValueError:
-        return False
 
 
 ROLES = {

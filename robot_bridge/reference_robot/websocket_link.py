@@ -12,13 +12,13 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from websockets.frames import CloseCode
 
 from ..core.errors import BridgeError
+from ..core.gateway_addresses import GatewayAddresses
 from ..core.messages.json_values import to_json
 from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
 from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from ..protocol.credentials import AccessError, ClientCredentials
-from ..protocol.gateway_addresses import GatewayAddresses
 from .agent import Agent
 
 log = logging.getLogger(__name__)

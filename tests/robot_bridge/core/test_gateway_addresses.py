@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from robot_bridge.protocol.gateway_addresses import FIRST_WAIT, LONGEST_WAIT, SPREAD, GatewayAddresses
 
 from robot_bridge.core.messages.robots import OpAck, Start
 from robot_bridge.core.messages.validation import LONGEST_ADDRESS, MOST_GATEWAYS
 from robot_bridge.protocol.codec import decode_answer
-from robot_bridge.protocol.gateway_addresses import FIRST_WAIT, LONGEST_WAIT, SPREAD, GatewayAddresses
 
 A, B, C = (f"ws://{name}:8765/robot" for name in ("127.0.0.1", "south.example.org", "[::1]"))
 
