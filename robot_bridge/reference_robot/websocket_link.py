@@ -41,7 +41,7 @@ class RobotWebSocketLink:
 
     def __init__(self, url: str, robot: str, credentials: ClientCredentials | None = None) -> None:
         self._credentials = credentials or ClientCredentials()
-        self._addresses = GatewayAddresses(url)
+        self._addresses = GatewayAddresses(url, has_token=self._credentials.token_file is not None)
         self._robot = robot
         self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
         """What is to be sent, in order: a reply does not overtake what was said before it."""

@@ -64,7 +64,7 @@ class LinkClient:
             None if gateway.token_file is None else folder / gateway.token_file,
             None if gateway.ca is None else folder / gateway.ca,
         )
-        self._addresses = GatewayAddresses(gateway.url)
+        self._addresses = GatewayAddresses(gateway.url, has_token=gateway.token_file is not None)
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
         self._ids = itertools.count(1)
