@@ -253,7 +253,8 @@ def test_what_was_asked_at_one_gateway_is_known_at_the_other(pair, name):
         assert not stop(desk, name)["in_force"]
     for wire in (robot, other):
         wire.wait_for("Abort")
-        assert len([call for call in wire.calls if call["method"] == "SetPosEnd"]) == 1
+        # Beside the one that it has heard.
+        assert not [call for call in wire.calls if call["method"] == "SetPosEnd"]
 
 
 def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
