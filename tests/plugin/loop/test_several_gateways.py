@@ -5,12 +5,14 @@ from __future__ import annotations
 import time
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtWidgets import QLabel
 
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
+from tests.support.bridge.command_line import run_command
 from tests.support.fleet import SITE, Start, serve, start_robots
 from tests.support.fleet_panel import state_line
 from tests.support.operators import ask
@@ -25,8 +27,9 @@ SOON = 2.0
 class TwoGateways:
     """Gateways a and b, each a process; one that was killed comes back on its port."""
 
-    def __init__(self, processes, database, folder):
+    def __init__(self, processes, database, folder, options=()):
         self._processes, self._database, self._folder = processes, database, folder
+        self._options = options
         self._served, self._runs = {}, {}
 
     def address(self, name):
@@ -40,7 +43,7 @@ class TwoGateways:
         state.mkdir(exist_ok=True)
         run = self._runs[name] = self._runs.get(name, 0) + 1
         port = self._served[name].port if name in self._served else 0
-        options = ["--state", state, "--gateway-name", name]
+        options = ["--state", state, "--gateway-name", name, *self._options]
         self._served[name] = serve(
             self._processes, SITE, self._database, *options, port=port, name=f"{name}-{run}", forked=True
         )
@@ -64,9 +67,14 @@ class TwoGateways:
 
 
 @pytest.fixture
-def fleet(postgresql_server, tmp_path, wait):
-    database = postgresql_server.new_database()
-    run_once(database, revisions.create)
+def database(postgresql_server):
+    url = postgresql_server.new_database()
+    run_once(url, revisions.create)
+    return url
+
+
+@pytest.fixture
+def fleet(database, tmp_path, wait):
     with Processes(tmp_path / "logs") as processes:
         both = TwoGateways(processes, database, tmp_path)
         for name in ROBOTS:
@@ -126,3 +134,38 @@ def test_a_desk_goes_on_at_another_gateway_and_stops_the_robots_from_there(fleet
     assert not [text for text in iface.texts() if "NOT sent" in text]
     said = window.dock.findChild(QLabel, "fleet_emergency_text").text()
     assert "2 of 2 robots acknowledged" in said
+
+
+def test_token_and_authority_go_with_a_desk_to_the_other_gateway(database, tmp_path, qgis_app, wait):
+    def run(*words):
+        done = run_command(*words)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.strip()
+
+    tls = tmp_path / "tls"
+    run("tls", "create", tls, "--ip", "127.0.0.1")
+    token = run("operators", "add", "Ada", "--role", "viewer", "--database", database)
+    options = ["--certificate", tls / "server.pem", "--key", tls / "server-key.pem"]
+    connection = ConnectionThread()
+
+    def connected(instead):
+        link = connection.collect_updates().link
+        assert link.phase is not ConnectionPhase.FAILED, link.reason
+        return (
+            link.phase is ConnectionPhase.CONNECTED and link.who == "Ada, viewer" and instead in link.instead
+        )
+
+    with Processes(tmp_path / "logs") as processes:
+        both = TwoGateways(processes, database, tmp_path, options)
+        both.start("b")
+        both.start("a")
+        credentials = OperatorCredentials(token, str(tls / "ca.pem"))
+        try:
+            connection.open(f"{both.address('a')}/desk", "whoever", credentials)
+            wait(lambda: connected(""), 10, what="the desk at a")
+            known = connection._worker._client._addresses
+            wait(lambda: len(known.known) == 2, what="the address of b")
+            both.kill("a")
+            wait(lambda: connected(f"at b ({both.place('b')}); a did not answer"), 10, what="the desk at b")
+        finally:
+            connection.shut_down()
