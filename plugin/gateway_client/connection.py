@@ -71,9 +71,9 @@ class GatewayClient:
             while True:
                 self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING, reason))
                 failure = await self._attempt()
-                reason = str(failure)
                 if failure.final and self._has_refused(failure):
                     return
+                reason = self._because(failure)
                 wait = self._addresses.next_wait(ends=failure.ends)
                 due = steady_time() + wait
                 self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
@@ -87,14 +87,16 @@ class GatewayClient:
         self._refusals[self._url] = failure
         if not (failure.everywhere or self._addresses.all_refuse):
             return False
-        refusals = [failure] if failure.everywhere else list(self._refusals.values())
-        status = ConnectionStatus(
-            ConnectionPhase.FAILED,
-            " ".join(map(str, refusals)),
-            wants_token=any(one.wants_token for one in refusals),
-        )
-        self._buffer.add(link=status)
+        wants_token = any(one.wants_token for one in self._refusals.values())
+        reason = self._because(failure)
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=wants_token))
         return True
+
+    def _because(self, failure: GatewayLinkError) -> str:
+        """Return why there is no link: the newest failure, and who refuses for good beside that."""
+        if failure.everywhere:
+            return str(failure)
+        return " ".join(dict.fromkeys([str(failure), *map(str, self._refusals.values())]))
 
     def submit(self, order: OperatorRequest) -> None:
         """Send ``order`` now, or as soon as there is a link again."""

@@ -77,6 +77,11 @@ def link(qgis_app, pair, wait):
     link.connection.shut_down()
 
 
+def close_all(gateway, code):
+    for socket in list(gateway._sockets):
+        asyncio.run_coroutine_threadsafe(socket.close(code), gateway._loop)
+
+
 def test_it_goes_on_at_the_other_gateway_soon_and_says_where_it_is(link, pair):
     a, b = pair
     a.stop()
@@ -88,6 +93,13 @@ def test_it_goes_on_at_the_other_gateway_soon_and_says_where_it_is(link, pair):
     a.start()
     b.stop()
     link.wait_for(ConnectionPhase.CONNECTED, instead=False)
+
+
+def test_it_does_not_come_back_to_a_gateway_that_says_that_it_ends(link, pair):
+    a, _ = pair
+    close_all(a, 1012)
+    link.wait_for(ConnectionPhase.CONNECTED, instead=True)
+    assert len(a.requests_of("hello")) == 1
 
 
 def test_addresses_that_are_told_later_count(link, pair, site, wait):
@@ -136,6 +148,8 @@ def test_one_that_refuses_keeps_the_desk_from_no_other(link, pair):
     b.protocol = 2
     a.stop()
     link.wait_for_reason("speaks protocol 2")
+    link.wait_for_reason(f"Nothing listens at 127.0.0.1:{a.port}")
+    assert "speaks protocol 2" in link.status.reason
     a.start()
     link.wait_for(ConnectionPhase.CONNECTED)
     # The given one refuses by now: the desk goes on at the other.
@@ -158,8 +172,7 @@ def test_where_all_refuse_the_operator_reads_why_each_does(link, pair):
 @pytest.mark.parametrize(("code", "says"), [(4003, "new token"), (4004, "ended your session")])
 def test_who_was_sent_away_by_a_supervisor_does_not_come_back_by_another_gateway(link, pair, code, says):
     a, b = pair
-    for socket in list(a._sockets):
-        asyncio.run_coroutine_threadsafe(socket.close(code), a._loop)
+    close_all(a, code)
     assert says in link.wait_for(ConnectionPhase.FAILED).reason
     assert b.requests == []
 
