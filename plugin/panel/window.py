@@ -46,7 +46,8 @@ class FleetWindow(QObject):
         # A child of the main window, so that scripts find its actions there by their object names.
         super().__init__(iface.mainWindow())
         self._iface = iface
-        self._reason = ""
+        self._reasons: set[str] = set()
+        """Why the link is down, as far as the message bar has said it."""
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -198,13 +199,12 @@ class FleetWindow(QObject):
         self.actions.connect.setText(tr("Disconnect") if is_open else tr("Connect"))
         if link.phase is ConnectionPhase.FAILED:
             self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
-        elif link.phase is ConnectionPhase.RETRYING and link.reason != self._reason:
-            # The panel goes on showing it; the message bar says it once for each outage.
+        elif link.phase is ConnectionPhase.RETRYING and link.reason not in self._reasons:
+            # The panel goes on showing it; the message bar says it once for each outage and gateway.
+            self._reasons.add(link.reason)
             self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
-        self._reason = (
-            "" if link.phase in (ConnectionPhase.CONNECTED, ConnectionPhase.CLOSED) else link.reason
-        )
-        if not self._reason:
+        if not link.reason:
+            self._reasons.clear()
             self.desk.messages.end(OUTAGE)
 
     def _show_emergency(self) -> None:
