@@ -172,7 +172,7 @@ class StatusPages:
 
 
 def _problem_of(site: SiteReport) -> dict[str, Any]:
-    return {"ok": True} if site.problem is None else {"ok": False, "text": site.problem}
+    return {} if site.problem is None else {"ok": False, "text": site.problem}
 
 
 def _single(name: str, text: str, value: Any) -> MetricReading:
