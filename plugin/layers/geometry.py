@@ -32,6 +32,15 @@ _POINT_BYTES = (16, 24, 24, 32)
 """Bytes of a point without Z and M, with Z, with M, and with both: a thousand between their kinds."""
 _OLD_Z = 0x80000000
 """What a kind with Z has besides itself in older files."""
+_ONE = _COUNT.pack(1)
+_ONE_RING, _ONE_LINE = _HEAD.pack(1, _POLYGON) + _ONE, _HEAD.pack(1, _LINE)
+_USUAL = (
+    (_ONE_RING, True),
+    (_HEAD.pack(1, _MULTI_POLYGON) + _ONE + _ONE_RING, True),
+    (_ONE_LINE, False),
+    (_HEAD.pack(1, _MULTI_LINE) + _ONE + _ONE_LINE, False),
+)
+"""What most geometries begin with, which have one ring or line and no Z and M, and whether it is closed."""
 
 
 class Rings(NamedTuple):
@@ -50,6 +59,9 @@ def rings_of(wkb: bytes) -> Rings | None:
 
     None for everything else: points, curves, collections, and big-endian ones.
     """
+    for head, closed in _USUAL:
+        if wkb.startswith(head):
+            return Rings([wkb[len(head) + _COUNT.size :]], [False], closed)
     order, kind = _HEAD.unpack_from(wkb)
     dimensions, kind = (1, kind - _OLD_Z) if kind >= _OLD_Z else divmod(kind, 1000)
     closed = kind in (_POLYGON, _MULTI_POLYGON)
