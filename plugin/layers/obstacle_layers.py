@@ -17,16 +17,18 @@ from ...robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from ...robot_bridge.core.robotmap.parametric_shapes import Template, template
 from ..ui.language import tr, tr_count
 from .geometry import (
-    FARTHEST_M,
     NO_PLACE,
     FeatureShape,
     FeatureShapes,
     Rings,
+    RingTable,
+    are_points,
+    geometry_of,
     normal_extra,
     rings_of,
     shapes_of,
 )
-from .layer_expressions import FeatureFilter, FeatureValues, LayerRules, ObstacleValues
+from .layer_expressions import UNKNOWN, FeatureFilter, FeatureValues, LayerRules, Memory, ObstacleValues
 from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, without_geometry
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
@@ -51,21 +53,27 @@ class PointObstacles:
         self._width = rules.rule("width", expressions.width)
         self._template = rules.rule("template", expressions.template)
         self._rotation = rules.rule("rotation", expressions.rotation)
+        self._memory = Memory([self._width, self._template, self._rotation])
 
     def of(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
         """Return a shape around each of ``points``, the geometry of ``feature`` in metres.
 
         ``rotation`` turns it clockwise, so that a heading turns what faces north to face there.
         """
-        places = [(point.x(), point.y()) for point in points.vertices()]
+        places = _places(points)
         if not all(map(math.isfinite, chain.from_iterable(places))):
             return FeatureShapes([], [NO_PLACE])
         self._rules.at(feature)
-        notes: list[str] = []
-        made = self._named(notes) or self._round(notes)
-        turned = -math.radians(self._degrees(notes))
-        rings = [made.at(x, y, turned) for x, y in places]
-        return FeatureShapes([FeatureShape(ring, ShapeType.CLOSED_POLYGON) for ring in rings], notes)
+        known, key = self._rules.known(self._memory)
+        if known is UNKNOWN:
+            notes: list[str] = []
+            made = self._named(notes) or self._round(notes)
+            known = made.turned(-math.radians(self._degrees(notes))), notes
+            self._memory.keep(key, known)
+        made, notes = known
+        return FeatureShapes(
+            [FeatureShape(made.at(x, y), ShapeType.CLOSED_POLYGON) for x, y in places], list(notes)
+        )
 
     def _named(self, notes: list[str]) -> Template | None:
         value = self._rules.value("template", self._template, notes)
@@ -107,6 +115,11 @@ class PointObstacles:
         return degrees
 
 
+def _places(points: QgsGeometry) -> list[tuple[float, float]]:
+    some = points.vertices() if points.isMultipart() else [points.asPoint()]
+    return [(point.x(), point.y()) for point in some]
+
+
 # --- Features of one obstacle layer made into outlines, many at a time ---
 
 ESTIMATED = {"h": "est"}
@@ -136,9 +149,8 @@ class OutlineBatch:
         """Return how many features wait until their outlines are asked for."""
         return len(self._features.ids)
 
-    def add(self, id: int, geometry: QgsGeometry, values: ObstacleValues) -> None:
-        """Add a feature that counts: its geometry in metres, and what its layer says of it."""
-        wkb = geometry.asWkb().data()
+    def add(self, id: int, wkb: bytes, geometry: QgsGeometry, values: ObstacleValues) -> None:
+        """Add a feature that counts: its geometry in metres, also as ``wkb``, and what is said of it."""
         rings = rings_of(wkb) if self._is_plain else None
         is_valid = rings is not None and (not rings.closed or geometry.isGeosValid())
         self._features.add(id, wkb, rings or _NO_RINGS, is_valid, values)
@@ -159,7 +171,7 @@ class OutlineBatch:
         features, self._features = self._features, _FeatureColumns()
         if not features.ids:
             return
-        table = _RingTable(features)
+        table = RingTable(features.points, features.counts, features.closed, features.valid)
         changes = np.flatnonzero(table.sound[1:] != table.sound[:-1]) + 1
         edges = [0, *changes.tolist(), len(features.ids)]
         for first, last in pairwise(edges):
@@ -170,7 +182,7 @@ class OutlineBatch:
                 if rows:
                     yield Outlines.from_rows(rows)
 
-    def _together(self, features: _FeatureColumns, table: _RingTable, first: int, last: int) -> Outlines:
+    def _together(self, features: _FeatureColumns, table: RingTable, first: int, last: int) -> Outlines:
         ids, values = features.ids[first:last], features.values[first:last]
         closed, counts = features.closed[first:last], features.counts[first:last]
         for id, one in zip(ids, values, strict=True):
@@ -201,13 +213,11 @@ class OutlineBatch:
             ext=_repeated(extras, counts) if any(extras) else None,
         )
 
-    def _one_by_one(self, features: _FeatureColumns, table: _RingTable, k: int) -> list[OutlineRow]:
+    def _one_by_one(self, features: _FeatureColumns, table: RingTable, k: int) -> list[OutlineRow]:
         id, values = features.ids[k], features.values[k]
         notes = list(values.notes)
         if features.wkb[k]:
-            geometry = QgsGeometry()
-            geometry.fromWkb(features.wkb[k])
-            shapes, found = shapes_of(geometry, self._role)
+            shapes, found = shapes_of(geometry_of(features.wkb[k]), self._role)
             notes = [*found, *(notes if shapes else [])]
         else:
             rings = features.points[table.rings(k, k + 1)]
@@ -282,50 +292,6 @@ class _FeatureColumns:
         self.counts.append(len(rings.points))
         self.points += rings.points
         self.inner += rings.inner
-
-
-class _RingTable:
-    """The rings of many features one after the other, and which features are ``sound``, (n,) bool.
-
-    Sound are those that need no repair and no word: closed rings of three corners or more that are valid
-    together, lines without repeated points, every coordinate a number on Earth. ``lengths`` is how many
-    points each ring has.
-    """
-
-    def __init__(self, features: _FeatureColumns) -> None:
-        counts = np.array(features.counts)
-        self._coordinates = np.frombuffer(b"".join(features.points), "<f8").reshape(-1, 2)
-        self.lengths = np.array(list(map(len, features.points)), dtype=np.int64) // 16
-        self._first_ring = np.concatenate([[0], np.cumsum(counts)])
-        self._first_point = np.concatenate([[0], np.cumsum(self.lengths)])
-        self.sound = (counts > 0) & np.array(features.valid)
-        odd = self._odd_rings(np.repeat(np.array(features.closed), counts))
-        self.sound[np.repeat(np.arange(len(counts)), counts)[odd]] = False
-
-    def rings(self, first: int, last: int) -> slice:
-        """Return which rings are those of features ``first`` to ``last``."""
-        return slice(int(self._first_ring[first]), int(self._first_ring[last]))
-
-    def coordinates(self, rings: slice) -> np.ndarray:
-        """Return the coordinates of some rings, (m, 2)."""
-        return self._coordinates[self._first_point[rings.start] : self._first_point[rings.stop]]
-
-    def _odd_rings(self, closed: np.ndarray) -> np.ndarray:
-        """Tell of each ring whether it needs a closer look; ``closed`` says which of them are no lines."""
-        odd: np.ndarray = self.lengths < np.where(closed, 4, 2)
-        xy = self._coordinates
-        if not len(xy):
-            return odd
-        last = len(xy) - 1
-        starts = np.minimum(self._first_point[:-1], last)
-        ends = np.clip(self._first_point[1:] - 1, 0, last)
-        odd |= closed & (xy[starts] != xy[ends]).any(axis=1)
-        ring = np.repeat(np.arange(len(odd)), self.lengths)
-        # So that what is no number is none on Earth either.
-        odd[ring[~(np.abs(xy) <= FARTHEST_M).all(axis=1)]] = True
-        repeated = (xy[1:] == xy[:-1]).all(axis=1) & (ring[1:] == ring[:-1]) & ~closed[ring[1:]]
-        odd[ring[1:][repeated]] = True
-        return odd
 
 
 def _repeated(values: Sequence[Any], counts: Sequence[int]) -> list[Any]:
@@ -497,8 +463,9 @@ class _LayerReader:
             self._warn(feature, [note])
             return
         values = self._values.of(feature)
-        if not _is_points(geometry):
-            self._batch.add(feature.id(), metres, values)
+        wkb = metres.asWkb().data()
+        if not are_points(wkb):
+            self._batch.add(feature.id(), wkb, metres, values)
             return
         shapes, notes = self._posts_in(feature, metres)
         if notes or not shapes:

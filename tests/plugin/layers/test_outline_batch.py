@@ -48,7 +48,8 @@ def outlines(qgis_app, monkeypatch):
         )
         for number, (shape, height) in enumerate(zip(shapes, heights, strict=True)):
             values = ObstacleValues(height, height == 3.0, height == 3.0, 0.0, f"label {height}", True, [])
-            batch.add(number, QgsGeometry.fromWkt(shape), values)
+            geometry = QgsGeometry.fromWkt(shape)
+            batch.add(number, geometry.asWkb().data(), geometry, values)
         made = Outlines.joined(list(batch.outlines()))
         return made, [*warnings.texts(), str(batch.unknown)]
 
