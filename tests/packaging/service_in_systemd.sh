@@ -10,7 +10,8 @@ make_world "$folder" /
 make -s -C "$repository" install-service install-maps-service DESTDIR="$root" PREFIX=/opt/robot-bridge PROGRAM=no
 mkdir -p "$root/opt/robot-bridge/bin" "$root/opt/robot-bridge/packages" "$root/var/lib/robot-bridge"
 # The service sees no /tmp of others, where the repository may lie.
-cp -r "$repository/robot_bridge" "$root/opt/robot-bridge/"
+# With its times, by which Python knows that what it compiled of them is still theirs.
+cp -a "$repository/robot_bridge" "$root/opt/robot-bridge/"
 mount --bind "$packages" "$root/opt/robot-bridge/packages"
 printf '#!/bin/sh\nexport PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\nexec %s "$@"\n' "$python" > "$root/opt/robot-bridge/bin/python"
 chmod 755 "$root/opt/robot-bridge/bin/python"

@@ -118,6 +118,9 @@ STORED_WITHIN = 1.0
 """seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
 NOTED_WITHIN = 0.1
 """seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
+ANSWERS_TOGETHER = 0.05
+"""seconds for which answers of robots wait for one another before operators are told: to count thousands at
+each answer of one of them would take all the time in which the robots are to be heard."""
 NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
 
@@ -168,6 +171,7 @@ class EmergencyStops:
         self._tally = StopAnswers()
         self._writing = asyncio.Lock()
         self._storing: asyncio.Future[None] | None = None
+        self._answers_due: asyncio.TimerHandle | None = None
 
     def reach(self, link: Callable[[str], None]) -> None:
         """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
@@ -358,23 +362,23 @@ class EmergencyStops:
         if not self._book.awaits_stop(robot):
             order = CommandOrder(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
             await self._book.issue([order])
-        self.announce()
+        self._announce_answers()
 
     def answered(self, robot: str, call_id: str, refused: bool) -> None:
         """Note what a robot answered to the call that told it directly."""
         if call_id == self.call_id and self._tally.answer(robot, refused=refused):
-            self.announce()
+            self._announce_answers()
 
     def forget(self, robot: str) -> None:
         """Wait for a robot no more: it was removed."""
         self._writer.forget(robot)
         if self._tally.forget(robot) and self.in_force:
-            self.announce()
+            self._announce_answers()
 
     def note_step(self, report: CommandReport) -> None:
         """Note what became of the Abort that a robot was sent."""
         if self.in_force and self._tally.note_step(report):
-            self.announce()
+            self._announce_answers()
 
     def _put_in_force(self, stop: StopRow) -> None:
         self._seen.add(stop.id)
@@ -422,8 +426,17 @@ class EmergencyStops:
             self.announce()
         await self._writer.write_owed()
 
+    def _announce_answers(self) -> None:
+        """Announce what robots answered, together with what others answer meanwhile."""
+        if self._answers_due is None:
+            loop = asyncio.get_running_loop()
+            self._answers_due = loop.call_later(ANSWERS_TOGETHER, self.announce)
+
     def announce(self) -> None:
         """Tell every operator, and other gateways, how things stand."""
+        if self._answers_due is not None:
+            self._answers_due.cancel()
+            self._answers_due = None
         for relay in self._relays:
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.note_change()

@@ -25,6 +25,8 @@ GATEWAY_CHANNEL = "rr"
 
 SHORTEST_S = 0.0003
 LONGEST_S = 0.02
+SELDOM_S, QUIET_AFTER_S = 0.1, 5.0
+"""The pause where nothing was found for so many seconds: robots that report by SQL do so more often."""
 UNSEEN_S = 0.25
 """How long a write may go unseen that left its log as it was."""
 FALLBACK_S = 1.0
@@ -78,10 +80,14 @@ class ReaderLock(Protocol):
 
 
 class PollingWakeup:
-    """Looks again at once where there was something, else less and less often, down to every 20 ms."""
+    """Looks again at once where there was something, else less and less often.
+
+    That is down to every 20 ms, and every 100 ms after five seconds without anything.
+    """
 
     def __init__(self) -> None:
         self._pause = SHORTEST_S
+        self._found_at = time.monotonic()
 
     async def doze(self) -> bool:
         """Return false: nobody tells."""
@@ -89,7 +95,11 @@ class PollingWakeup:
 
     async def wait(self, *, found: bool) -> None:
         """Return after a pause."""
-        self._pause = SHORTEST_S if found else min(2 * self._pause, LONGEST_S)
+        now = time.monotonic()
+        if found:
+            self._found_at = now
+        longest = LONGEST_S if now - self._found_at < QUIET_AFTER_S else SELDOM_S
+        self._pause = SHORTEST_S if found else min(2 * self._pause, longest)
         await asyncio.sleep(self._pause)
 
     async def close(self) -> None:

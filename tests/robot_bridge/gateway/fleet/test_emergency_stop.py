@@ -287,6 +287,9 @@ async def test_every_operator_is_told_of_each_change(two, control):
     two.fleet.listeners.add(Listener())
     await control.stop()
     await two.acknowledge_all("r1")
+    async with asyncio.timeout(30):
+        while len(told) < 3:
+            await asyncio.sleep(0.01)
     await control.clear()
     assert told == [(True, False, 0), (True, True, 0), (True, True, 1), (False, True, 1)]
 

@@ -72,3 +72,26 @@ async def test_without_a_log_it_looks_at_the_tables_again_and_again(tmp_path):
     wakeup = wakeups.LogWakeup(tmp_path / "none-wal")
     for _ in range(20):
         await asyncio.wait_for(wakeup.wait(found=False), 5 * BUSY)
+
+
+async def test_it_looks_less_often_where_nobody_has_asked_for_a_while(monkeypatch):
+    """A gateway whose robots are all on WebSocket has nothing to find."""
+    pauses = []
+
+    async def sleep(seconds):
+        pauses.append(seconds)
+
+    monkeypatch.setattr(wakeups.asyncio, "sleep", sleep)
+    wakeup = wakeups.PollingWakeup()
+    for _ in range(20):
+        await wakeup.wait(found=False)
+    assert pauses[-1] == wakeups.LONGEST_S
+    monkeypatch.setattr(wakeups, "QUIET_AFTER_S", 0.0)
+    for _ in range(5):
+        await wakeup.wait(found=False)
+    assert pauses[-1] == wakeups.SELDOM_S
+    monkeypatch.undo()
+    monkeypatch.setattr(wakeups.asyncio, "sleep", sleep)
+    await wakeup.wait(found=True)
+    await wakeup.wait(found=False)
+    assert pauses[-2] == wakeups.SHORTEST_S and pauses[-1] == 2 * wakeups.SHORTEST_S
