@@ -20,6 +20,7 @@ from .storage.database import Database
 BEAT_INTERVAL_S = 1.0
 OWNERS_INTERVAL_S = 1.0
 CLOSURES_INTERVAL_S = 1.0
+ADDRESSES_INTERVAL_S = 1.0
 FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
 ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots", "suspensions")
@@ -72,6 +73,9 @@ class ClusterRelays:
             "details of others": self._details.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
+            ),
+            "addresses": lambda: every(
+                ADDRESSES_INTERVAL_S, self._fleet.announce_gateways, "addresses", tally
             ),
             "old requests": self._led(
                 "old requests",

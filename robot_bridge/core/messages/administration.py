@@ -8,7 +8,14 @@ from typing import ClassVar
 
 from .operator_requests import DeskRequest, Role
 from .safety import EmergencyReport, check_reason
-from .validation import LONGEST_OPERATOR, MessageError, check_expires_in, check_finite, check_robot_name
+from .validation import (
+    LONGEST_OPERATOR,
+    MessageError,
+    check_expires_in,
+    check_finite,
+    check_robot_name,
+    usable_addresses,
+)
 
 # --- The connection of an operator: what is served here, and who you are ---
 
@@ -41,7 +48,8 @@ class HelloResult:
     """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
 
     ``database`` tells the gateway's database from every other: with another one, robots and commands of the
-    same names are others.
+    same names are others. ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways
+    serve the fleet.
     """
 
     protocol: int
@@ -50,6 +58,23 @@ class HelloResult:
     role: Role
     emergency: EmergencyReport
     database: str = ""
+    gateway: str | None = None
+    gateways: list[str] | None = None
+
+
+@dataclass(frozen=True)
+class Gateways:
+    """Where operators reach the gateways of a fleet that several serve.
+
+    ``gateway`` is the name of the one that tells it; ``gateways`` are the URLs of all, its own first, of at
+    most 256 characters each: at any of them an operator may connect when this one does not answer.
+    """
+
+    gateway: str
+    gateways: list[str]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gateways", usable_addresses(self.gateways) or [])
 
 
 @dataclass(frozen=True)

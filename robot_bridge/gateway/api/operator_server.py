@@ -336,6 +336,7 @@ class OperatorSession:
             self.notify("suspensions", "", to_json(suspensions))
         if (links := self._fleet.links.report()).links:
             self.notify("links", "", to_json(links))
+        gateways = self._fleet.gateways_of_operators()
         return {
             "protocol": PROTOCOL_VERSION,
             "site": to_json(self._fleet.site.report),
@@ -343,6 +344,7 @@ class OperatorSession:
             "role": self._gate.role(self._connection).value,
             "emergency": to_json(self._fleet.emergency.report()),
             "database": self._fleet.reception.database_id,
+            **({} if gateways is None else to_json(gateways)),
         }
 
     def _start(self, name: str, work: Any) -> None:

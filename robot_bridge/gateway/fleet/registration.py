@@ -12,6 +12,7 @@ from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
+from ...core.messages.positions import link_elsewhere
 from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
 from ..cluster.exchange import Exchange
 from ..cluster.ownership import Ownership
@@ -103,7 +104,7 @@ class Takeover:
         for robot in await self._database.read(stored_robots.load, sorted(names)):
             if robot.name not in self._robots and not self._ownership.owns(robot.name):
                 robot.gateway = gateways[robot.name]
-                robot.link = f"gateway {robot.gateway}"
+                robot.link = link_elsewhere(robot.gateway)
                 self._robots.restore(robot, self._clock.time())
 
     async def _take_up(self, names: Sequence[str]) -> None:

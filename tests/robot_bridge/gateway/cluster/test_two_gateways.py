@@ -217,6 +217,46 @@ def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, 
     pair.a.start_gateway()
 
 
+def test_desks_are_told_of_all_gateways_and_again_when_they_change(pair, name):
+    urls = [f"{bridge.address}/desk" for bridge in (pair.a, pair.b)]
+    wait_until(lambda: pair.a.desk().hello["gateways"] == urls)
+    at_b = pair.b.desk()
+    assert (at_b.hello["gateway"], at_b.hello["gateways"]) == ("b", urls[::-1])
+    assert at_b.hello["database"] == pair.a.desk().hello["database"]
+    # One that ends in good order is gone, and one that comes is there.
+    pair.a.end()
+    at_b.until(lambda: at_b.gateways == urls[1:])
+    pair.a.start_gateway()
+    at_b.until(lambda: at_b.gateways == urls[::-1])
+
+
+def test_what_was_asked_at_one_gateway_is_known_at_the_other(pair, name):
+    """A desk asks again there when its gateway dies before it has answered."""
+    robot, other = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
+    desks = [desk_at(bridge) for bridge in (pair.a, pair.b)]
+    for desk in desks:
+        desk.wait_for_robots(name, f"{name}-b")
+    for one, wire in ((name, robot), (f"{name}-b", other)):
+        first, again = (desk.send(f"c-{one}", one, "SetPosEnd", x=22.0, y=8.0) for desk in desks)
+        assert (first["command"], first["op"]) == (again["command"], again["op"])
+        wire.hear("SetPosEnd")
+    robots = {name, f"{name}-b"}
+    aborts = [desk.ask("abort_all", {"command": f"all-{name}"})["commands"] for desk in desks]
+    first, again = ({c["command"] for c in found if c["robot"] in robots} for found in aborts)
+    assert first == again and len(first) == 2
+    for desk in desks:
+        stop(desk, name)
+    clear(desks[1])
+    desks[0].until(lambda: not desks[0].emergency["in_force"])
+    # Asked again once it was cleared, a stop begins at neither.
+    for desk in desks:
+        assert not stop(desk, name)["in_force"]
+    for wire in (robot, other):
+        wire.wait_for("Abort")
+        # Beside the one that it has heard.
+        assert not [call for call in wire.calls if call["method"] == "SetPosEnd"]
+
+
 def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
     robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
     desk.wait_for_robots(name)
