@@ -9,6 +9,7 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import PauseRobot
 from ...robot_bridge.core.messages.roads import ReplannedRobot
@@ -167,14 +168,22 @@ class FleetController(QObject):
             notices.over.connect(self.settled)
         self.preview.refused.connect(self.complained)
 
-    def open_link(self, url: str, operator: str, credentials: OperatorCredentials | None = None) -> None:
+    def open_link(
+        self,
+        url: str,
+        operator: str,
+        credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
+    ) -> None:
         """Connect to a gateway; what another one told is forgotten when this one says which site it serves.
+
+        ``known`` are other gateways of its fleet, from an earlier session.
 
         :raises FleetError: when the URL, the name, the token or the CA file cannot be used.
         """
         if not operator.strip():
             raise NotSentError(tr("The operator's name is empty. Write who you are: it stands in every log."))
-        self.connection.open(url, operator.strip(), credentials)
+        self.connection.open(url, operator.strip(), credentials, known)
         self.state.start(url)
 
     def close_link(self) -> None:

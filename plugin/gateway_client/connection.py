@@ -10,7 +10,7 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, QThread
 
 from ...robot_bridge.core.clock import Clock, steady_time
-from ...robot_bridge.core.gateway_addresses import DESK_PACE, GatewayAddresses
+from ...robot_bridge.core.gateway_addresses import DESK_PACE, FleetGateways, GatewayAddresses
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
 from .connection_status import (
@@ -39,7 +39,7 @@ class GatewayClient:
     """The link to a fleet, for as long as :meth:`run` runs. All methods belong to its event loop.
 
     It is opened to the gateway at ``url``; when that does not answer, to another one that a gateway has told
-    of. One that refuses keeps the desk from no other.
+    of, now or in an earlier session (``known``). One that refuses keeps the desk from no other.
     """
 
     def __init__(
@@ -50,12 +50,15 @@ class GatewayClient:
         library: ModuleType,
         rate: float = 10.0,
         credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
     ):
         self._credentials = credentials or OperatorCredentials()
         self._addresses = GatewayAddresses(url, DESK_PACE, has_token=bool(self._credentials.token))
         self._buffer = buffer
         self._library = library
-        self._protocol = GatewayProtocol(operator, rate, self._addresses, buffer, Clock())
+        known = known or FleetGateways("")
+        self._addresses.learn(list(known.gateways))
+        self._protocol = GatewayProtocol(operator, rate, self._addresses, buffer, Clock(), known.database)
         self._refusals: dict[str, GatewayLinkError] = {}
         self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
@@ -256,8 +259,16 @@ class ConnectionThread(QObject):
         """Whether a link that was given up still has its thread."""
         return bool(self._ending)
 
-    def open(self, url: str, operator: str, credentials: OperatorCredentials | None = None) -> None:
+    def open(
+        self,
+        url: str,
+        operator: str,
+        credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
+    ) -> None:
         """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
+
+        Where it does not answer, to another one of the fleet: those that are ``known``, and those it tells.
 
         :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
         :raises LibraryMissingError: when there is no WebSocket library.
@@ -269,7 +280,7 @@ class ConnectionThread(QObject):
         self.close()
         self._buffer = UpdateBuffer()
         self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING))
-        client = GatewayClient(url, operator, self._buffer, library, self.rate, credentials)
+        client = GatewayClient(url, operator, self._buffer, library, self.rate, credentials, known)
         self._worker = _Worker(client, self._buffer)
         self._worker.start()
 

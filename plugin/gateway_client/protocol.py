@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.gateway_addresses import GatewayAddresses
+from ...robot_bridge.core.gateway_addresses import FleetGateways, GatewayAddresses
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
 from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
@@ -115,16 +115,23 @@ class GatewayProtocol:
 
     What is learnt goes to the buffer, and to ``addresses`` where else the fleet is reached. Orders wait in
     the outbox until a gateway answered them, across links; each is sent once on each link. The gateways of a
-    fleet share its database, and know by their ids those that another has done.
+    fleet share its database, and know by their ids those that another has done. ``database`` tells the fleet
+    whose addresses were known before the first link, if any were.
     """
 
     def __init__(
-        self, operator: str, rate: float, addresses: GatewayAddresses, buffer: UpdateBuffer, clock: Clock
+        self,
+        operator: str,
+        rate: float,
+        addresses: GatewayAddresses,
+        buffer: UpdateBuffer,
+        clock: Clock,
+        database: str = "",
     ):
         self._operator = operator
         self._rate = rate
         self._addresses = addresses
-        self._database = ""
+        self._database = database
         self._buffer = buffer
         self._clock = clock
         self._outbox = RequestOutbox()
@@ -226,7 +233,7 @@ class GatewayProtocol:
         elif method == "site":
             self._buffer.add(site=checked_site(json_values.site_report(params)))
         elif method == "gateways":
-            self._addresses.learn(params["gateways"])
+            self._learn(params["gateways"])
         elif method in NEWEST_COUNTS:
             self._buffer.add(**{method: NEWEST_COUNTS[method](params)})
         elif method in EACH_COUNTS:
@@ -295,7 +302,7 @@ class GatewayProtocol:
             )
         database = str(result.get("database") or "")
         self._check_fleet(database)
-        self._addresses.learn(result.get("gateways"))
+        self._learn(result.get("gateways"))
         if result.get("gateway"):
             self.names[self._url] = one_line(str(result["gateway"]), LONGEST_OPERATOR)
         self._buffer.add(site=checked_site(json_values.site_report(result["site"])), greeting_of=database)
@@ -320,6 +327,12 @@ class GatewayProtocol:
             OperatorRequest(ALL_PLANS, GetPlans.method, json_values.to_json(GetPlans())),
         ]
         return [self._request(order) for order in (*first, *orders)]
+
+    def _learn(self, told: object) -> None:
+        """Know where else the fleet is reached, and have that kept for the next session."""
+        self._addresses.learn(told)
+        others = tuple(one for one in self._addresses.known if one != self._addresses.given)
+        self._buffer.add(gateways=FleetGateways(self._database, others))
 
     def _check_fleet(self, database: str) -> None:
         """Raise LinkError for a gateway that another one told of, and that serves another fleet by now.

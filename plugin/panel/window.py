@@ -22,6 +22,7 @@ from ..map.site_project import ProjectMatch
 from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RouteTool
+from ..settings.fleet_gateways import KnownGateways
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr
@@ -48,6 +49,7 @@ class FleetWindow(QObject):
         self._iface = iface
         self._reasons: set[str] = set()
         """Why the link is down, as far as the message bar has said it."""
+        self._gateways = KnownGateways()
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -159,6 +161,7 @@ class FleetWindow(QObject):
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
         desk.state.link_changed.connect(self._show_link)
+        desk.state.gateways_changed.connect(lambda told: self._gateways.keep(desk.state.url, told))
 
     def _follow(self, mode: FollowMode, on: bool) -> None:
         if on:
@@ -182,7 +185,8 @@ class FleetWindow(QObject):
             return
         panel = self.dock.connection_panel
         try:
-            self.desk.open_link(panel.url(), panel.operator(), panel.credentials())
+            known = self._gateways.of(panel.url())
+            self.desk.open_link(panel.url(), panel.operator(), panel.credentials(), known)
         except FleetError as error:
             self.desk.messages.post(str(error), Level.ERROR, CONNECTING)
             self._show_link()

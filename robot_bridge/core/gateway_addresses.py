@@ -14,6 +14,14 @@ SPREAD = 0.2
 
 
 @dataclass(frozen=True)
+class FleetGateways:
+    """The ``gateways`` of a fleet by their addresses, as one of them told; ``database`` tells which fleet."""
+
+    database: str
+    gateways: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class Pace:
     """How patient who connects is, in seconds.
 

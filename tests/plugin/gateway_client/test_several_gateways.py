@@ -9,7 +9,11 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
+from fleet_supervisor.plugin.settings.connections import GatewayConnection
+from fleet_supervisor.plugin.settings.fleet_gateways import GROUP, KnownGateways
 from fleet_supervisor.robot_bridge.core.clock import steady_time
+from fleet_supervisor.robot_bridge.core.gateway_addresses import FleetGateways
+from qgis.core import QgsSettings
 
 from tests.plugin.conftest import SmallGateway
 from tests.support.patience import BUSY
@@ -175,6 +179,51 @@ def test_who_was_sent_away_by_a_supervisor_does_not_come_back_by_another_gateway
     close_all(a, code)
     assert says in link.wait_for(ConnectionPhase.FAILED).reason
     assert b.requests == []
+
+
+def test_a_desk_that_is_opened_while_its_gateway_is_dead_goes_to_one_that_was_known(qgis_app, pair, wait):
+    a, b = pair
+    a.stop()
+    link = Link(wait)
+    link.connection.open(a.url, "anna", known=FleetGateways(FLEET, (b.url,)))
+    assert link.wait_for(ConnectionPhase.CONNECTED, instead=True).instead.startswith("at b ")
+    link.connection.shut_down()
+
+
+def test_one_that_was_known_and_serves_another_fleet_by_now_is_refused(qgis_app, pair, wait):
+    a, b = pair
+    a.stop()
+    b.database = OTHER_FLEET
+    link = Link(wait)
+    link.connection.open(a.url, "anna", known=FleetGateways(FLEET, (b.url,)))
+    link.wait_for_reason("serves another fleet")
+    assert b.requests_of("subscribe") == []
+    link.connection.shut_down()
+
+
+def test_the_window_keeps_what_gateways_told_and_connects_by_it(plugin, pair, wait):
+    a, b = pair
+    desk = plugin.window.desk
+    panel = plugin.window.dock.connection_panel
+    panel.use(GatewayConnection("pair", a.url, "anna"))
+    connect = plugin.window.actions.connect
+    connect.trigger()
+    wait(lambda: KnownGateways().of(a.url) == FleetGateways(FLEET, (b.url,)), what="what is kept")
+    connect.trigger()
+    a.stop()
+    connect.trigger()
+    wait(lambda: desk.state.link.instead.startswith("at b "), what="the other gateway")
+    # Of one that serves its fleet alone there is nothing to keep.
+    KnownGateways().keep(a.url, FleetGateways(FLEET))
+    assert KnownGateways().of(a.url) is None
+
+
+@pytest.mark.parametrize(
+    "kept", ["", "{", "[]", '{"database": 1, "gateways": []}', '{"database": "x", "gateways": ["http://y"]}']
+)
+def test_what_is_kept_and_makes_no_sense_is_passed_over(iface, kept):
+    QgsSettings().setValue(f"{GROUP}/ws%3A%2F%2Fa", kept)
+    assert KnownGateways().of("ws://a") is None
 
 
 def test_an_older_gateway_tells_of_no_other(qgis_app, pair, wait):
