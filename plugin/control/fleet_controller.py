@@ -29,6 +29,7 @@ from .messages import (
     LinkNotices,
     MessageBoard,
     MessageEndings,
+    ReportNotices,
     SuspensionNotices,
     Topic,
     draft_topic,
@@ -111,6 +112,7 @@ class FleetController(QObject):
         self._endings = MessageEndings(self.messages, self.drafts, state, self)
         self._suspensions = SuspensionNotices(self)
         self._links = LinkNotices(self)
+        self._site_problem = ReportNotices(self)
         self.selection = Selection(self)
         self._rules = CommandChecks(project, self.site_to_canvas, state, self)
         self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
@@ -130,6 +132,7 @@ class FleetController(QObject):
         state.about_to_forget.connect(self.messages.clear)
         state.forgotten.connect(self._forget_robots)
         state.site_changed.connect(self._check_draft_again)
+        state.site_changed.connect(self._show_site_problem)
         state.robots_removed.connect(self._robots_removed)
         state.commands_changed.connect(self._commands_changed)
         state.queues_changed.connect(self._rules.take_targets)
@@ -160,7 +163,7 @@ class FleetController(QObject):
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
         self.orders.settled.connect(self.settled)
-        for notices in (self._suspensions, self._links):
+        for notices in (self._suspensions, self._links, self._site_problem):
             notices.began.connect(self.failed)
             notices.over.connect(self.settled)
         self.preview.refused.connect(self.complained)
@@ -202,6 +205,13 @@ class FleetController(QObject):
 
     def _show_suspensions(self) -> None:
         self._suspensions.show(self.state.suspensions)
+
+    def _show_site_problem(self) -> None:
+        problem = None if self.state.site is None else self.state.site.problem
+        text = tr(
+            "This gateway serves another site than the rest of the fleet: {reason}.", reason=problem or ""
+        )
+        self._site_problem.renew([] if problem is None else [text])
 
     def _show_links(self) -> None:
         self._links.show(self.state.links)

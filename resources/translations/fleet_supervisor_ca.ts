@@ -1143,6 +1143,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Aquesta passarel·la serveix un altre recinte que la resta de la flota: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: no s'ha enviat, perquè ara se serveix un altre recinte. Torneu-ho a dibuixar.</translation>
         </message>

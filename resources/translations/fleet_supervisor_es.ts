@@ -1143,6 +1143,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Esta pasarela sirve otro recinto que el resto de la flota: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: no se envió, porque ahora se sirve otro recinto. Dibújelo de nuevo.</translation>
         </message>

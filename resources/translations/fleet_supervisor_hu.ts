@@ -1137,6 +1137,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Ez az átjáró más telephelyet szolgál ki, mint a flotta többi része: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: nem lett elküldve, mert már másik telephely van szolgáltatva. Rajzolja meg újra.</translation>
         </message>

@@ -7,12 +7,16 @@ from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
+from .cluster.follower import Followed, Follower
 from .cluster.messages import Wake
+from .cluster.observation_relay import ObservationRelay
 from .cluster.position_relay import PositionRelay
+from .cluster.queue_feed import QueueFeed
 from .cluster.request_relay import RequestRelay
 from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
+from .model.events import SiteChosen
 from .model.request_handlers import Answering
 from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
@@ -36,6 +40,7 @@ class ClusterRelays:
         fleet: Fleet,
         handlers: Answering,
         lease: Database,
+        sites: Followed,
         *,
         stops_when_cut_off: bool,
     ) -> None:
@@ -50,6 +55,12 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._queues = QueueFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._observations = ObservationRelay(
+            fleet.observations, fleet.listeners, fleet.events, exchange, database
+        )
+        self._sites = Follower("site", sites, exchange)
+        fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
 
@@ -71,6 +82,9 @@ class ClusterRelays:
             "steps of others": self._steps.run,
             "positions of others": self._positions.run,
             "details of others": self._details.run,
+            "queues of others": self._queues.run,
+            "observations of others": self._observations.run,
+            "site of others": self._sites.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
             ),

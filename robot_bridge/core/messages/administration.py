@@ -27,7 +27,7 @@ class SiteReport:
     """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
 
     ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds ways
-    along roads on it.
+    along roads on it. ``problem`` says why this gateway does not serve what was chosen for its fleet.
     """
 
     id: str
@@ -41,6 +41,7 @@ class SiteReport:
     stale_after: float
     lost_after: float
     roads: bool = False
+    problem: str | None = None
 
 
 @dataclass(frozen=True)

@@ -147,6 +147,7 @@ class Fleet:
             database,
             clock,
             self.takeover,
+            None if cluster is None else cluster.exchange,
         )
         self.removals = Decommissioning(
             self.robots,
@@ -356,6 +357,11 @@ class Fleet:
         self._book.set_tolerance(report.reached_tolerance)
         await self.observations.restore()
         await self.roads.closures.site_changed()
+        self.announce_site()
+
+    def announce_site(self) -> None:
+        """Tell operators of the site that is served."""
+        report = self.site.report
         self.listeners.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------

@@ -76,6 +76,7 @@ class DescribedElsewhere(NamedTuple):
     latency: float | None
     paths: PathDeclaration | None
     abilities: str | None
+    magic: int | None = None
 
 
 @dataclass
@@ -398,6 +399,7 @@ class Robots:
             return
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
+        robot.magic = robot.magic if said.magic is None else said.magic
         if robot.pose is not None:
             robot.pose = replace(robot.pose, battery=said.battery, status=said.status)
         self._touch(robot)
