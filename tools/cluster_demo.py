@@ -2,7 +2,7 @@
 
 PostgreSQL, a NATS cluster of three, four gateways, eight robots that were each given the address of one, and
 a QGIS on a virtual screen; all on this computer, on loopback and free ports. A server of the bus is killed,
-then a gateway, then an operator makes an emergency stop. It leaves build/cluster/.
+then a gateway, then that of the desk, then an operator makes an emergency stop. It leaves build/cluster/.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ WINDOW = (1600, 900)
 EXTENT = (0.0, 0.0, 200.0, 160.0)
 """What the map shows, metres in the site frame: the whole site."""
 DESK, SENDER, DOOMED = "north", "west", "south"
-"""The gateways of the desk in QGIS, of the program that sends robots, and the one that is killed."""
+"""The gateways of the desk in QGIS, of the program that sends robots, and the one that is killed first."""
 FIRST_KILLED = "nats-1"
 PLACES: dict[str, tuple[tuple[str, tuple[float, float, float], tuple[float, float]], ...]] = {
     DESK: (("r1", (20.0, 8.0, 0.0), (118.0, 8.0)), ("r2", (6.0, 44.0, -1.2), (92.0, 22.0))),
@@ -87,7 +87,7 @@ class ClusterDemonstration:
             self._plan(),
             QGIS_TIMEOUT,
             display=display,
-            killed=[f"gateway-{DOOMED}"],
+            killed=[f"gateway-{DOOMED}", f"gateway-{DESK}"],
         )
         for entry in entries:
             self._steps.happened(entry["text"])
@@ -115,8 +115,13 @@ class ClusterDemonstration:
             self._nats.servers[FIRST_KILLED].kill()
             self._steps.happened(f"{FIRST_KILLED} is killed (SIGKILL)")
         elif step == "bus":
-            self._gateways[DOOMED].process.kill()
-            self._steps.happened(f"gateway {DOOMED} is killed (SIGKILL)")
+            self._kill(DOOMED)
+        elif step == "elsewhere":
+            self._kill(DESK)
+
+    def _kill(self, name: str) -> None:
+        self._gateways[name].process.kill()
+        self._steps.happened(f"gateway {name} is killed (SIGKILL)")
 
     def _send(self) -> None:
         """Send all robots but one, those of other gateways too."""
@@ -129,7 +134,7 @@ class ClusterDemonstration:
     def _judge(self) -> None:
         """Hold what other gateways say against what the desk showed."""
         robots = {robot for robots in PLACES.values() for robot, *_ in robots}
-        for name in PLACES.keys() - {DOOMED}:
+        for name in PLACES.keys() - {DOOMED, DESK}:
             with open_desk(self._gateways[name].address) as desk:
                 told = desk.ask("get_positions", {})["robots"]
                 standing = {robot["robot"] for robot in told if abs(robot["v"]) <= STANDING}

@@ -20,7 +20,8 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages.administration import NewToken
-from ..gateway_client.connection_status import ROLES, is_loopback
+from ...robot_bridge.core.messages.validation import is_loopback
+from ..gateway_client.connection_status import ROLES
 from ..ui.dialogs import WrappingLabel
 from ..ui.language import tr
 from ..vendored import vendored_package

@@ -9,6 +9,7 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import PauseRobot
 from ...robot_bridge.core.messages.roads import ReplannedRobot
@@ -28,6 +29,7 @@ from .messages import (
     LinkNotices,
     MessageBoard,
     MessageEndings,
+    ReportNotices,
     SuspensionNotices,
     Topic,
     draft_topic,
@@ -111,6 +113,7 @@ class FleetController(QObject):
         self._endings = MessageEndings(self.messages, self.drafts, state, self)
         self._suspensions = SuspensionNotices(self)
         self._links = LinkNotices(self)
+        self._site_problem = ReportNotices(self)
         self.selection = Selection(self)
         self.view = ViewSubscription(
             canvas, state, self.site_to_canvas, self.drafts, self.sender, clock, self
@@ -134,6 +137,7 @@ class FleetController(QObject):
         state.about_to_forget.connect(self.messages.clear)
         state.forgotten.connect(self._forget_robots)
         state.site_changed.connect(self._check_draft_again)
+        state.site_changed.connect(self._show_site_problem)
         state.robots_removed.connect(self._robots_removed)
         state.commands_changed.connect(self._commands_changed)
         state.queues_changed.connect(self._rules.take_targets)
@@ -164,19 +168,27 @@ class FleetController(QObject):
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
         self.orders.settled.connect(self.settled)
-        for notices in (self._suspensions, self._links):
+        for notices in (self._suspensions, self._links, self._site_problem):
             notices.began.connect(self.failed)
             notices.over.connect(self.settled)
         self.preview.refused.connect(self.complained)
 
-    def open_link(self, url: str, operator: str, credentials: OperatorCredentials | None = None) -> None:
+    def open_link(
+        self,
+        url: str,
+        operator: str,
+        credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
+    ) -> None:
         """Connect to a gateway; what another one told is forgotten when this one says which site it serves.
+
+        ``known`` are other gateways of its fleet, from an earlier session.
 
         :raises FleetError: when the URL, the name, the token or the CA file cannot be used.
         """
         if not operator.strip():
             raise NotSentError(tr("The operator's name is empty. Write who you are: it stands in every log."))
-        self.connection.open(url, operator.strip(), credentials)
+        self.connection.open(url, operator.strip(), credentials, known)
         self.state.start(url)
 
     def close_link(self) -> None:
@@ -198,6 +210,13 @@ class FleetController(QObject):
 
     def _show_suspensions(self) -> None:
         self._suspensions.show(self.state.suspensions)
+
+    def _show_site_problem(self) -> None:
+        problem = None if self.state.site is None else self.state.site.problem
+        text = tr(
+            "This gateway serves another site than the rest of the fleet: {reason}.", reason=problem or ""
+        )
+        self._site_problem.renew([] if problem is None else [text])
 
     def _show_links(self) -> None:
         self._links.show(self.state.links)

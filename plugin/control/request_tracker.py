@@ -17,6 +17,7 @@ from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencySt
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
+from ..gateway_client.protocol import REPEAT_WITHIN
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
@@ -26,18 +27,18 @@ SLOW_AFTER = 5.0
 
 
 class RequestSender(QObject):
-    """Hands requests to the connection while there is a link; an emergency stop also before there is one."""
+    """Hands requests to the connection while there is a link; what stops robots also before there is one."""
 
     failed = pyqtSignal(str)
-    """An emergency stop waits for the link: the text, which must not go unseen."""
+    """What stops robots waits for the link: the text, which must not go unseen."""
     settled = pyqtSignal(str)
     """What ``failed`` told with this text is over."""
 
     def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
         super().__init__(parent)
         self._connection, self._state = connection, state
-        self._not_sent_yet = ""
-        """What was told of a stop that waits for the link."""
+        self._not_sent_yet: set[str] = set()
+        """What was told of stops and Aborts that wait for the link."""
         state.link_changed.connect(self._link_changed)
 
     def submit(self, request: OperatorRequest) -> None:
@@ -45,7 +46,7 @@ class RequestSender(QObject):
         if self._state.link.phase is ConnectionPhase.CONNECTED:
             self._connection.submit(request)
             return
-        if request.method != EmergencyStop.method or not self._connection.is_open:
+        if not (_stops(request) and self._connection.is_open):
             raise NotSentError(
                 tr(
                     "the desk is not connected to a gateway. Connect first; to stop a robot now use the "
@@ -53,15 +54,31 @@ class RequestSender(QObject):
                 )
             )
         self._connection.submit(request)
-        self._not_sent_yet = tr(
-            "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
-            "the robots' own emergency stops now."
-        )
-        self.failed.emit(self._not_sent_yet)
+        if request.method == EmergencyStop.method:
+            text = tr(
+                "EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use "
+                "the robots' own emergency stops now."
+            )
+        else:
+            text = tr(
+                "The Abort is NOT sent yet: the link is down. It is sent if that is back within "
+                "{seconds:g} s; use the robots' own emergency stops now.",
+                seconds=REPEAT_WITHIN,
+            )
+        self._not_sent_yet.add(text)
+        self.failed.emit(text)
 
     def _link_changed(self) -> None:
         if self._state.link.phase is ConnectionPhase.CONNECTED:
-            self.settled.emit(self._not_sent_yet)
+            for text in self._not_sent_yet:
+                self.settled.emit(text)
+            self._not_sent_yet.clear()
+
+
+def _stops(request: OperatorRequest) -> bool:
+    """Tell whether a request stops robots, and sets none in motion."""
+    is_abort = request.method == Send.method and request.params.get("op") == Abort.__name__
+    return is_abort or request.method in (EmergencyStop.method, AbortAll.method)
 
 
 @dataclass

@@ -1,17 +1,16 @@
-"""Connection to the gateway: its thread, the client that keeps it up, and retries with backoff."""
+"""Connection to the gateway: its thread, and the client that keeps it up at one of the fleet's gateways."""
 
 from __future__ import annotations
 
 import asyncio
-import random
 import threading
-from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
 from qgis.PyQt.QtCore import QObject, QThread
 
 from ...robot_bridge.core.clock import Clock, steady_time
+from ...robot_bridge.core.gateway_addresses import DESK_PACE, FleetGateways, GatewayAddresses
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
 from .connection_status import (
@@ -21,47 +20,12 @@ from .connection_status import (
     OperatorCredentials,
     check_address,
     explain,
+    place_of,
 )
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
 from .websocket_library import websocket_library
 
-
-class Backoff:
-    """Waits that double from attempt to attempt, up to a longest one, each cut at random by up to a half.
-
-    The chance keeps the desks of a site from coming back all in the same moment after a restart. Every wait
-    lies between ``shortest`` and ``longest`` seconds.
-    """
-
-    def __init__(
-        self, shortest: float = 0.5, longest: float = 15.0, chance: Callable[[], float] = random.random
-    ):
-        self._shortest = shortest
-        self._longest = longest
-        self._chance = chance
-        self._attempts = 0
-
-    @property
-    def attempts(self) -> int:
-        """How many waits were handed out since the last success."""
-        return self._attempts
-
-    def next_wait(self) -> float:
-        """Return the seconds to wait before the next attempt."""
-        span = min(self._longest, self._shortest * 2 ** (min(self._attempts, 30) + 1))
-        self._attempts += 1
-        return max(self._shortest, span * (1.0 - 0.5 * self._chance()))
-
-    def reset(self) -> None:
-        """Begin with short waits again, after a success."""
-        self._attempts = 0
-
-
-ANSWER_WITHIN = 5.0
-PING_EVERY = 2.0
-PONG_WITHIN = 2.5
-"""Together under 5 s: a cable that is pulled out shows before the operator wonders."""
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
 MOST_WAITING = 1
@@ -72,7 +36,11 @@ ASLEEP_AFTER = 8.0
 
 
 class GatewayClient:
-    """The link to one gateway, for as long as :meth:`run` runs. All methods belong to its event loop."""
+    """The link to a fleet, for as long as :meth:`run` runs. All methods belong to its event loop.
+
+    It is opened to the gateway at ``url``; when that does not answer, to another one that a gateway has told
+    of, now or in an earlier session (``known``). One that refuses keeps the desk from no other.
+    """
 
     def __init__(
         self,
@@ -82,15 +50,22 @@ class GatewayClient:
         library: ModuleType,
         rate: float = 10.0,
         credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
     ):
-        self._url = url
         self._credentials = credentials or OperatorCredentials()
+        self._addresses = GatewayAddresses(url, DESK_PACE, has_token=bool(self._credentials.token))
         self._buffer = buffer
         self._library = library
-        self._protocol = GatewayProtocol(operator, rate, url, buffer, Clock())
-        self._backoff = Backoff()
+        known = known or FleetGateways("")
+        self._addresses.learn(list(known.gateways))
+        self._protocol = GatewayProtocol(operator, rate, self._addresses, buffer, Clock(), known.database)
+        self._refusals: dict[str, GatewayLinkError] = {}
         self._awake_at = steady_time()
         self._outgoing: asyncio.Queue[str] = asyncio.Queue()
+
+    @property
+    def _url(self) -> str:
+        return self._addresses.current
 
     async def run(self) -> None:
         """Connect and stay connected until cancelled, or until trying again cannot help."""
@@ -99,18 +74,32 @@ class GatewayClient:
             while True:
                 self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING, reason))
                 failure = await self._attempt()
-                reason = str(failure)
-                if failure.final:
-                    self._buffer.add(
-                        link=ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=failure.wants_token)
-                    )
+                if failure.final and self._has_refused(failure):
                     return
-                wait = self._backoff.next_wait()
+                reason = self._because(failure)
+                wait = self._addresses.next_wait(ends=failure.ends)
                 due = steady_time() + wait
                 self._buffer.add(link=ConnectionStatus(ConnectionPhase.RETRYING, reason, next_try=due))
                 await asyncio.sleep(wait)
         finally:
             self._protocol.end()
+
+    def _has_refused(self, failure: GatewayLinkError) -> bool:
+        """Note that a gateway refuses for good; say so and return true where there is no other to try."""
+        self._addresses.refused()
+        self._refusals[self._url] = failure
+        if not (failure.everywhere or self._addresses.all_refuse):
+            return False
+        wants_token = any(one.wants_token for one in self._refusals.values())
+        reason = self._because(failure)
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.FAILED, reason, wants_token=wants_token))
+        return True
+
+    def _because(self, failure: GatewayLinkError) -> str:
+        """Return why there is no link: the newest failure, and who refuses for good beside that."""
+        if failure.everywhere:
+            return str(failure)
+        return " ".join(dict.fromkeys([str(failure), *map(str, self._refusals.values())]))
 
     def submit(self, order: OperatorRequest) -> None:
         """Send ``order`` now, or as soon as there is a link again."""
@@ -148,9 +137,7 @@ class GatewayClient:
 
     def _connect(self) -> Any:
         options: dict[str, Any] = {
-            "open_timeout": ANSWER_WITHIN,
-            "ping_interval": PING_EVERY,
-            "ping_timeout": PONG_WITHIN,
+            **self._addresses.options(),
             "close_timeout": CLOSE_WITHIN,
             "max_size": LARGEST_MESSAGE,
             "max_queue": MOST_WAITING,
@@ -179,9 +166,10 @@ class GatewayClient:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _read(self, socket: Any) -> None:
+        patience = self._addresses.patience
         try:
             while not self._protocol.ready:
-                text = await asyncio.wait_for(socket.recv(), ANSWER_WITHIN)
+                text = await asyncio.wait_for(socket.recv(), patience)
                 self._send_all(self._protocol.receive(text))
         except asyncio.TimeoutError as error:
             raise GatewayLinkError(
@@ -189,15 +177,28 @@ class GatewayClient:
                     "What answers at {url} opens a WebSocket but did not answer the desk's greeting within "
                     "{answer_within:g} s. Check that the URL leads to a Fleet Supervisor gateway.",
                     url=self._url,
-                    answer_within=ANSWER_WITHIN,
+                    answer_within=patience,
                 )
             ) from error
-        self._backoff.reset()
+        instead = self._instead()
+        self._addresses.answered()
+        self._refusals.clear()
         who = {"operator": self._protocol.operator, "role": self._protocol.role}
-        self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTED, **who))
+        self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTED, **who, instead=instead))
         async for text in socket:
             self._check_awake()
             self._send_all(self._protocol.receive(text))
+
+    def _instead(self) -> str:
+        """Return which gateway answers in place of the one that the operator gave; empty where that does."""
+        if self._addresses.is_given:
+            return ""
+        given, name = self._addresses.given, self._protocol.names.get
+        here, there = place_of(self._url), name(given) or place_of(given)
+        here = f"{own} ({here})" if (own := name(self._url)) else here
+        if given in self._refusals:
+            return tr("at {gateway}; {given} refuses this desk", gateway=here, given=there)
+        return tr("at {gateway}; {given} did not answer", gateway=here, given=there)
 
     async def _stay_awake(self) -> None:
         while True:
@@ -258,8 +259,16 @@ class ConnectionThread(QObject):
         """Whether a link that was given up still has its thread."""
         return bool(self._ending)
 
-    def open(self, url: str, operator: str, credentials: OperatorCredentials | None = None) -> None:
+    def open(
+        self,
+        url: str,
+        operator: str,
+        credentials: OperatorCredentials | None = None,
+        known: FleetGateways | None = None,
+    ) -> None:
         """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
+
+        Where it does not answer, to another one of the fleet: those that are ``known``, and those it tells.
 
         :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
         :raises LibraryMissingError: when there is no WebSocket library.
@@ -271,7 +280,7 @@ class ConnectionThread(QObject):
         self.close()
         self._buffer = UpdateBuffer()
         self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTING))
-        client = GatewayClient(url, operator, self._buffer, library, self.rate, credentials)
+        client = GatewayClient(url, operator, self._buffer, library, self.rate, credentials, known)
         self._worker = _Worker(client, self._buffer)
         self._worker.start()
 

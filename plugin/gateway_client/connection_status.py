@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import socket
 import ssl
 from dataclasses import dataclass, field
@@ -12,6 +11,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ...robot_bridge.core.messages.operator_requests import Role
+from ...robot_bridge.core.messages.validation import is_loopback
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 
@@ -32,6 +32,7 @@ class OperatorCredentials:
 
     def options(self, url: str) -> dict[str, Any]:
         """Return what ``websockets`` is to connect to ``url`` with; raises AddressError."""
+        self._check_token(url)
         options: dict[str, Any] = {}
         if self.token:
             options["additional_headers"] = {"Authorization": f"Bearer {self.token}"}
@@ -41,6 +42,11 @@ class OperatorCredentials:
 
     def check(self, url: str) -> None:
         """Raise AddressError when ``url`` cannot be connected to with this."""
+        self._check_token(url)
+        if urlsplit(url).scheme == "wss":
+            self._context()
+
+    def _check_token(self, url: str) -> None:
         parts = urlsplit(url)
         if self.token and (not self.token.isascii() or len(self.token.split()) != 1):
             raise AddressError(
@@ -54,8 +60,6 @@ class OperatorCredentials:
                     url=url,
                 )
             )
-        if parts.scheme == "wss":
-            self._context()
 
     def _context(self) -> ssl.SSLContext:
         try:
@@ -124,14 +128,6 @@ def check_address(url: str) -> str:
     return url
 
 
-def is_loopback(host: str) -> bool:
-    """Tell whether a host name or address is this computer's own, which others cannot reach by it."""
-    try:
-        return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
-    except ValueError:
-        return False
-
-
 ROLES = {
     Role.VIEWER: tr("viewer"),
     Role.OPERATOR: tr("operator"),
@@ -160,6 +156,7 @@ class ConnectionStatus:
 
     While connected, ``operator`` and ``role`` are who the desk is to the gateway; a role that is changed
     meanwhile is not told. ``wants_token`` is true when it takes another token or CA file to connect.
+    ``instead`` says where the desk is while another gateway answers than the one that the operator gave.
     """
 
     phase: ConnectionPhase
@@ -168,6 +165,7 @@ class ConnectionStatus:
     wants_token: bool = False
     operator: str = ""
     role: str = ""
+    instead: str = ""
 
     @property
     def who(self) -> str:
@@ -179,9 +177,10 @@ class ConnectionStatus:
         return max(0.0, self.next_try - now) if self.next_try is not None else 0.0
 
 
+RESTARTS = 1012
 REVOKED = 4003
 ENDED = 4004
-"""Close codes of the gateway: the token does not hold any more; a supervisor ended the session."""
+"""Close codes of the gateway: it ends; the token does not hold any more; a supervisor ended the session."""
 TOO_LARGE = 1009
 """The close code of WebSocket for a message that is larger than the other side takes."""
 _UNKNOWN_AUTHORITY = {18, 19, 20, 21}
@@ -195,7 +194,7 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkEr
 
     ``exceptions`` is the module of the websockets package in use.
     """
-    place = _place(url)
+    place = place_of(url)
     if isinstance(error, exceptions.InvalidStatus):
         return _bad_status(error.response, url)
     if isinstance(error, (exceptions.InvalidHandshake, exceptions.ProtocolError, EOFError)):
@@ -220,7 +219,8 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkEr
     return _network_failure(error, place, secure=urlsplit(url).scheme == "wss")
 
 
-def _place(url: str) -> str:
+def place_of(url: str) -> str:
+    """Return host and port of a gateway's URL."""
     parts = urlsplit(url)
     return f"{parts.hostname}:{parts.port or (443 if parts.scheme == 'wss' else 80)}"
 
@@ -286,6 +286,7 @@ def _closed(error: Exception, place: str) -> GatewayLinkError:
             ),
             final=True,
             wants_token=True,
+            everywhere=True,
         )
     if received.code == ENDED:
         return GatewayLinkError(
@@ -295,6 +296,7 @@ def _closed(error: Exception, place: str) -> GatewayLinkError:
                 why=why,
             ),
             final=True,
+            everywhere=True,
         )
     return GatewayLinkError(
         tr(
@@ -302,7 +304,8 @@ def _closed(error: Exception, place: str) -> GatewayLinkError:
             place=place,
             code=received.code,
             why=why,
-        )
+        ),
+        ends=received.code == RESTARTS,
     )
 
 

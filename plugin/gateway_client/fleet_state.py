@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.administration import Links, SiteReport, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.positions import RobotReport
@@ -97,6 +98,7 @@ class StateUpdate:
     emergency: EmergencyReport | None = None
     suspensions: Suspensions | None = None
     links: Links | None = None
+    gateways: FleetGateways | None = None
     answers: list[RequestResult] = field(default_factory=list)
 
     def add(self, **reports: Any) -> None:
@@ -217,6 +219,8 @@ class FleetState(QObject):
     """A robot was sent another way or stopped: the ReplannedRobot."""
     suspensions_changed = pyqtSignal()
     links_changed = pyqtSignal()
+    gateways_changed = pyqtSignal(object)
+    """Where else the fleet is reached was told: the FleetGateways."""
     emergency_changed = pyqtSignal()
     """The gateway said how an emergency stop stands."""
     answered = pyqtSignal(object)
@@ -384,6 +388,8 @@ class FleetState(QObject):
         if update.links is not None:
             self.links = update.links
             self.links_changed.emit()
+        if update.gateways is not None:
+            self.gateways_changed.emit(update.gateways)
         if update.emergency is not None:
             self.emergency = update.emergency
             self.emergency_changed.emit()

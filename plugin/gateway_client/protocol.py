@@ -8,6 +8,7 @@ import math
 from typing import Any
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.gateway_addresses import FleetGateways, GatewayAddresses
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
 from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
@@ -59,6 +60,10 @@ ALL_PLANS = "every plan"
 """The key of what asks for all cone plans when a link begins; older gateways know no such request."""
 
 
+REPEAT_WITHIN = 30.0
+"""Seconds in which an order is sent, or repeated, on another link than it was asked for on."""
+
+
 class RequestOutbox:
     """Keeps orders over the loss of a link, so that each is repeated until answered and then never again.
 
@@ -66,7 +71,7 @@ class RequestOutbox:
     ``repeat_within`` seconds is not repeated but handed back as not known to have arrived, unless it lasts.
     """
 
-    def __init__(self, repeat_within: float = 30.0):
+    def __init__(self, repeat_within: float = REPEAT_WITHIN):
         self._repeat_within = repeat_within
         self._waiting: dict[str, OperatorRequest] = {}
 
@@ -108,16 +113,27 @@ class RequestOutbox:
 
 
 class GatewayProtocol:
-    """One link after the other with the same gateway: hello, subscription, commands, orders and answers.
+    """One link after the other with a gateway of one fleet: hello, subscription, orders and answers.
 
-    What is learnt goes to the buffer. Orders wait in the outbox until the gateway answered them, across
-    links; each is sent once on each link.
+    What is learnt goes to the buffer, and to ``addresses`` where else the fleet is reached. Orders wait in
+    the outbox until a gateway answered them, across links; each is sent once on each link. The gateways of a
+    fleet share its database, and know by their ids those that another has done. ``database`` tells the fleet
+    whose addresses were known before the first link, if any were.
     """
 
-    def __init__(self, operator: str, rate: float, url: str, buffer: UpdateBuffer, clock: Clock):
+    def __init__(
+        self,
+        operator: str,
+        rate: float,
+        addresses: GatewayAddresses,
+        buffer: UpdateBuffer,
+        clock: Clock,
+        database: str = "",
+    ):
         self._operator = operator
         self._rate = rate
-        self._url = url
+        self._addresses = addresses
+        self._database = database
         self._buffer = buffer
         self._clock = clock
         self._outbox = RequestOutbox()
@@ -129,6 +145,12 @@ class GatewayProtocol:
         self.ready = False
         self.operator, self.role = "", ""
         """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
+        self.names: dict[str, str] = {}
+        """The names of gateways that have greeted this desk, by their URLs, where several serve the fleet."""
+
+    @property
+    def _url(self) -> str:
+        return self._addresses.current
 
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
@@ -227,6 +249,8 @@ class GatewayProtocol:
             self._buffer.add(robots=table_from_rows(params["robots"], self._clock.steady(), params))
         elif method == "site":
             self._buffer.add(site=checked_site(json_values.site_report(params)))
+        elif method == "gateways":
+            self._learn(params["gateways"])
         elif method in NEWEST_COUNTS:
             self._buffer.add(**{method: NEWEST_COUNTS[method](params)})
         elif method in EACH_COUNTS:
@@ -294,6 +318,10 @@ class GatewayProtocol:
                 final=True,
             )
         database = str(result.get("database") or "")
+        self._check_fleet(database)
+        self._learn(result.get("gateways"))
+        if result.get("gateway"):
+            self.names[self._url] = one_line(str(result["gateway"]), LONGEST_OPERATOR)
         self._buffer.add(site=checked_site(json_values.site_report(result["site"])), greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
@@ -319,6 +347,30 @@ class GatewayProtocol:
         self._knows_views = isinstance(robots, int)
         if self._view is None and self._knows_views and robots > VIEWS_FROM:
             self._view = json_values.to_json(View(tuple(result["site"]["bounds"])))
+
+    def _learn(self, told: object) -> None:
+        """Know where else the fleet is reached, and have that kept for the next session."""
+        self._addresses.learn(told)
+        others = tuple(one for one in self._addresses.known if one != self._addresses.given)
+        self._buffer.add(gateways=FleetGateways(self._database, others))
+
+    def _check_fleet(self, database: str) -> None:
+        """Raise LinkError for a gateway that another one told of, and that serves another fleet by now.
+
+        The one that the operator gave may have another database than before: that is shown.
+        """
+        if not self._addresses.is_given and database != self._database:
+            raise GatewayLinkError(
+                tr(
+                    "The gateway at {url} serves another fleet than the gateway that named it. Connect to "
+                    "it yourself if that is what you want.",
+                    url=self._url,
+                ),
+                final=True,
+            )
+        if database != self._database:
+            self._addresses.forget()
+        self._database = database
 
     def _order_answered(self, order: OperatorRequest, message: dict[str, Any]) -> list[str]:
         waiting = self._outbox.answered(order.key)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -25,13 +26,25 @@ from .roles import RAMP, STAIRS
 
 # --- Plain arrays to and from well-known binary, which geometry libraries speak (OGC 06-103r4, section 8)
 
-_LINE, _POLYGON, _MULTI_LINE, _MULTI_POLYGON = 2, 3, 5, 6
+_POINT, _LINE, _POLYGON, _MULTI_POINT, _MULTI_LINE, _MULTI_POLYGON = range(1, 7)
 _HEAD, _COUNT = struct.Struct("<BI"), struct.Struct("<I")
 _BEFORE_POINTS = _HEAD.size + _COUNT.size
 _POINT_BYTES = (16, 24, 24, 32)
 """Bytes of a point without Z and M, with Z, with M, and with both: a thousand between their kinds."""
 _OLD_Z = 0x80000000
 """What a kind with Z has besides itself in older files."""
+_POINTS = frozenset(
+    _HEAD.pack(1, kind + more) for kind in (_POINT, _MULTI_POINT) for more in (0, 1000, 2000, 3000, _OLD_Z)
+)
+_ONE = _COUNT.pack(1)
+_ONE_RING, _ONE_LINE = _HEAD.pack(1, _POLYGON) + _ONE, _HEAD.pack(1, _LINE)
+_USUAL = (
+    (_ONE_RING, True),
+    (_HEAD.pack(1, _MULTI_POLYGON) + _ONE + _ONE_RING, True),
+    (_ONE_LINE, False),
+    (_HEAD.pack(1, _MULTI_LINE) + _ONE + _ONE_LINE, False),
+)
+"""What most geometries begin with, which have one ring or line and no Z and M, and whether it is closed."""
 
 
 class Rings(NamedTuple):
@@ -50,6 +63,9 @@ def rings_of(wkb: bytes) -> Rings | None:
 
     None for everything else: points, curves, collections, and big-endian ones.
     """
+    for head, closed in _USUAL:
+        if wkb.startswith(head):
+            return Rings([wkb[len(head) + _COUNT.size :]], [False], closed)
     order, kind = _HEAD.unpack_from(wkb)
     dimensions, kind = (1, kind - _OLD_Z) if kind >= _OLD_Z else divmod(kind, 1000)
     closed = kind in (_POLYGON, _MULTI_POLYGON)
@@ -75,8 +91,20 @@ def rings_of(wkb: bytes) -> Rings | None:
     return Rings(points if size == _POINT_BYTES[0] else [_flat(one, size) for one in points], inner, closed)
 
 
+def are_points(wkb: bytes) -> bool:
+    """Tell whether a geometry is a point, or several of them."""
+    return wkb[: _HEAD.size] in _POINTS
+
+
 def _flat(points: bytes, size: int) -> bytes:
     return np.frombuffer(points, "<f8").reshape(-1, size // 8)[:, :2].tobytes()
+
+
+def geometry_of(wkb: bytes) -> QgsGeometry:
+    """Return the geometry that ``wkb`` is of."""
+    geometry = QgsGeometry()
+    geometry.fromWkb(wkb)
+    return geometry
 
 
 def line_wkb(points: bytes) -> bytes:
@@ -172,6 +200,61 @@ def _closed(ring: np.ndarray) -> np.ndarray:
     if len(ring) and (ring[0] != ring[-1]).any():
         return np.concatenate([ring, ring[:1]])
     return ring
+
+
+# --- The rings of many geometries looked at together ---
+
+
+class RingTable:
+    """The rings and lines of n features: how many points each has, and which features are ``sound``, (n,).
+
+    ``points`` is x and y of each ring as bytes of float64. Of the features ``counts`` says how many each has,
+    ``closed`` which are no lines, and ``valid`` which may be taken as they are, as far as GEOS tells. Sound
+    are those that need no repair and no word: closed rings of three corners or more that are valid together,
+    lines without repeated points, every coordinate a number on Earth.
+    """
+
+    def __init__(
+        self, points: Sequence[bytes], counts: Sequence[int], closed: Sequence[bool], valid: Sequence[bool]
+    ) -> None:
+        of_each, shut = np.array(counts, dtype=np.int64), np.array(closed, dtype=bool)
+        self._coordinates = np.frombuffer(b"".join(points), "<f8").reshape(-1, 2)
+        self.lengths = np.array(list(map(len, points)), dtype=np.int64) // _POINT_BYTES[0]
+        self._first_ring = np.concatenate([[0], np.cumsum(of_each)])
+        self._first_point = np.concatenate([[0], np.cumsum(self.lengths)])
+        self.sound = (of_each > 0) & np.array(valid, dtype=bool)
+        odd = self._odd_rings(np.repeat(shut, of_each))
+        self.sound[np.repeat(np.arange(len(of_each)), of_each)[odd]] = False
+
+    def rings(self, first: int, last: int) -> slice:
+        """Return which rings are those of features ``first`` to ``last``."""
+        return slice(int(self._first_ring[first]), int(self._first_ring[last]))
+
+    def coordinates(self, rings: slice) -> np.ndarray:
+        """Return the coordinates of some rings, (m, 2)."""
+        return self._coordinates[self._first_point[rings.start] : self._first_point[rings.stop]]
+
+    def apart(self, coordinates: np.ndarray, k: int) -> list[np.ndarray]:
+        """Return the rings of feature ``k``, whose points are where they are in ``coordinates`` of all."""
+        edges = self._first_point[self._first_ring[k] : self._first_ring[k + 1] + 1].tolist()
+        return [coordinates[first:last] for first, last in pairwise(edges)]
+
+    def _odd_rings(self, closed: np.ndarray) -> np.ndarray:
+        """Tell of each ring whether it needs a closer look; ``closed`` says which of them are no lines."""
+        odd: np.ndarray = self.lengths < np.where(closed, 4, 2)
+        xy = self._coordinates
+        if not len(xy):
+            return odd
+        last = len(xy) - 1
+        starts = np.minimum(self._first_point[:-1], last)
+        ends = np.clip(self._first_point[1:] - 1, 0, last)
+        odd |= closed & (xy[starts] != xy[ends]).any(axis=1)
+        ring = np.repeat(np.arange(len(odd)), self.lengths)
+        # So that what is no number is none on Earth either.
+        odd[ring[~(np.abs(xy) <= FARTHEST_M).all(axis=1)]] = True
+        repeated = (xy[1:] == xy[:-1]).all(axis=1) & (ring[1:] == ring[:-1]) & ~closed[ring[1:]]
+        odd[ring[1:][repeated]] = True
+        return odd
 
 
 # --- Repairs polygons and lines where that is safe, and says what it did or could not do ---

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 import re
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from operator import itemgetter
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from qgis.core import (
     NULL,
@@ -130,7 +130,45 @@ _PURE = frozenset(
 )  # fmt: skip
 """Functions that say the same of the same arguments, wherever and whenever they are asked."""
 _MOST_KNOWN = 10_000
-"""Values of one expression that are remembered: a city says few different things many times."""
+"""Values that are remembered of one thing: a city says few different things many times."""
+UNKNOWN = object()
+
+
+class Memory:
+    """What was found of ``rules`` together, by the values of the fields that they are about.
+
+    Nothing where one of them is about more than fields.
+    """
+
+    def __init__(self, rules: Iterable[Rule | None]) -> None:
+        some = [rule for rule in rules if rule is not None]
+        places = sorted({place for rule in some for place in rule.places})
+        self.is_used = bool(places) and all(rule.is_pure for rule in some)
+        """Whether anything is ever remembered."""
+        self._chosen = itemgetter(*places) if self.is_used else None
+        self._is_single = len(places) == 1
+        self._known: dict[Any, Any] = {}
+
+    def known(self, attributes: list[Any]) -> tuple[Any, Any]:
+        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        if self._chosen is None:
+            return UNKNOWN, None
+        try:
+            chosen = self._chosen(attributes)
+            # 1, 1.0 and true are equal, and text of them is not.
+            key = (chosen, type(chosen)) if self._is_single else (chosen, *map(type, chosen))
+            return self._known.get(key, UNKNOWN), key
+        except (IndexError, TypeError):
+            # Fewer values than fields, or lists.
+            return UNKNOWN, None
+
+    def keep(self, key: Any, value: Any) -> None:
+        """Remember ``value``; not by a key with a nought, which may be less than nought in text."""
+        if key is None or 0 in (key[:1] if self._is_single else key[0]):
+            return
+        if len(self._known) >= _MOST_KNOWN:
+            self._known.clear()
+        self._known[key] = value
 
 
 class Rule:
@@ -142,50 +180,37 @@ class Rule:
 
     def __init__(self, expression: QgsExpression, fields: QgsFields) -> None:
         self.expression = expression
-        self._known: dict[Any, Any] = {}
         columns = expression.referencedColumns()
-        self._places = sorted(fields.lookupField(name) for name in columns)
+        self.places = sorted(fields.lookupField(name) for name in columns)
+        """Which of the fields it is about."""
         self.is_pure = (
             bool(columns)
             and QgsFeatureRequest.ALL_ATTRIBUTES not in columns
-            and min(self._places) >= 0
+            and min(self.places) >= 0
             and not expression.needsGeometry()
             and not expression.referencedVariables()
             and expression.referencedFunctions() <= _PURE
         )
         """Whether it is about fields alone."""
-        self._chosen = itemgetter(*self._places) if self.is_pure else None
-        self._field = self._places[0] if self.is_pure and expression.isField() else None
+        self._memory = Memory([self])
+        self._field = self.places[0] if self.is_pure and expression.isField() else None
 
     def known(self, attributes: list[Any]) -> tuple[Any, Any]:
         """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by.
 
         The field itself where the expression is no more than its name.
         """
-        if self._chosen is None:
-            return UNKNOWN, None
+        if self._field is None:
+            return self._memory.known(attributes)
         try:
-            if self._field is not None:
-                value = attributes[self._field]
-                return (value, None) if isinstance(value, _PLAIN) else (UNKNOWN, None)
-            chosen = self._chosen(attributes)
-            # 1, 1.0 and true are equal, and text of them is not.
-            key = (chosen, type(chosen)) if len(self._places) == 1 else (chosen, *map(type, chosen))
-            return self._known.get(key, UNKNOWN), key
-        except (IndexError, TypeError):
-            # Fewer values than fields, or lists.
+            value = attributes[self._field]
+        except IndexError:
             return UNKNOWN, None
+        return (value, None) if isinstance(value, _PLAIN) else (UNKNOWN, None)
 
     def keep(self, key: Any, value: Any) -> None:
-        """Remember ``value``; not by a key with a nought, which may be less than nought in text."""
-        if key is None or 0 in (key[:1] if len(self._places) == 1 else key[0]):
-            return
-        if len(self._known) >= _MOST_KNOWN:
-            self._known.clear()
-        self._known[key] = value
-
-
-UNKNOWN = object()
+        """Remember ``value`` by ``key``, which :meth:`known` told."""
+        self._memory.keep(key, value)
 
 
 class LayerRules:
@@ -265,9 +290,7 @@ class LayerRules:
             return None
         key = None
         if rule.is_pure:
-            if self._values is None:
-                self._values = self._tagged.values(self._feature)
-            known, key = rule.known(self._values)
+            known, key = rule.known(self._attributes())
             if known is not UNKNOWN:
                 return known
         if not self._is_set:
@@ -288,6 +311,10 @@ class LayerRules:
         value = None if value is None or (not isinstance(value, _PLAIN) and value == NULL) else value
         rule.keep(key, value)
         return value
+
+    def known(self, memory: Memory) -> tuple[Any, Any]:
+        """Return what ``memory`` has of the feature, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        return memory.known(self._attributes()) if memory.is_used else (UNKNOWN, None)
 
     def metres(self, what: str, rule: Rule | None, notes: list[str]) -> float | None:
         """Return the metres above 0 that ``rule`` says of the feature, None where it says none.
@@ -323,6 +350,11 @@ class LayerRules:
     def warn_of_layer(self, note: str) -> None:
         """Add a warning about the layer as a whole."""
         self.warnings.append(tr("Layer {layer}: {note}", layer=self._layer, note=note))
+
+    def _attributes(self) -> list[Any]:
+        if self._values is None:
+            self._values = self._tagged.values(self._feature)
+        return self._values
 
     def _column(self, names: Sequence[str], count: int | None = None) -> str:
         for name in names:
@@ -435,7 +467,7 @@ class ObstacleValues(NamedTuple):
     base: float
     semantics: str
     outdoor: bool
-    notes: list[str]
+    notes: Sequence[str]
 
 
 class FeatureValues:
@@ -463,11 +495,19 @@ class FeatureValues:
         self._base = rules.rule("base", expressions.base)
         # Once: to translate a text takes longer than to evaluate most expressions.
         self._default_is_used = tr("the default is used")
+        self._memory = Memory([self._height, self._estimate, self._semantics, self._outdoor, self._base])
         self._no_height = tr("the estimate is used") if self._estimate is not None else self._default_is_used
 
     def of(self, feature: QgsFeature) -> ObstacleValues:
         """Return the values of ``feature``; what is missing or not understood gets the default and a note."""
         self._rules.at(feature)
+        values, key = self._rules.known(self._memory)
+        if values is UNKNOWN:
+            values = self._evaluated()
+            self._memory.keep(key, values)
+        return cast(ObstacleValues, values)
+
+    def _evaluated(self) -> ObstacleValues:
         notes: list[str] = []
         height = 0.0 if self._is_ramp else self._height_of("height", self._height, notes)
         estimate = self._height_of("estimate", self._estimate, notes) if height is None else None
@@ -479,7 +519,7 @@ class FeatureValues:
             base=self._base_of(notes),
             semantics=self._semantics_of(notes),
             outdoor=self._outdoor_of(notes),
-            notes=notes,
+            notes=tuple(notes),
         )
 
     def _height_of(self, what: str, rule: Rule | None, notes: list[str]) -> float | None:

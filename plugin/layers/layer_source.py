@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import math
 import re
+import sqlite3
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
+from pathlib import Path
 from typing import NamedTuple
 
 from qgis.core import (
@@ -160,6 +163,12 @@ def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
 
     Files and databases that know of it by themselves are asked; of others every feature is looked at.
     """
+    ids = rows_without_index(source.uri) if source.provider == "ogr" and source.uri else None
+    if ids is not None:
+        found = source.features.getFeatures(QgsFeatureRequest().setFilterFids(ids)) if ids else []
+        # Of rows that were deleted there is nothing; those that are there come in any order.
+        yield from sorted((QgsFeature(one) for one in found), key=QgsFeature.id)
+        return
     subset = subset_without_geometry(source.provider, source.uri) if source.uri else ""
     if subset:
         options = QgsVectorLayer.LayerOptions()
@@ -167,10 +176,72 @@ def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
         layer = QgsVectorLayer(subset, source.name, source.provider, options)
         if layer.isValid():
             # Named, since its features do not keep it alive.
-            found = QgsVectorLayerFeatureSource(layer)
-            yield from found.getFeatures(QgsFeatureRequest())
+            features = QgsVectorLayerFeatureSource(layer)
+            yield from features.getFeatures(QgsFeatureRequest())
             return
     yield from source.features.getFeatures(QgsFeatureRequest().setFilterExpression(_NONE))
+
+
+_MOST_GAPS = 10_000
+"""Rows that an index may lack for each of them to be asked for; a layer that lost many has as many gaps."""
+_AT_ONCE = 64
+"""Rows of which an index may lack some that are looked at one by one; of so many times more, pieces are."""
+
+
+def rows_without_index(uri: str) -> list[int] | None:
+    """Return the ids that the spatial index of a layer in a GeoPackage lacks, between its first and last row.
+
+    The index holds each row whose geometry is not empty. Its ids are counted in a tenth of the time in which
+    the geometries of a city can be looked at, which is longer than all else takes that a window needs. None
+    where there is no such index, or rows were filtered or many deleted.
+    """
+    parts = QgsProviderRegistry.instance().decodeUri("ogr", uri)
+    path = str(parts.get("path") or "")
+    if not path.lower().endswith(".gpkg") or parts.get("subset"):
+        return None
+    try:
+        with closing(sqlite3.connect(f"{Path(path).absolute().as_uri()}?mode=ro", uri=True)) as database:
+            return _unindexed(database, str(parts.get("layerName") or ""))
+    except sqlite3.Error:
+        return None
+
+
+def _unindexed(database: sqlite3.Connection, layer: str) -> list[int] | None:
+    known = database.execute(
+        "SELECT g.table_name, g.column_name, e.extension_name FROM gpkg_geometry_columns g "
+        "LEFT JOIN gpkg_extensions e ON lower(e.table_name) = lower(g.table_name) "
+        "AND lower(e.column_name) = lower(g.column_name) AND lower(e.extension_name) = 'gpkg_rtree_index' "
+        "WHERE ? IN ('', g.table_name)",
+        [layer],
+    ).fetchall()
+    if len(known) != 1 or known[0][2] is None:
+        return None
+    table, index = _quoted(known[0][0]), _quoted(f"rtree_{known[0][0]}_{known[0][1]}_rowid")
+    # By itself, each is found at once.
+    edges = f"SELECT (SELECT min(rowid) FROM {table}), (SELECT max(rowid) FROM {table})"  # nosec B608 # names
+    first, last = database.execute(edges).fetchone()
+    if first is None:
+        return []
+    (count,) = database.execute(f"SELECT count(*) FROM {index}").fetchone()  # nosec B608 # names
+    if last - first + 1 - count > _MOST_GAPS:
+        return None
+    return list(_gaps(database, index, range(first, last + 1), count))
+
+
+def _gaps(database: sqlite3.Connection, index: str, ids: range, count: int) -> Iterator[int]:
+    """Yield which of ``ids`` are not in ``index``, which has ``count`` of them."""
+    if count == len(ids):
+        return
+    within = f"FROM {index} WHERE rowid BETWEEN ? AND ?"
+    if len(ids) <= _AT_ONCE:
+        there = {id for (id,) in database.execute(f"SELECT rowid {within}", [ids[0], ids[-1]])}  # nosec B608 # names
+        yield from (id for id in ids if id not in there)
+        return
+    step = _AT_ONCE**2 if len(ids) > _AT_ONCE**2 else _AT_ONCE
+    for begin in range(0, len(ids), step):
+        some = ids[begin : begin + step]
+        (own,) = database.execute(f"SELECT count(*) {within}", [some[0], some[-1]]).fetchone()  # nosec B608 # names
+        yield from _gaps(database, index, some, own)
 
 
 def subset_without_geometry(provider: str, uri: str) -> str:

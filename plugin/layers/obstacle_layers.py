@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from itertools import chain, pairwise
-from typing import Any, NamedTuple
+from itertools import chain, pairwise, repeat
+from typing import Any
 
 import numpy as np
 from qgis.core import QgsFeature, QgsFeatureRequest, QgsFeedback, QgsGeometry, QgsWkbTypes
@@ -17,16 +17,18 @@ from ...robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from ...robot_bridge.core.robotmap.parametric_shapes import Template, template
 from ..ui.language import tr, tr_count
 from .geometry import (
-    FARTHEST_M,
     NO_PLACE,
     FeatureShape,
     FeatureShapes,
     Rings,
+    RingTable,
+    are_points,
+    geometry_of,
     normal_extra,
     rings_of,
     shapes_of,
 )
-from .layer_expressions import FeatureFilter, FeatureValues, LayerRules, ObstacleValues
+from .layer_expressions import UNKNOWN, FeatureFilter, FeatureValues, LayerRules, Memory, ObstacleValues
 from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, without_geometry
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
@@ -51,21 +53,27 @@ class PointObstacles:
         self._width = rules.rule("width", expressions.width)
         self._template = rules.rule("template", expressions.template)
         self._rotation = rules.rule("rotation", expressions.rotation)
+        self._memory = Memory([self._width, self._template, self._rotation])
 
     def of(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
         """Return a shape around each of ``points``, the geometry of ``feature`` in metres.
 
         ``rotation`` turns it clockwise, so that a heading turns what faces north to face there.
         """
-        places = [(point.x(), point.y()) for point in points.vertices()]
+        places = _places(points)
         if not all(map(math.isfinite, chain.from_iterable(places))):
             return FeatureShapes([], [NO_PLACE])
         self._rules.at(feature)
-        notes: list[str] = []
-        made = self._named(notes) or self._round(notes)
-        turned = -math.radians(self._degrees(notes))
-        rings = [made.at(x, y, turned) for x, y in places]
-        return FeatureShapes([FeatureShape(ring, ShapeType.CLOSED_POLYGON) for ring in rings], notes)
+        known, key = self._rules.known(self._memory)
+        if known is UNKNOWN:
+            notes: list[str] = []
+            made = self._named(notes) or self._round(notes)
+            known = made.turned(-math.radians(self._degrees(notes))), notes
+            self._memory.keep(key, known)
+        made, notes = known
+        return FeatureShapes(
+            [FeatureShape(made.at(x, y), ShapeType.CLOSED_POLYGON) for x, y in places], list(notes)
+        )
 
     def _named(self, notes: list[str]) -> Template | None:
         value = self._rules.value("template", self._template, notes)
@@ -107,27 +115,17 @@ class PointObstacles:
         return degrees
 
 
+def _places(points: QgsGeometry) -> list[tuple[float, float]]:
+    some = points.vertices() if points.isMultipart() else [points.asPoint()]
+    return [(point.x(), point.y()) for point in some]
+
+
 # --- Features of one obstacle layer made into outlines, many at a time ---
 
 ESTIMATED = {"h": "est"}
 """The extra of an obstacle whose height nobody knows."""
 
-_NO_RINGS = Rings([], [], True)
-
-
-class ReadFeature(NamedTuple):
-    """A feature that counts: its geometry in metres, and what its layer says of it.
-
-    ``rings`` is what the geometry is made of, where that can be told from its bytes and its role wants
-    nothing else. ``shapes`` is what it was made into already, such as the template of a point; what there is
-    to say of them stands in the notes of ``values``.
-    """
-
-    id: int
-    geometry: QgsGeometry
-    rings: Rings | None
-    shapes: Sequence[FeatureShape] | None
-    values: ObstacleValues
+_NOTHING: dict[str, str] = {}
 
 
 class OutlineBatch:
@@ -141,80 +139,102 @@ class OutlineBatch:
         self, name: str, role: str, placing: LayerToSiteTransform, warnings: FeatureWarnings
     ) -> None:
         self._name, self._role, self._placing, self._warnings = name, role, placing, warnings
+        # Ramps need their corners' heights, stairs their risers in order.
+        self._is_plain = role not in (RAMP, STAIRS)
+        self._features = _FeatureColumns()
         self.unknown = SomeFeatures()
         self.odd_for_role = SomeFeatures()
 
-    def outlines(self, features: Sequence[ReadFeature]) -> Iterator[Outlines]:
-        """Yield the outlines of ``features`` in their order.
+    def __len__(self) -> int:
+        """Return how many features wait until their outlines are asked for."""
+        return len(self._features.ids)
+
+    def add(self, id: int, wkb: bytes, geometry: QgsGeometry, values: ObstacleValues) -> None:
+        """Add a feature that counts: its geometry in metres, also as ``wkb``, and what is said of it."""
+        rings = rings_of(wkb) if self._is_plain else None
+        is_valid = rings is not None and (not rings.closed or geometry.isGeosValid())
+        self._features.add(id, wkb, rings or _NO_RINGS, is_valid, values)
+
+    def add_shapes(self, id: int, shapes: Sequence[FeatureShape], values: ObstacleValues) -> None:
+        """Add a feature whose geometry was made into closed ``shapes``, such as the template of a point.
+
+        What there is to say of them stands in the notes of ``values``.
+        """
+        rings = Rings([shape.points.tobytes() for shape in shapes], [False] * len(shapes), True)
+        self._features.add(id, b"", rings, True, values)
+
+    def outlines(self) -> Iterator[Outlines]:
+        """Yield the outlines of what was added in its order, and forget it.
 
         Sound lines and polygons together, which is quick; each of the others by itself.
         """
-        if not features:
+        features, self._features = self._features, _FeatureColumns()
+        if not features.ids:
             return
-        table = _RingTable(features)
+        table = RingTable(features.points, features.counts, features.closed, features.valid)
         changes = np.flatnonzero(table.sound[1:] != table.sound[:-1]) + 1
-        edges = [0, *changes.tolist(), len(features)]
+        edges = [0, *changes.tolist(), len(features.ids)]
         for first, last in pairwise(edges):
-            some = features[first:last]
             if table.sound[first]:
-                yield self._together(some, *table.slice(first, last))
+                yield self._together(features, table, first, last)
             else:
-                rows = [row for feature in some for row in self._one_by_one(feature)]
+                rows = [row for k in range(first, last) for row in self._one_by_one(features, table, k)]
                 if rows:
                     yield Outlines.from_rows(rows)
 
-    def _together(
-        self, features: Sequence[ReadFeature], coordinates: np.ndarray, lengths: np.ndarray
-    ) -> Outlines:
-        counts = [len(feature.rings.points) for feature in features if feature.rings is not None]
-        values = [feature.values for feature in features]
-        for feature in features:
-            if feature.values.unknown:
-                self.unknown.add(feature.id)
-            for note in feature.values.notes:
-                self._warnings.add(self._name, feature.id, note)
-        closed = [feature.rings.closed for feature in features if feature.rings is not None]
+    def _together(self, features: _FeatureColumns, table: RingTable, first: int, last: int) -> Outlines:
+        ids, values = features.ids[first:last], features.values[first:last]
+        closed, counts = features.closed[first:last], features.counts[first:last]
+        for id, one in zip(ids, values, strict=True):
+            if one.unknown:
+                self.unknown.add(id)
+            for note in one.notes:
+                self._warnings.add(self._name, id, note)
         base = np.repeat([one.base for one in values], counts)
-        estimated = any(one.estimated for one in values)
+        rings = table.rings(first, last)
+        coordinates, lengths = table.coordinates(rings), table.lengths[rings]
         offsets = np.concatenate([[0], np.cumsum(lengths)])
         points = np.array(self._placing.to_site(coordinates))
         # The frame may place the two ends of a ring a rounding error apart.
-        rings = np.flatnonzero(np.repeat(closed, counts))
-        points[offsets[rings + 1] - 1] = points[offsets[rings]]
+        shut = np.flatnonzero(np.repeat(closed, counts))
+        points[offsets[shut + 1] - 1] = points[offsets[shut]]
         kinds = np.where(closed, int(ShapeType.CLOSED_POLYGON), int(ShapeType.OPEN_POLYGON))
+        extras = [ESTIMATED if one.estimated else _NOTHING for one in values]
         return Outlines(
             coordinates=points,
             offsets=offsets,
             shape_type=np.repeat(kinds, counts).astype(np.int8),
-            courtyard=np.array([one for f in features if f.rings is not None for one in f.rings.inner]),
+            courtyard=np.array(features.inner[rings]),
             height=np.repeat([one.height for one in values], counts),
             outdoor=np.repeat([one.outdoor for one in values], counts),
             semantics=_repeated([one.semantics for one in values], counts),
-            source=_repeated([f"{self._name}:{feature.id}" for feature in features], counts),
+            source=_repeated([f"{self._name}:{id}" for id in ids], counts),
             base=base if base.any() else None,
-            ext=_repeated([ESTIMATED if one.estimated else {} for one in values], counts)
-            if estimated
-            else None,
+            ext=_repeated(extras, counts) if any(extras) else None,
         )
 
-    def _one_by_one(self, feature: ReadFeature) -> list[OutlineRow]:
-        shapes, notes = feature.shapes, list(feature.values.notes)
-        if shapes is None:
-            shapes, notes_found = shapes_of(feature.geometry, self._role)
-            notes = [*notes_found, *(notes if shapes else [])]
-        rows = self._rows(feature, shapes, notes) if shapes else []
+    def _one_by_one(self, features: _FeatureColumns, table: RingTable, k: int) -> list[OutlineRow]:
+        id, values = features.ids[k], features.values[k]
+        notes = list(values.notes)
+        if features.wkb[k]:
+            shapes, found = shapes_of(geometry_of(features.wkb[k]), self._role)
+            notes = [*found, *(notes if shapes else [])]
+        else:
+            rings = features.points[table.rings(k, k + 1)]
+            points = [np.frombuffer(ring, "<f8").reshape(-1, 2) for ring in rings]
+            shapes = [FeatureShape(ring, ShapeType.CLOSED_POLYGON) for ring in points]
+        rows = self._rows(id, values, shapes, notes) if shapes else []
         for note in notes:
-            self._warnings.add(self._name, feature.id, note)
+            self._warnings.add(self._name, id, note)
         return rows
 
     def _rows(
-        self, feature: ReadFeature, shapes: Sequence[FeatureShape], notes: list[str]
+        self, id: int, values: ObstacleValues, shapes: Sequence[FeatureShape], notes: list[str]
     ) -> list[OutlineRow]:
-        values = feature.values
         if values.unknown:
-            self.unknown.add(feature.id)
+            self.unknown.add(id)
         if any(_odd(shape, self._role) for shape in shapes):
-            self.odd_for_role.add(feature.id)
+            self.odd_for_role.add(id)
         rows: list[OutlineRow] = []
         ext: dict[str, str] = {}
         for shape in shapes:
@@ -230,7 +250,7 @@ class OutlineBatch:
                     shape_type=shape.shape_type,
                     height=values.height,
                     semantics=values.semantics,
-                    source=f"{self._name}:{feature.id}",
+                    source=f"{self._name}:{id}",
                     courtyard=shape.courtyard,
                     outdoor=values.outdoor,
                     base=values.base,
@@ -240,53 +260,42 @@ class OutlineBatch:
         return rows
 
 
-class _RingTable:
-    """The rings of many features one after the other, and which features are ``sound``, (n,) bool.
+_NO_RINGS = Rings([], [], True)
 
-    Sound are those that need no repair and no word: closed rings of three corners or more that are valid
-    together, lines without repeated points, every coordinate a number on Earth.
+
+class _FeatureColumns:
+    """Features that count, a list for each thing that is known of them.
+
+    No object for each feature: while there are more and more that hold others, Python looks all of them
+    through again and again for what may be thrown away.
     """
 
-    def __init__(self, features: Sequence[ReadFeature]) -> None:
-        rings = [feature.rings or _NO_RINGS for feature in features]
-        points = list(chain.from_iterable(one.points for one in rings))
-        counts = np.array([len(one.points) for one in rings])
-        self._coordinates = np.frombuffer(b"".join(points), "<f8").reshape(-1, 2)
-        self._lengths = np.array([len(one) for one in points], dtype=np.int64) // 16
-        self._first_ring = np.concatenate([[0], np.cumsum(counts)])
-        self._first_point = np.concatenate([[0], np.cumsum(self._lengths)])
-        closed = np.array([one.closed for one in rings], dtype=bool)
-        self.sound = counts > 0
-        odd = self._odd_rings(np.repeat(closed, counts))
-        self.sound[np.repeat(np.arange(len(rings)), counts)[odd]] = False
-        for k in np.flatnonzero(self.sound & closed).tolist():
-            self.sound[k] = features[k].shapes is not None or features[k].geometry.isGeosValid()
+    def __init__(self) -> None:
+        self.ids: list[int] = []
+        self.wkb: list[bytes] = []
+        """Their geometries in metres, empty where there is nothing but rings."""
+        self.valid: list[bool] = []
+        """Whether the rings may be taken as they are, as far as GEOS tells."""
+        self.values: list[ObstacleValues] = []
+        self.closed: list[bool] = []
+        self.counts: list[int] = []
+        """How many rings or lines each has; ``points`` and ``inner`` have those of all."""
+        self.points: list[bytes] = []
+        self.inner: list[bool] = []
 
-    def slice(self, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return the coordinates, (m, 2), of features ``first`` to ``last``, and the length of each ring."""
-        low, high = self._first_ring[first], self._first_ring[last]
-        return self._coordinates[self._first_point[low] : self._first_point[high]], self._lengths[low:high]
-
-    def _odd_rings(self, closed: np.ndarray) -> np.ndarray:
-        """Tell of each ring whether it needs a closer look; ``closed`` says which of them are no lines."""
-        odd: np.ndarray = self._lengths < np.where(closed, 4, 2)
-        xy = self._coordinates
-        if not len(xy):
-            return odd
-        last = len(xy) - 1
-        starts = np.minimum(self._first_point[:-1], last)
-        ends = np.clip(self._first_point[1:] - 1, 0, last)
-        odd |= closed & (xy[starts] != xy[ends]).any(axis=1)
-        ring = np.repeat(np.arange(len(odd)), self._lengths)
-        # So that what is no number is none on Earth either.
-        odd[ring[~(np.abs(xy) <= FARTHEST_M).all(axis=1)]] = True
-        repeated = (xy[1:] == xy[:-1]).all(axis=1) & (ring[1:] == ring[:-1]) & ~closed[ring[1:]]
-        odd[ring[1:][repeated]] = True
-        return odd
+    def add(self, id: int, wkb: bytes, rings: Rings, is_valid: bool, values: ObstacleValues) -> None:
+        self.ids.append(id)
+        self.wkb.append(wkb)
+        self.valid.append(is_valid)
+        self.values.append(values)
+        self.closed.append(rings.closed)
+        self.counts.append(len(rings.points))
+        self.points += rings.points
+        self.inner += rings.inner
 
 
 def _repeated(values: Sequence[Any], counts: Sequence[int]) -> list[Any]:
-    return [value for value, count in zip(values, counts, strict=True) for _ in range(count)]
+    return list(chain.from_iterable(map(repeat, values, counts)))
 
 
 def _extras(shape: FeatureShape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
@@ -413,18 +422,15 @@ class _LayerReader:
         )
         self._posts = PointObstacles(self._rules, source.expressions)
         self._placing: LayerToSiteTransform = site.of_layer(source.name, source.crs)
-        # Ramps need their corners' heights, stairs their risers in order.
-        self._is_plain = source.role not in (RAMP, STAIRS)
         self._window = window
         self._area = self._placing.area_of(window) if window else None
         self._around = self._placing.area_of(widen_bounds(window, REACH_M)) if window else None
         self._batch = OutlineBatch(source.name, source.role, self._placing, warnings)
-        self._read: list[ReadFeature] = []
 
     @property
     def waiting(self) -> int:
         """How many features are read whose outlines nobody has asked for."""
-        return len(self._read)
+        return len(self._batch)
 
     def features(self) -> Iterator[QgsFeature]:
         """Yield the features that may touch the window, and those that are nowhere.
@@ -457,17 +463,18 @@ class _LayerReader:
             self._warn(feature, [note])
             return
         values = self._values.of(feature)
-        rings, shapes = rings_of(metres.asWkb().data()) if self._is_plain else None, None
-        if rings is None and _is_points(geometry):
-            shapes, notes = self._posts_in(feature, metres)
-            rings = _rings(shapes)
+        wkb = metres.asWkb().data()
+        if not are_points(wkb):
+            self._batch.add(feature.id(), wkb, metres, values)
+            return
+        shapes, notes = self._posts_in(feature, metres)
+        if notes or not shapes:
             values = values._replace(notes=[*notes, *(values.notes if shapes else [])])
-        self._read.append(ReadFeature(feature.id(), metres, rings, shapes, values))
+        self._batch.add_shapes(feature.id(), shapes, values)
 
     def outlines(self) -> Iterator[Outlines]:
         """Yield the outlines of the features that wait."""
-        read, self._read = self._read, []
-        yield from self._batch.outlines(read)
+        yield from self._batch.outlines()
 
     def finish(self) -> None:
         """Add the warnings that are about the layer as a whole."""
@@ -527,10 +534,6 @@ class _LayerReader:
     def _warn(self, feature: QgsFeature, notes: Sequence[str]) -> None:
         for note in notes:
             self._warnings.add(self.source.name, feature.id(), note)
-
-
-def _rings(posts: Sequence[FeatureShape]) -> Rings:
-    return Rings([post.points.tobytes() for post in posts], [False] * len(posts), True)
 
 
 def _is_points(geometry: QgsGeometry) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -27,14 +27,16 @@ from .geometry import (
     NO_PLACE,
     SAGITTA_M,
     GeometryParts,
+    RingTable,
+    geometry_of,
     lines_with_length,
     parts_of,
     polygons_of,
     rings_of,
     shapes_of,
 )
-from .layer_expressions import FeatureFilter, LayerRules, Rule, as_flag, as_metres
-from .layer_source import FeatureReader, FeatureWarnings, ObstacleSource, SomeFeatures
+from .layer_expressions import UNKNOWN, FeatureFilter, LayerRules, Memory, Rule, as_flag, as_metres
+from .layer_source import FeatureReader, FeatureRow, FeatureWarnings, ObstacleSource, SomeFeatures
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_transform import LayerToSiteTransform, SiteGeoreference
 
@@ -110,6 +112,9 @@ class RoadRules:
         self._structures = [
             (level, rules.rule("level", column(name))) for level, name in over_and_under if not given.level
         ]
+        about_ways = (self._direction, self._junction, self._speed, self._kmh, self._closed, self._level)
+        self.of_traffic = [*about_ways, *(rule for _, rule in self._structures)]
+        """The rules that :meth:`traffic` asks."""
 
     def of(self, notes: list[str]) -> RoadAttributes:
         """Return what is known of the road that the rules are at; what is not understood becomes a note."""
@@ -217,6 +222,9 @@ def _from_kmh(value: Any) -> float | None:
 DEFAULT_WIDTH_M = 3.5
 """The width of a road where none is known: one lane."""
 
+TOGETHER = 1000
+"""Roads that are looked at and placed at a time."""
+
 LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
 """The field that labels a feature of each role where no expression does."""
 
@@ -291,29 +299,106 @@ def _roads(
     feedback: QgsFeedback,
 ) -> Iterator[Centreline]:
     """Yield the roads of one layer; ``unknown`` gets the features whose width is not known."""
-    given = layer.source.expressions.width or layer.rules.column(*WIDTH_FIELDS)
-    width = layer.rules.rule("width", given)
-    roads = RoadRules(layer.rules, RoadExpressions())
-    for feature, geometry in layer.features(reading, feedback):
-        notes: list[str] = []
-        metres = layer.rules.metres("width", width, notes)
-        if metres is None:
-            unknown.add(feature.id())
-        lines = lines_of(geometry, notes)
-        label = layer.label(feature, notes)
-        traffic = roads.traffic(notes)
-        layer.note(feature, notes, reading)
-        for line in lines:
-            yield Centreline(
-                layer.placing.to_site(line),
-                metres or default_width,
-                label,
-                direction=traffic.direction,
-                speed_ms=traffic.speed or DEFAULT_SPEED,
-                closed=traffic.closed,
-                level=traffic.level,
-            )
+    values, waiting = _RoadValues(layer), _RoadColumns()
+    for row in layer.rows(reading, feedback):
+        about = None if row.geometry is None else values.of(row.feature)
+        if about is not None and about.width is None:
+            unknown.add(row.feature.id())
+        waiting.add(row, about)
+        if len(waiting.ids) == TOGETHER:
+            yield from _placed(waiting, layer, default_width, reading)
+            waiting = _RoadColumns()
+    yield from _placed(waiting, layer, default_width, reading)
     reading.note_layer(layer.rules.warnings)
+
+
+class _KnownRoad(NamedTuple):
+    """What is known of a road beside its line, and what there is to say of its width and of the rest."""
+
+    width: float | None
+    label: str
+    traffic: Traffic
+    of_width: Sequence[str]
+    of_rest: Sequence[str]
+
+
+class _RoadValues:
+    """Evaluates what ``layer`` says of its roads."""
+
+    def __init__(self, layer: _GroundLayer) -> None:
+        given = layer.source.expressions.width or layer.rules.column(*WIDTH_FIELDS)
+        self._layer = layer
+        self._width = layer.rules.rule("width", given)
+        self._roads = RoadRules(layer.rules, RoadExpressions())
+        self._memory = Memory([self._width, layer.label_rule, *self._roads.of_traffic])
+
+    def of(self, feature: QgsFeature) -> _KnownRoad:
+        """Return what is known of ``feature``, which the rules of the layer are at."""
+        known, key = self._layer.rules.known(self._memory)
+        if known is UNKNOWN:
+            of_width: list[str] = []
+            of_rest: list[str] = []
+            metres = self._layer.rules.metres("width", self._width, of_width)
+            label = self._layer.label(feature, of_rest)
+            known = _KnownRoad(metres, label, self._roads.traffic(of_rest), of_width, of_rest)
+            self._memory.keep(key, known)
+        return cast(_KnownRoad, known)
+
+
+class _RoadColumns:
+    """Features of a layer of roads, a list for each thing that is known of them."""
+
+    def __init__(self) -> None:
+        self.ids: list[int] = []
+        self.notes: list[Sequence[str]] = []
+        self.wkb: list[bytes] = []
+        self.about: list[_KnownRoad | None] = []
+        """Nothing of those without a geometry."""
+        self.points: list[bytes] = []
+        self.counts: list[int] = []
+        """How many plain lines each has; ``points`` has those of all."""
+
+    def add(self, row: FeatureRow, about: _KnownRoad | None) -> None:
+        wkb = b"" if row.geometry is None else row.geometry.asWkb().data()
+        lines = rings_of(wkb) if wkb else None
+        points = [] if lines is None or lines.closed else lines.points
+        self.ids.append(row.feature.id())
+        self.notes.append(tuple(row.notes))
+        self.wkb.append(wkb)
+        self.about.append(about)
+        self.points += points
+        self.counts.append(len(points))
+
+
+def _placed(
+    roads: _RoadColumns, layer: _GroundLayer, default_width: float, reading: GroundReading[Centreline]
+) -> Iterator[Centreline]:
+    """Yield the lines of ``roads``; the plain ones are looked at and placed together, which is quick."""
+    count = len(roads.ids)
+    table = RingTable(roads.points, roads.counts, [False] * count, [True] * count)
+    # What is odd, such as no number, is not read of it.
+    with np.errstate(all="ignore"):
+        placed = layer.placing.to_site(table.coordinates(table.rings(0, count)))
+    for k, (about, is_sound) in enumerate(zip(roads.about, table.sound.tolist(), strict=True)):
+        notes, lines = list(roads.notes[k]), []
+        if about is not None:
+            notes += about.of_width
+            if is_sound:
+                lines = table.apart(placed, k)
+            else:
+                lines = list(map(layer.placing.to_site, lines_of(geometry_of(roads.wkb[k]), notes)))
+            notes += about.of_rest
+            for line in lines:
+                yield Centreline(
+                    line,
+                    about.width or default_width,
+                    about.label,
+                    direction=about.traffic.direction,
+                    speed_ms=about.traffic.speed or DEFAULT_SPEED,
+                    closed=about.traffic.closed,
+                    level=about.traffic.level,
+                )
+        layer.note(roads.ids[k], notes, reading)
 
 
 def read_areas(
@@ -384,7 +469,7 @@ def _polygons(
         if any(not shape.closed for shape in shapes):
             notes.append(tr("has a line, which is no area; it is left out"))
         label = layer.label(feature, notes)
-        layer.note(feature, notes, reading)
+        layer.note(feature.id(), notes, reading)
         for rings in polygons_of(shapes):
             yield tuple(layer.placing.to_site(ring) for ring in rings), label
 
@@ -405,31 +490,37 @@ class _GroundLayer:
         self.rules = LayerRules(source.name, source.fields, source.context)
         self._filter = FeatureFilter(source.name, source.fields, source.expressions.filter, source.context)
         column = self.rules.column(LABEL_FIELDS[role])
-        self._label = self.rules.rule("semantics", source.expressions.semantics or column)
+        self.label_rule = self.rules.rule("semantics", source.expressions.semantics or column)
         self._otherwise = source.name if role == KEEPOUT else ""
+
+    def rows(self, reading: GroundReading, feedback: QgsFeedback) -> Iterator[FeatureRow]:
+        """Yield every feature; of one with a geometry the rules speak until the next is asked for."""
+        source = self.source
+        reader = FeatureReader(source.name, source.features, self.placing, self._filter, feedback)
+        for row in reader:
+            if row.geometry is not None:
+                self.rules.at(row.feature)
+            yield row
+        reading.complete = reading.complete and reader.complete
 
     def features(
         self, reading: GroundReading, feedback: QgsFeedback
     ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
         """Yield each feature that counts with its geometry in metres; warn of those that have none."""
-        source = self.source
-        reader = FeatureReader(source.name, source.features, self.placing, self._filter, feedback)
-        for row in reader:
-            self.note(row.feature, row.notes, reading)
+        for row in self.rows(reading, feedback):
+            self.note(row.feature.id(), row.notes, reading)
             if row.geometry is not None:
-                self.rules.at(row.feature)
                 yield row.feature, row.geometry
-        reading.complete = reading.complete and reader.complete
 
     def label(self, feature: QgsFeature, notes: list[str]) -> str:
         """Return the label of the feature that was yielded last."""
-        value = self.rules.value("semantics", self._label, notes)
+        value = self.rules.value("semantics", self.label_rule, notes)
         return self._otherwise if value is None else str(value)
 
-    def note(self, feature: QgsFeature, notes: Sequence[str], reading: GroundReading) -> None:
-        """Warn of ``feature``."""
+    def note(self, id: int, notes: Sequence[str], reading: GroundReading) -> None:
+        """Warn of the feature with this id."""
         for note in notes:
-            reading.notes.add(self.source.name, feature.id(), note)
+            reading.notes.add(self.source.name, id, note)
 
 
 def lines_of(geometry: QgsGeometry, notes: list[str]) -> list[np.ndarray]:

@@ -219,11 +219,15 @@ class ObservationDock(ActionDock):
     """Keeps list, form and layer true to what is known; :meth:`remove` undoes what it did elsewhere."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
-        super().__init__(tr("Observations"), parent)
-        self.setObjectName("fleet_observation_dock")
+        super().__init__(tr("Observations"), "fleet_observation_dock", parent)
         self._desk = desk
+        # It asks for what was seen before; what comes has a layer, and a number in the panel's title.
         self.thumbnails = observation_views.Thumbnails(self)
         self.feed = observation_views.ObservationFeed(desk, self.thumbnails, self)
+        desk.state.observations_changed.connect(self.build)
+
+    def _build(self) -> None:
+        desk = self._desk
         self.layer = observation_views.ObservationLayer(desk.project, self.thumbnails)
         self.model = observation_views.ObservationModel(self.thumbnails, self)
         self.head = ElidedText("fleet_observation_head")
@@ -244,10 +248,12 @@ class ObservationDock(ActionDock):
         self.refresh()
 
     def remove(self) -> None:
-        """Take the layer out of the project and delete the pictures."""
+        super().remove()
+        self.thumbnails.remove()
+
+    def _take_out(self) -> None:
         self._timer.stop()
         self.layer.remove()
-        self.thumbnails.remove()
 
     def refresh(self) -> None:
         """Show what is known now."""

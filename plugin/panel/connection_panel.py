@@ -324,7 +324,7 @@ class ConnectionPanel(QWidget):
 
     def _which(self, link: ConnectionStatus, site: SiteReport | None) -> str:
         which = [self.url(), *([] if site is None else [site.name, site.crs])]
-        return "\n".join([*which, *([link.reason] if link.reason else [])])
+        return "\n".join([*which, *filter(None, (link.instead, link.reason))])
 
     def connection(self) -> GatewayConnection:
         """Return what the fields say, as a connection that has no name yet."""
@@ -405,7 +405,7 @@ def _in_words(link: ConnectionStatus, site: SiteReport | None, now: float) -> st
     colour, word = MARKS[link.phase]
     detail = _escaped(link.reason)
     if link.phase is ConnectionPhase.CONNECTED and site is not None:
-        detail = " · ".join(_escaped(text) for text in (site.name, link.who) if text)
+        detail = " · ".join(_escaped(text) for text in (link.instead, site.name, link.who) if text)
     if link.phase is ConnectionPhase.RETRYING:
         word = tr("Retrying in {wait:.0f} s", wait=link.wait(now))
     dot = f'<span style="color:{colour}">⬤</span>'

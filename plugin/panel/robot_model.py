@@ -12,6 +12,7 @@ import numpy.typing as npt
 from qgis.PyQt.QtCore import QAbstractTableModel, QModelIndex, QObject, Qt
 
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.positions import gateway_of_link
 from ...robot_bridge.core.messages.queues import QueueState
 from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import RobotState
@@ -72,13 +73,12 @@ COLUMNS = (
 TITLES = tuple(column.title for column in COLUMNS)
 TASK = TITLES.index("Task")
 POSITION = TITLES.index("Position")
-ELSEWHERE = "gateway "
 
 
 def short_link(link: str) -> str:
     """Return how a robot is connected so that it fits into the column, such as ``ws`` or ``@north``."""
-    if link.startswith(ELSEWHERE):
-        return f"@{link[len(ELSEWHERE) :]}"
+    if (gateway := gateway_of_link(link)) is not None:
+        return f"@{gateway}"
     return "ws" if link == "websocket" else link
 
 

@@ -23,6 +23,7 @@ from ..map.site_project import ProjectMatch
 from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RouteTool
+from ..settings.fleet_gateways import KnownGateways
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr
@@ -47,7 +48,9 @@ class FleetWindow(QObject):
         # A child of the main window, so that scripts find its actions there by their object names.
         super().__init__(iface.mainWindow())
         self._iface = iface
-        self._reason = ""
+        self._reasons: set[str] = set()
+        """Why the link is down, as far as the message bar has said it."""
+        self._gateways = KnownGateways()
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
@@ -159,6 +162,7 @@ class FleetWindow(QObject):
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
         desk.state.link_changed.connect(self._show_link)
+        desk.state.gateways_changed.connect(lambda told: self._gateways.keep(desk.state.url, told))
 
     def _follow(self, mode: FollowMode, on: bool) -> None:
         if on:
@@ -182,7 +186,8 @@ class FleetWindow(QObject):
             return
         panel = self.dock.connection_panel
         try:
-            self.desk.open_link(panel.url(), panel.operator(), panel.credentials())
+            known = self._gateways.of(panel.url())
+            self.desk.open_link(panel.url(), panel.operator(), panel.credentials(), known)
         except FleetError as error:
             self.desk.messages.post(str(error), Level.ERROR, CONNECTING)
             self._show_link()
@@ -199,13 +204,12 @@ class FleetWindow(QObject):
         self.actions.connect.setText(tr("Disconnect") if is_open else tr("Connect"))
         if link.phase is ConnectionPhase.FAILED:
             self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
-        elif link.phase is ConnectionPhase.RETRYING and link.reason != self._reason:
-            # The panel goes on showing it; the message bar says it once for each outage.
+        elif link.phase is ConnectionPhase.RETRYING and link.reason not in self._reasons:
+            # The panel goes on showing it; the message bar says it once for each outage and gateway.
+            self._reasons.add(link.reason)
             self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
-        self._reason = (
-            "" if link.phase in (ConnectionPhase.CONNECTED, ConnectionPhase.CLOSED) else link.reason
-        )
-        if not self._reason:
+        if not link.reason:
+            self._reasons.clear()
             self.desk.messages.end(OUTAGE)
 
     def _show_emergency(self) -> None:

@@ -87,6 +87,8 @@ class PlanExecution(QObject):
         desk.orders.answered.connect(self._answered)
         desk.state.link_changed.connect(self._link_changed)
         drafts.changed.connect(self._submitted_before)
+        if known := [one.plan for one in desk.state.plans.open()]:
+            self._take_plans(known)
 
     @property
     def known(self) -> KnownPlan | None:

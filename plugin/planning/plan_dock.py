@@ -255,14 +255,24 @@ class PlanDock(ActionDock):
     """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
-        super().__init__(tr("Cone plan"), parent)
-        self.setObjectName("fleet_plan_dock")
+        super().__init__(tr("Cone plan"), "fleet_plan_dock", parent)
         self._desk = desk
+        desk.state.plans_changed.connect(self._build_for)
+
+    def _build_for(self, plans: list[str]) -> None:
+        # A plan that is driven is on the map and says what is wrong with it, whoever looks at the panel.
+        if plans:
+            self.build()
+
+    def _build(self) -> None:
+        desk = self._desk
         self.drafts = PlanEditor(desk, self)
         self.driven = PlanExecution(desk, self.drafts, self)
         self.collecting = CollectionPlanner(desk, self.drafts, self)
         self.layers = PlanLayers(desk)
         self.form = SettingsForm(desk.project, self.drafts.settings)
+        # It has chosen the layer of cones that is there, where the project's settings name none.
+        self.drafts.plan_with(self.form.settings(self.drafts.settings))
         self.robots = RobotsForm()
         self.tree = PlanTree()
         self.bar = ExecutionBar(self.drafts, self.driven)
@@ -284,7 +294,7 @@ class PlanDock(ActionDock):
         self._wire()
         self._refresh()
 
-    def remove(self) -> None:
+    def _take_out(self) -> None:
         """Stop what is being planned and take the layers out of the project."""
         self.drafts.shut_down()
         self._desk.project.readProject.disconnect(self._read_settings)

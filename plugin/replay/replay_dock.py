@@ -26,9 +26,11 @@ class ReplayDock(ActionDock):
     """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
-        super().__init__(tr("Replay"), parent)
-        self.setObjectName("fleet_replay_dock")
+        super().__init__(tr("Replay"), "fleet_replay_dock", parent)
         self._desk = desk
+
+    def _build(self) -> None:
+        desk = self._desk
         self._status = ""
         self._showing = CooperativeTask(self, ONE_STEP)
         """Shows a history that has just come."""
@@ -55,7 +57,7 @@ class ReplayDock(ActionDock):
         self._wire()
         self._say(tr("Choose a time and press Load."))
 
-    def remove(self) -> None:
+    def _take_out(self) -> None:
         """Stop the clock, take the layer out of the project, leave the live map alone."""
         self._showing.stop()
         self._past.forget()

@@ -248,10 +248,46 @@ BROWSER = "Browser"
 
 
 class ActionDock(QgsDockWidget):
-    """A panel of the main window that a :class:`DockAction` shows."""
+    """A panel of the main window that a :class:`DockAction` shows.
+
+    The window has it from the begin, so that QGIS lists it, and opens it where it was open in the session
+    before. Its parts are built when it is shown for the first time or something has come for it: QGIS starts
+    without them.
+    """
+
+    def __init__(self, title: str, name: str, parent: QWidget | None = None):
+        super().__init__(title, parent)
+        self.setObjectName(name)
+        self._is_placed = self._is_built = False
+
+    def settle(self, iface: QgisInterface) -> None:
+        """Get a place in the window, closed; shown from now on, it has its parts."""
+        # QGIS shows every panel that it is given.
+        iface.addDockWidget(AREA, self)
+        self.hide()
+        self._is_placed = True
+
+    def setVisible(self, visible: bool) -> None:
+        # The one way by which Qt opens a panel, be it for an action or out of a saved arrangement.
+        if visible and self._is_placed:
+            self.build()
+        super().setVisible(visible)
+
+    def build(self) -> None:
+        """Build the parts that the panel lacks as yet; they show what is known by now."""
+        if not self._is_built:
+            self._is_built = True
+            self._build()
 
     def remove(self) -> None:
         """Take out what the panel put elsewhere, before it goes itself."""
+        if self._is_built:
+            self._take_out()
+
+    def _build(self) -> None:
+        raise NotImplementedError
+
+    def _take_out(self) -> None:
         raise NotImplementedError
 
 
@@ -279,8 +315,7 @@ class DockAction:
         self.action.setCheckable(True)
         self.action.setToolTip(tip)
         self._is_placed = self._lacks_height = False
-        iface.addDockWidget(AREA, dock)
-        dock.hide()
+        dock.settle(iface)
         # Before the panel is shown. While QGIS starts would be too soon: it arranges its panels after that.
         self.action.toggled.connect(self._place)
         dock.setToggleVisibilityAction(self.action)

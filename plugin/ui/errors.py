@@ -52,13 +52,24 @@ class GatewayLinkError(FleetError):
     """The gateway could not be reached, or what answered is no gateway.
 
     ``final`` is true when trying again cannot help before somebody changes something; ``wants_token`` when
-    that is the token or the CA file.
+    that is the token or the CA file; ``everywhere`` when it holds for all gateways of the fleet. ``ends``:
+    the gateway says that it ends.
     """
 
-    def __init__(self, message: str, *, final: bool = False, wants_token: bool = False):
+    def __init__(
+        self,
+        message: str,
+        *,
+        final: bool = False,
+        wants_token: bool = False,
+        everywhere: bool = False,
+        ends: bool = False,
+    ):
         super().__init__(message)
         self.final = final
         self.wants_token = wants_token
+        self.everywhere = everywhere
+        self.ends = ends
 
 
 class NotSentError(FleetError):

@@ -1148,6 +1148,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Aquesta passarel·la serveix un altre recinte que la resta de la flota: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: no s'ha enviat, perquè ara se serveix un altre recinte. Torneu-ho a dibuixar.</translation>
         </message>
@@ -1358,6 +1363,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>The Abort is NOT sent yet: the link is down. It is sent if that is back within {seconds:g} s; use the robots' own emergency stops now.</source>
+            <translation>L'avortament encara NO s'ha enviat: l'enllaç està tallat. S'envia si torna abans de {seconds:g} s; feu servir ara les parades d'emergència dels mateixos robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1768,6 +1778,16 @@
             <translation>El que respon a {url} obre un WebSocket però no ha contestat la salutació de la consola en {answer_within:g} s. Comproveu que l'URL porta a una passarel·la de Fleet Supervisor.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} did not answer</source>
+            <translation>a {gateway}; {given} no ha respost</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} refuses this desk</source>
+            <translation>a {gateway}; {given} refusa aquesta consola</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hi ha enllaç segur amb {place}: {reason}. Si la passarel·la no té TLS, escriviu ws:// en lloc de wss://.</translation>
@@ -1981,6 +2001,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The gateway at {url} sends no positions: {error}</source>
             <translation>La passarel·la a {url} no envia posicions: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The gateway at {url} serves another fleet than the gateway that named it. Connect to it yourself if that is what you want.</source>
+            <translation>La passarel·la de {url} serveix una altra flota que la passarel·la que l'ha anomenada. Connecteu-vos-hi directament si és el que voleu.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

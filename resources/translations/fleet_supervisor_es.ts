@@ -1148,6 +1148,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Esta pasarela sirve otro recinto que el resto de la flota: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: no se envió, porque ahora se sirve otro recinto. Dibújelo de nuevo.</translation>
         </message>
@@ -1358,6 +1363,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>The Abort is NOT sent yet: the link is down. It is sent if that is back within {seconds:g} s; use the robots' own emergency stops now.</source>
+            <translation>La orden de abortar aún NO se ha enviado: el enlace está caído. Se envía si vuelve antes de {seconds:g} s; use ahora las paradas de emergencia de los propios robots.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1768,6 +1778,16 @@
             <translation>Lo que responde en {url} abre un WebSocket pero no contestó al saludo de la consola en {answer_within:g} s. Compruebe que la URL lleva a una pasarela de Fleet Supervisor.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} did not answer</source>
+            <translation>en {gateway}; {given} no respondió</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} refuses this desk</source>
+            <translation>en {gateway}; {given} rechaza esta consola</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>No hay enlace seguro con {place}: {reason}. Si la pasarela no tiene TLS, escriba ws:// en lugar de wss://.</translation>
@@ -1981,6 +2001,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The gateway at {url} sends no positions: {error}</source>
             <translation>La pasarela en {url} no envía posiciones: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The gateway at {url} serves another fleet than the gateway that named it. Connect to it yourself if that is what you want.</source>
+            <translation>La pasarela de {url} sirve otra flota que la pasarela que la nombró. Conéctese a ella directamente si es lo que quiere.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

@@ -1142,6 +1142,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/fleet_controller.py" />
+            <source>This gateway serves another site than the rest of the fleet: {reason}.</source>
+            <translation>Ez az átjáró más telephelyet szolgál ki, mint a flotta többi része: {reason}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/fleet_controller.py" />
             <source>{words} was not sent: another site is served now. Draw it anew.</source>
             <translation>{words}: nem lett elküldve, mert már másik telephely van szolgáltatva. Rajzolja meg újra.</translation>
         </message>
@@ -1351,6 +1356,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>The Abort is NOT sent yet: the link is down. It is sent if that is back within {seconds:g} s; use the robots' own emergency stops now.</source>
+            <translation>A megszakítás MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, ha {seconds:g} s-on belül visszatér; most használja a robotok saját vészleállítóit.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1760,6 +1770,16 @@
             <translation>Ami a(z) {url} címen válaszol, nyit WebSocketet, de {answer_within:g} s alatt nem felelt a kezelőpult üdvözlésére. Ellenőrizze, hogy az URL Fleet Supervisor-átjáróra mutat-e.</translation>
         </message>
         <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} did not answer</source>
+            <translation>itt: {gateway}; {given} nem válaszolt</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection.py" />
+            <source>at {gateway}; {given} refuses this desk</source>
+            <translation>itt: {gateway}; {given} elutasítja ezt a kezelőpultot</translation>
+        </message>
+        <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>No secure link to {place}: {reason}. If the gateway has no TLS, write ws:// instead of wss://.</source>
             <translation>Nincs biztonságos kapcsolat ezzel: {place}: {reason}. Ha az átjárónak nincs TLS-e, írjon wss:// helyett ws://-t.</translation>
@@ -1973,6 +1993,11 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The gateway at {url} sends no positions: {error}</source>
             <translation>A(z) {url} átjáró nem küld helyzeteket: {error}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>The gateway at {url} serves another fleet than the gateway that named it. Connect to it yourself if that is what you want.</source>
+            <translation>A(z) {url} átjáró más flottát szolgál ki, mint az az átjáró, amelyik megnevezte. Csatlakozzon hozzá közvetlenül, ha ezt szeretné.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

@@ -252,6 +252,8 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     down = [name for name, link in health.get("links", {}).items() if not link["ok"]]
     if down:
         yield Finding(Level.WARNING, "gateway", f"{where}: links that are down: {', '.join(down)}")
+    if problem := health["site"].get("text"):
+        yield Finding(Level.FAULT, "gateway", f"{where}: {problem}")
     if failing:
         text = f"{where}: {', '.join(failing)} failing: journalctl -u robot-bridge says why"
         yield Finding(Level.FAULT, "gateway", text)

@@ -371,9 +371,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             await plans.restore()
         stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
-        watch = SiteWatch(folder, stamp, maps, fleet, signals.reload)
+        watch = SiteWatch(folder, stamp, maps, fleet, signals.reload, settings.site.resolve().name)
         handlers = request_handlers(fleet, plans, database, watch, gate.journal)
-        relays = None if cluster is None else _relays(settings, cluster, fleet, handlers)
+        relays = None if cluster is None else _relays(settings, cluster, fleet, handlers, watch)
         answering = handlers if relays is None else relays.requests
         queries = SiteQueries(maps, handlers)
         gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), queries, tls)
@@ -428,11 +428,12 @@ async def _hold_database(
 
 
 def _relays(
-    settings: GatewaySettings, cluster: Cluster, fleet: Fleet, handlers: RequestHandlers
+    settings: GatewaySettings, cluster: Cluster, fleet: Fleet, handlers: RequestHandlers, sites: SiteWatch
 ) -> ClusterRelays:
     assert settings.cluster is not None
+    stops_when_cut_off = settings.cluster.stops_when_cut_off
     return ClusterRelays(
-        cluster, fleet, handlers, cluster.lease, stops_when_cut_off=settings.cluster.stops_when_cut_off
+        cluster, fleet, handlers, cluster.lease, sites, stops_when_cut_off=stops_when_cut_off
     )
 
 

@@ -7,12 +7,16 @@ from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
+from .cluster.follower import Followed, Follower
 from .cluster.messages import Wake
+from .cluster.observation_relay import ObservationRelay
 from .cluster.position_relay import PositionRelay
+from .cluster.queue_feed import QueueFeed
 from .cluster.request_relay import RequestRelay
 from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
+from .model.events import SiteChosen
 from .model.request_handlers import Answering
 from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
@@ -20,6 +24,7 @@ from .storage.database import Database
 BEAT_INTERVAL_S = 1.0
 OWNERS_INTERVAL_S = 1.0
 CLOSURES_INTERVAL_S = 1.0
+ADDRESSES_INTERVAL_S = 1.0
 FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
 ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots", "suspensions")
@@ -35,6 +40,7 @@ class ClusterRelays:
         fleet: Fleet,
         handlers: Answering,
         lease: Database,
+        sites: Followed,
         *,
         stops_when_cut_off: bool,
     ) -> None:
@@ -49,6 +55,12 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._queues = QueueFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._observations = ObservationRelay(
+            fleet.observations, fleet.listeners, fleet.events, exchange, database
+        )
+        self._sites = Follower("site", sites, exchange)
+        fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
 
@@ -70,8 +82,14 @@ class ClusterRelays:
             "steps of others": self._steps.run,
             "positions of others": self._positions.run,
             "details of others": self._details.run,
+            "queues of others": self._queues.run,
+            "observations of others": self._observations.run,
+            "site of others": self._sites.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
+            ),
+            "addresses": lambda: every(
+                ADDRESSES_INTERVAL_S, self._fleet.announce_gateways, "addresses", tally
             ),
             "old requests": self._led(
                 "old requests",

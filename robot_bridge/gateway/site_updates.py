@@ -22,6 +22,7 @@ from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, publish_staged, read_site, sibling_sites
 from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
 from .fleet.service import Fleet
+from .model.events import SiteChosen
 from .model.request_handlers import handles
 from .monitoring import wait_at_most
 from .site.site_maps import SiteMaps
@@ -293,16 +294,20 @@ def stamp_of(folder: Path) -> Stamp:
 class SiteWatch:
     """Looks at the folder of the site every second, and at once when ``reload`` is set.
 
-    Supervisors may choose another folder beside it; the choice outlives the gateway.
+    Supervisors may choose another folder beside it; the choice outlives the gateway, and without one the
+    folder named ``given`` there is served.
 
     ``seen`` is the stamp of the folder from before the site was read. A publication is taken over whole or
     not at all: a folder that is half written, or wrong, leaves the gateway with what it serves.
     """
 
     def __init__(
-        self, folder: Path, seen: Stamp, maps: SiteMaps, fleet: Fleet, reload: asyncio.Event
+        self, folder: Path, seen: Stamp, maps: SiteMaps, fleet: Fleet, reload: asyncio.Event, given: str
     ) -> None:
         self._folder = folder
+        self._given = given
+        self._refused: tuple[str, Stamp] | None = None
+        """what was chosen at another gateway and cannot be served here."""
         self._seen = seen
         self._doubtful: Stamp | None = None
         self._maps = maps
@@ -330,20 +335,59 @@ class SiteWatch:
     @handles(ChooseSite)
     async def choose(self, request: ChooseSite) -> SiteReport:
         """Serve the site in a folder beside this one; raises RefusedError saying why not."""
-        name = request.site
         async with self._reading:
-            known = await asyncio.to_thread(sibling_sites, self._folder)
-            if name not in known:
-                raise RefusedError(
-                    f"there is no site in a folder {name!r}; choose one of: {', '.join(known)}"
-                )
-            folder = self._beside(name)
-            stamp = await asyncio.to_thread(stamp_of, folder)
-            site = await asyncio.to_thread(self._readable, folder)
-            await self._fleet.database.run(metadata.choose_site, name)
-            self._folder, self._seen, self._doubtful = folder, stamp, None
-            await self._take_over(site)
+            folder, stamp, site = await asyncio.to_thread(self._choice, request.site)
+            await self._fleet.database.run(metadata.choose_site, request.site)
+            self._fleet.events.publish(SiteChosen(request.site))
+            await self._serve(folder, stamp, site)
             return self._maps.report
+
+    async def follow(self) -> None:
+        """Serve what was chosen at another gateway of the fleet; raises StoreError.
+
+        What cannot be served here is told to all desks for as long as that is so, and tried again once it is
+        published anew.
+        """
+        # What is published here waits for no database that is away.
+        if await self._chosen() == self._folder.resolve().name and self._maps.report.problem is None:
+            return
+        async with self._reading:
+            name = await self._chosen()
+            if name == self._folder.resolve().name:
+                self._report_problem(None)
+                return
+            seen = name, await asyncio.to_thread(stamp_of, self._beside(name))
+            if seen == self._refused:
+                return
+            try:
+                folder, stamp, site = await asyncio.to_thread(self._choice, name)
+            except RefusedError as error:
+                self._refused = seen
+                self._report_problem(
+                    f"site {name} was chosen for the fleet and cannot be served here: {error}"
+                )
+                return
+            log.warning("site %s is served, which was chosen at another gateway", name)
+            await self._serve(folder, stamp, site)
+
+    async def _chosen(self) -> str:
+        return await self._fleet.database.read(metadata.chosen_site) or self._given
+
+    async def _serve(self, folder: Path, stamp: Stamp, site: Site) -> None:
+        self._folder, self._seen, self._doubtful = folder, stamp, None
+        self._report_problem(None)
+        await self._take_over(site)
+
+    def _report_problem(self, problem: str | None) -> None:
+        """Tell operators why this gateway does not serve what was chosen, or (None) that it does."""
+        if problem is None:
+            self._refused = None
+        if problem == self._maps.report.problem:
+            return
+        if problem is not None:
+            log.error("%s", problem)
+        self._maps.note_problem(problem)
+        self._fleet.announce_site()
 
     async def _look(self, requested: bool) -> None:
         stamp = await asyncio.to_thread(stamp_of, self._folder)
@@ -377,6 +421,15 @@ class SiteWatch:
             return SiteOffer(name, served, refusal=str(error))
         refusal = None if served else frame_mismatch(self._maps.settings, found)
         return SiteOffer(name, served, found.id, found.name, found.version, refusal)
+
+    def _choice(self, name: str) -> tuple[Path, Stamp, Site]:
+        """Return the folder ``name`` beside this one, its stamp and its site; raises RefusedError."""
+        known = sibling_sites(self._folder)
+        if name not in known:
+            raise RefusedError(f"there is no site in a folder {name!r}; choose one of: {', '.join(known)}")
+        folder = self._beside(name)
+        stamp = stamp_of(folder)
+        return folder, stamp, self._readable(folder)
 
     def _readable(self, folder: Path) -> Site:
         """Return the site in ``folder``; raises RefusedError when it cannot be served after this one."""

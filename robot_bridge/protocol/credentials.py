@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ipaddress
 import logging
 import ssl
 import stat
@@ -13,6 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ..core.errors import BridgeError
+from ..core.messages.validation import is_loopback
 
 # --- The exception family of accounts, tokens and certificates ---
 
@@ -43,7 +43,7 @@ class ClientCredentials:
         if parts.scheme == "wss":
             options["ssl"] = client_context(self.ca)
         if self.token_file is not None:
-            if parts.scheme != "wss" and not _is_own(parts.hostname or ""):
+            if parts.scheme != "wss" and not is_loopback(parts.hostname or ""):
                 raise AccessError(f"{url}: without TLS everybody on the way reads the token; use wss://")
             options["additional_headers"] = {"Authorization": f"Bearer {read_token(self.token_file)}"}
         return options
@@ -77,10 +77,3 @@ def read_token(file: Path) -> str:
     if sys.platform != "win32" and mode & (stat.S_IRGRP | stat.S_IROTH):
         log.warning("token file %s can be read by others; chmod 600 keeps it to yourself", file)
     return token
-
-
-def _is_own(host: str) -> bool:
-    try:
-        return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
-    except ValueError:
-        return False

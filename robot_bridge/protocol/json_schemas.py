@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from ..core.messages.administration import Links, SiteReport, Stopping, Suspensions
+from ..core.messages.administration import Gateways, Links, SiteReport, Stopping, Suspensions
 from ..core.messages.commands import CommandReport
 from ..core.messages.plans import PlanReport
 from ..core.messages.positions import PositionColumns, Positions
@@ -95,6 +95,7 @@ NOTIFICATIONS: dict[str, type] = {
     "stopping": Stopping,
     "suspensions": Suspensions,
     "links": Links,
+    "gateways": Gateways,
     "closures": Closures,
     "replanned": ReplannedRobot,
     "conflicts": Conflicts,

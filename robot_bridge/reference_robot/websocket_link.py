@@ -12,13 +12,13 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from websockets.frames import CloseCode
 
 from ..core.errors import BridgeError
+from ..core.gateway_addresses import GatewayAddresses
 from ..core.messages.json_values import to_json
 from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
 from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from ..protocol.credentials import AccessError, ClientCredentials
-from ..protocol.gateway_addresses import GatewayAddresses
 from .agent import Agent
 
 log = logging.getLogger(__name__)
@@ -41,7 +41,7 @@ class RobotWebSocketLink:
 
     def __init__(self, url: str, robot: str, credentials: ClientCredentials | None = None) -> None:
         self._credentials = credentials or ClientCredentials()
-        self._addresses = GatewayAddresses(url)
+        self._addresses = GatewayAddresses(url, has_token=self._credentials.token_file is not None)
         self._robot = robot
         self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
         """What is to be sent, in order: a reply does not overtake what was said before it."""

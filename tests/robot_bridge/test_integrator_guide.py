@@ -29,7 +29,7 @@ from tests.support.wire import RefusedError
 ROOT = Path(__file__).resolve().parents[2]
 GUIDE = (ROOT / "docs" / "integrator.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+) ([\w -]+)\n(.*?)^```$", GUIDE, re.DOTALL | re.MULTILINE)
-OF_THE_GATEWAY = {"geofence", "links", "nearness", "site", "stopping", "suspensions"}
+OF_THE_GATEWAY = {"gateways", "geofence", "links", "nearness", "site", "stopping", "suspensions"}
 """What operators are told of robots in keepouts or near people, of a new site, and when the gateway ends."""
 UUID = re.compile(r"[0-9a-f]{8}(-[0-9a-f]{4}){3}-[0-9a-f]{12}")
 

@@ -15,6 +15,7 @@ FEEDS = {
     "nearness": ("nearness", None),
     "suspensions": ("suspended", "robots"),
     "links": ("links", "links"),
+    "gateways": ("gateways", "gateways"),
 }
 """Where a desk keeps what is told of all robots together, by method: its attribute, and which parameter."""
 
@@ -33,6 +34,7 @@ class Desk(Wire):
         self.nearness: dict[str, Any] = {}
         self.suspended: list[dict[str, Any]] = []
         self.links: list[dict[str, Any]] = []
+        self.gateways: list[str] = []
         self.hello = self.ask("hello", {"operator": operator})
         self.site, self.emergency = self.hello["site"], self.hello["emergency"]
 

@@ -16,7 +16,7 @@ from ....robot_bridge.core.robotmap.outlines import Outlines
 from ....robot_bridge.core.sites import geopackage
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ....robot_bridge.core.sites.site_cache import CacheWriter
-from ....robot_bridge.core.sites.site_layers import outline_groups
+from ....robot_bridge.core.sites.site_layers import group_spans
 from ..geometry import line_wkb, multi_line_wkb, polygon_heads, polygon_wkb
 from ..layer_source import ObstacleSource
 from ..obstacle_layers import ObstacleReader, check_sources
@@ -187,8 +187,8 @@ def _rows_of(some: Outlines, frame: SiteFrame) -> SiteRows:
     """Return ``some`` as features; a courtyard is a hole of the ring before it."""
     shut = np.isin(some.shape_type, _RINGS)
     shapes = _PlacedShapes(some.coordinates, some.offsets, shut, frame)
-    groups = list(outline_groups(some))
-    rows = np.array([first for first, _ in groups], dtype=np.intp)
+    rows, ends = group_spans(some).T
+    groups = list(zip(rows.tolist(), ends.tolist(), strict=True))
     wkb = shapes.wkb(groups)
     for k in np.flatnonzero(some.shape_type[rows] == _STAIRS).tolist():
         wkb[k] = multi_line_wkb(_risers(shapes.points(groups[k][0])))

@@ -8,7 +8,14 @@ from typing import ClassVar
 
 from .operator_requests import DeskRequest, Role
 from .safety import EmergencyReport, check_reason
-from .validation import LONGEST_OPERATOR, MessageError, check_expires_in, check_finite, check_robot_name
+from .validation import (
+    LONGEST_OPERATOR,
+    MessageError,
+    check_expires_in,
+    check_finite,
+    check_robot_name,
+    usable_addresses,
+)
 
 # --- The connection of an operator: what is served here, and who you are ---
 
@@ -20,7 +27,7 @@ class SiteReport:
     """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
 
     ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds ways
-    along roads on it.
+    along roads on it. ``problem`` says why this gateway does not serve what was chosen for its fleet.
     """
 
     id: str
@@ -34,6 +41,7 @@ class SiteReport:
     stale_after: float
     lost_after: float
     roads: bool = False
+    problem: str | None = None
 
 
 @dataclass(frozen=True)
@@ -42,6 +50,7 @@ class HelloResult:
 
     ``database`` tells the gateway's database from every other: with another one, robots and commands of the
     same names are others. ``robots`` is how many there are now; a gateway that tells it knows views.
+    ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways serve the fleet.
     """
 
     protocol: int
@@ -51,6 +60,23 @@ class HelloResult:
     emergency: EmergencyReport
     database: str = ""
     robots: int | None = None
+    gateway: str | None = None
+    gateways: list[str] | None = None
+
+
+@dataclass(frozen=True)
+class Gateways:
+    """Where operators reach the gateways of a fleet that several serve.
+
+    ``gateway`` is the name of the one that tells it; ``gateways`` are the URLs of all, its own first, of at
+    most 256 characters each: at any of them an operator may connect when this one does not answer.
+    """
+
+    gateway: str
+    gateways: list[str]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "gateways", usable_addresses(self.gateways) or [])
 
 
 @dataclass(frozen=True)

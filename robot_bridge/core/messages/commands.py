@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
+from ..errors import RefusedError
 from .operator_requests import DeskRequest, Done, Priority, Role
 from .safety import check_override, check_reason
 from .validation import (
@@ -65,10 +66,22 @@ class CommandReport:
 
 
 @dataclass(frozen=True)
+class RefusedRobot:
+    """A robot that was sent nothing, and why."""
+
+    robot: str
+    reason: str
+
+
+@dataclass(frozen=True)
 class Commands:
-    """Commands with every step of their lives."""
+    """Commands with every step of their lives.
+
+    Of ``set_positions`` for robots of several gateways, ``refused`` are those that were sent no target.
+    """
 
     commands: list[CommandReport]
+    refused: list[RefusedRobot] | None = None
 
 
 LONGEST_EXPIRY = 366 * 86400.0
@@ -99,12 +112,23 @@ class TargetPosition:
 
 @dataclass(frozen=True)
 class SetPositions(DeskRequest[Commands]):
-    """Send target positions (the second paper's ``set_positions``): all of them are accepted, or none."""
+    """Send target positions (the second paper's ``set_positions``): all of them are accepted, or none.
+
+    Robots of several gateways are the exception: all of one gateway's are, or none of those.
+    """
 
     method = "set_positions"
     least_role = Role.OPERATOR
     priority = Priority.MOVE
     positions: list[TargetPosition]
+
+    def check_named_once(self) -> None:
+        """Raise RefusedError where a robot is named more than once."""
+        names = [position.robot for position in self.positions]
+        if twice := sorted({name for name in names if names.count(name) > 1}):
+            raise RefusedError(
+                f"positions: {', '.join(twice)} is named more than once; give each robot one target"
+            )
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,20 @@ POSITION_ALWAYS = ("age", "stopped", "state", "link")
 """What is known of every robot."""
 
 
+ELSEWHERE = "gateway "
+"""Begins the link of a robot that another gateway of the fleet has; its name follows."""
+
+
+def link_elsewhere(gateway: str) -> str:
+    """Return the link of a robot that the gateway named ``gateway`` has."""
+    return f"{ELSEWHERE}{gateway}"
+
+
+def gateway_of_link(link: str) -> str | None:
+    """Return the name of the gateway that has the robot of this link, None for the one that tells of it."""
+    return link[len(ELSEWHERE) :] if link.startswith(ELSEWHERE) else None
+
+
 class PositionForm(str, Enum):
     """How positions are told: a JSON object for each robot, or a table of numbers behind a JSON head.
 

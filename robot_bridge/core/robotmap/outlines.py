@@ -244,8 +244,10 @@ def oriented_segments(outlines: Outlines, usable: NDArray[Any]) -> Segments:
     height[stairs[outline] & (index[start] >= lengths[outline] - 2)] = 0.0
     joined = np.zeros(len(start), dtype=bool)
     joined[1:] = (outline[1:] == outline[:-1]) & ~stairs[outline[1:]]
-    turn = _seen_from_above(outlines, a, b, outline)[:, None]
-    segments = uncut(np.where(turn, b, a), np.where(turn, a, b), height, outline, joined)
+    if stairs.any():
+        turn = _seen_from_above(outlines, a, b, outline)[:, None]
+        a, b = np.where(turn, b, a), np.where(turn, a, b)
+    segments = uncut(a, b, height, outline, joined)
     backwards = is_closed(outlines.shape_type) & ((signed_areas(outlines) > 0) == outlines.courtyard)
     return _turned_round(segments, backwards) if backwards.any() else segments
 
@@ -265,14 +267,18 @@ def _seen_from_above(
 
 def _turned_round(segments: Segments, backwards: NDArray[Any]) -> Segments:
     """Return the segments with those of the outlines in ``backwards`` in the opposite direction and order."""
-    turn = backwards[segments.outline]
-    first = np.searchsorted(segments.outline, segments.outline, side="left")
-    last = np.searchsorted(segments.outline, segments.outline, side="right") - 1
-    position = np.arange(len(segments.outline))
-    order = np.where(turn, first + last - position, position)
-    a = np.where(turn[:, None], segments.b[order], segments.a[order])
-    b = np.where(turn[:, None], segments.a[order], segments.b[order])
-    return replace(segments, a=a, b=b, height=segments.height[order])
+    turned = np.flatnonzero(backwards[segments.outline])
+    ends = np.cumsum(np.bincount(segments.outline, minlength=len(backwards)))
+    own = segments.outline[turned]
+    first, last = np.concatenate([[0], ends[:-1]])[own], ends[own] - 1
+    opposite = first + last - turned
+    a, b, height = segments.a.copy(), segments.b.copy(), segments.height.copy()
+    a[turned], b[turned], height[turned] = (
+        segments.b[opposite],
+        segments.a[opposite],
+        segments.height[opposite],
+    )
+    return replace(segments, a=a, b=b, height=height)
 
 
 def without_vanished(segments: Segments) -> Segments:

@@ -69,6 +69,11 @@ class Template:
 
     ring: NDArray[Any]
 
+    def turned(self, by: float) -> Template:
+        """Return the shape turned by radians to the left."""
+        cos, sin = math.cos(by), math.sin(by)
+        return Template(self.ring @ np.array([[cos, sin], [-sin, cos]]))
+
     def at(self, x: float, y: float, turned: float = 0.0) -> NDArray[Any]:
         """Return the ring, (n, 2), at (x, y), turned by radians to the left.
 
@@ -76,8 +81,7 @@ class Template:
         """
         if not all(map(math.isfinite, (x, y, turned))):
             raise ShapingError("a template needs a finite place and a finite angle; correct them")
-        cos, sin = math.cos(turned), math.sin(turned)
-        points: NDArray[Any] = np.array([x, y]) + self.ring @ np.array([[cos, sin], [-sin, cos]])
+        points: NDArray[Any] = np.array([x, y]) + (self.turned(turned) if turned else self).ring
         return points
 
 

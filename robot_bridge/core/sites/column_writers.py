@@ -63,8 +63,11 @@ class CodedTextColumns:
 
     def add(self, texts: Iterable[str]) -> None:
         """Add ``texts``; raises OSError."""
-        new: list[str] = []
-        self._codes.append(np.array([self._code(text, new) for text in texts], dtype=np.int32))
+        some, new = list(texts), list[str]()
+        codes = list(map(self._known.get, some))
+        if None in codes:
+            codes = [self._code(text, new) for text in some]
+        self._codes.append(np.array(codes, dtype=np.int32))
         self._table.add(new)
 
     def _code(self, text: str, new: list[str]) -> int:
@@ -115,7 +118,7 @@ class OutlineColumns:
         columns.append("base", outlines.bases)
         self._semantics.add(outlines.semantics)
         self._source.add(outlines.source)
-        self._extras.add(map(extras_text, outlines.extras))
+        self._extras.add(extras_text(one) if one else "" for one in outlines.extras)
         self._has_base |= outlines.base is not None
         self._has_extras |= outlines.ext is not None
 

@@ -18,7 +18,7 @@ from ..robotmap.model import ShapeType
 from ..robotmap.outlines import Outlines, is_closed
 from ..robotmap.window_index import BoxGrid
 from .frame import Points
-from .site_layers import outline_groups
+from .site_layers import group_spans
 
 # --- Areas that nobody may drive into: which edges, places and paths come into them ---
 
@@ -211,7 +211,7 @@ def fenced_boxes(outlines: Outlines) -> tuple[Indices, NDArray[Any], NDArray[Any
 
     The first row of each area and the one behind its last, (n, 2), and the corners of its box, (n, 2) each.
     """
-    groups = np.array(list(outline_groups(outlines)), dtype=np.int64).reshape(-1, 2)
+    groups = group_spans(outlines)
     ramp = outlines.shape_type[groups[:, 0]] == ShapeType.RAMP
     overhead = np.zeros(len(groups), dtype=bool)
     if outlines.base is not None:
@@ -293,14 +293,16 @@ def _boxes(outlines: Outlines, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArra
     """Return the corners of the boxes of ``rows``, (n, 2) each, and how many finite points each has."""
     points, lengths = outlines.coordinates, np.diff(outlines.offsets)
     finite = np.isfinite(points).all(axis=1)
-    of = np.repeat(np.arange(len(outlines)), lengths)
-    count = np.bincount(of[finite], minlength=len(outlines))
+    count = lengths
+    if not finite.all():
+        of = np.repeat(np.arange(len(outlines)), lengths)
+        points, count = points[finite], np.bincount(of[finite], minlength=len(outlines))
     low, high = np.full((len(outlines), 2), np.inf), np.full((len(outlines), 2), -np.inf)
     some = np.flatnonzero(count)
     if len(some):
         starts = np.concatenate([[0], np.cumsum(count[some])[:-1]])
-        low[some] = np.minimum.reduceat(points[finite], starts)
-        high[some] = np.maximum.reduceat(points[finite], starts)
+        low[some] = np.minimum.reduceat(points, starts)
+        high[some] = np.maximum.reduceat(points, starts)
     return low[rows], high[rows], count[rows]
 
 

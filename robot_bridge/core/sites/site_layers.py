@@ -86,8 +86,14 @@ def outlines_of(layer: geopackage.Layer, frame: SiteFrame, place: str) -> Outlin
 
 def outline_groups(outlines: Outlines) -> Iterator[tuple[int, int]]:
     """Yield (first, last + 1) of each outline with the courtyards that follow it."""
+    first, last = group_spans(outlines).T.tolist()
+    yield from zip(first, last, strict=True)
+
+
+def group_spans(outlines: Outlines) -> NDArray[np.int64]:
+    """Return what :func:`outline_groups` yields, (n, 2)."""
     first = np.flatnonzero(~_joined(outlines))
-    yield from zip(first.tolist(), [*first[1:].tolist(), len(outlines)], strict=bool(len(first)))
+    return np.column_stack([first, np.append(first[1:], len(outlines))[: len(first)]])
 
 
 def row_spans(outlines: Outlines, obstacles: int) -> Iterator[tuple[int, int]]:

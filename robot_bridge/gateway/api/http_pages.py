@@ -20,6 +20,7 @@ from sqlalchemy import Connection, func, select
 from websockets.http11 import Request, Response
 
 from ...core.errors import BridgeError, CrsError, RefusedError
+from ...core.messages.administration import SiteReport
 from ...core.messages.safety import RobotState
 from ...core.messages.validation import MessageError
 from ...core.sites.frame import lonlat_of
@@ -65,7 +66,7 @@ class StatusPages:
         found = {
             "status": "ok" if well else "failing",
             "version": gateway_version(),
-            "site": {"id": site.id, "version": site.version},
+            "site": {"id": site.id, "version": site.version, **_problem_of(site)},
             "database": {"ok": latency is not None, "latency_s": latency},
             "links": {one.link: {"ok": one.up, "text": one.text} for one in self._fleet.links.report().links},
             "routes": self._routes(),
@@ -117,6 +118,11 @@ class StatusPages:
         yield MetricReading(
             "robot_bridge_open_commands", "Commands with a step to come.", ("state",), self._commands
         )
+        yield _single(
+            "site_refused",
+            "1 while the site that was chosen for the fleet cannot be served here.",
+            lambda: fleet.site.report.problem is not None,
+        )
         yield _single("desk_sessions", "Operators that are connected.", lambda: len(fleet.listeners))
         yield _single("emergency_stop", "1 while one is in force.", lambda: fleet.emergency.in_force)
         yield _single("database_up", "1 while the database answers.", lambda: self._database_up)
@@ -163,6 +169,10 @@ class StatusPages:
     def _task_ages(self) -> Values:
         tally = self._fleet.tally
         return {(name,): age for name in list(tally.beats) if (age := tally.age(name)) is not None}
+
+
+def _problem_of(site: SiteReport) -> dict[str, Any]:
+    return {} if site.problem is None else {"ok": False, "text": site.problem}
 
 
 def _single(name: str, text: str, value: Any) -> MetricReading:

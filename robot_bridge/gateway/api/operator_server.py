@@ -340,6 +340,7 @@ class OperatorSession:
             self.notify("suspensions", "", to_json(suspensions))
         if (links := self._fleet.links.report()).links:
             self.notify("links", "", to_json(links))
+        gateways = self._fleet.gateways_of_operators()
         return {
             "protocol": PROTOCOL_VERSION,
             "site": to_json(self._fleet.site.report),
@@ -348,6 +349,7 @@ class OperatorSession:
             "emergency": to_json(self._fleet.emergency.report()),
             "database": self._fleet.reception.database_id,
             "robots": self._fleet.robots.count(),
+            **({} if gateways is None else to_json(gateways)),
         }
 
     def _subscribe(self, request: Subscribe) -> None:

@@ -97,6 +97,8 @@ def _entry(row: Any) -> AuditEntry:
 
 SESSIONS_AT_ONCE = 500
 """sessions that are asked about in one statement."""
+GATEWAY_ENDED = "the gateway ended"
+"""Why sessions ended that a gateway left open; nobody ends one with this reason."""
 
 
 @dataclass(frozen=True)
@@ -128,6 +130,7 @@ def end_session(connection: Connection, id: str, at: float, reason: str) -> Sess
 
     The session may also be named by the first digits of its id.
     """
+    reason = f"{reason} (by hand)" if reason == GATEWAY_ENDED else reason
     query = select(sessions).where(
         sessions.c.ended_at.is_(None), sessions.c.id.startswith(id, autoescape=True)
     )
@@ -145,10 +148,19 @@ def note_session_end(connection: Connection, id: str, at: float, reason: str) ->
     connection.execute(update(sessions).where(open_one).values(ended_at=at, reason=reason))
 
 
-def end_all_sessions(connection: Connection, at: float, reason: str) -> None:
-    """Note the end of what an earlier gateway left open."""
+def end_all_sessions(connection: Connection, at: float) -> None:
+    """Note the end of what an earlier gateway left open.
+
+    Of several gateways the others have theirs open still, and note that: :func:`reopen_sessions`.
+    """
     query = update(sessions).where(sessions.c.ended_at.is_(None))
-    connection.execute(query.values(ended_at=at, reason=reason))
+    connection.execute(query.values(ended_at=at, reason=GATEWAY_ENDED))
+
+
+def reopen_sessions(connection: Connection, open_here: Collection[str]) -> None:
+    """Note that these sessions have not ended with another gateway."""
+    ended = sessions.c.id.in_(sorted(open_here)) & (sessions.c.reason == GATEWAY_ENDED)
+    connection.execute(update(sessions).where(ended).values(ended_at=None, reason=None))
 
 
 def forget_ended_sessions(connection: Connection, before: float, limit: int) -> int:

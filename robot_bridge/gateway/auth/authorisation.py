@@ -216,7 +216,7 @@ class AuthGate:
 
     async def open(self) -> None:
         """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
-        await self._database.run(audit.end_all_sessions, self._clock.time(), "the gateway ended")
+        await self._database.run(audit.end_all_sessions, self._clock.time())
         await self.book.refresh()
 
     def warn(self) -> None:
@@ -245,8 +245,12 @@ class AuthGate:
                 self._guests.end(visitor, REVOKED, fault)
         desks = self._guests.sessions
         ended = await self._database.run(audit.ended_sessions, list(desks))
-        for session, reason in ended.items():
-            self._guests.end(desks[session], ENDED, reason)
+        # A gateway that starts cannot tell which are those of the one that it was before.
+        left = [session for session, reason in ended.items() if reason == audit.GATEWAY_ENDED]
+        if left:
+            await self._database.run(audit.reopen_sessions, left)
+        for session in ended.keys() - left:
+            self._guests.end(desks[session], ENDED, ended[session])
 
     async def close(self) -> None:
         """Write what waits to be written down."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import math
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 from ...core.messages.validation import LONGEST_STATUS, one_line
 from ..model.robots import DescribedElsewhere, Robot, Robots
@@ -18,6 +20,11 @@ ALL_S = 5.0
 """seconds after which all is told again: another gateway may have come, or a message been lost."""
 OLD_S = 5.0
 """seconds after which a message is dropped: all has been told again since."""
+
+PIECE = 500
+"""robots that are looked at before others have their turn: less than a millisecond."""
+
+_Facts = tuple[Any, ...]
 
 
 class DetailRelay:
@@ -34,7 +41,7 @@ class DetailRelay:
         self._membership = membership
         self._exchange = exchange
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
-        self._told: dict[str, RobotDetails] = {}
+        self._told: dict[str, _Facts] = {}
         self._told_all_at = -math.inf
         self._newest: dict[str, float] = {}
         exchange.subscribe(DetailBatch, self._take)
@@ -43,17 +50,28 @@ class DetailRelay:
         """Tell until cancelled."""
         while True:
             await asyncio.sleep(TICK_S)
-            self.send_changes()
+            await self.send_changes()
 
-    def send_changes(self) -> None:
-        """Tell what changed since the last time, and everything once in a while."""
+    async def send_changes(self) -> None:
+        """Tell what changed since the last time, everything once in a while; others have turns meanwhile."""
         now = self._membership.database_time()
         if not self._exchange.connected or now - self._told_all_at >= ALL_S:
             self._told.clear()
             self._told_all_at = now
-        mine = {robot.name: _details(robot) for robot in self._robots.changed(-1) if robot.gateway is None}
-        changed = [details for name, details in mine.items() if self._told.get(name) != details]
-        self._told = mine
+        told, self._told = self._told, {}
+        robots = self._robots.changed(-1)
+        for begin in range(0, len(robots), PIECE):
+            self._send_changed(robots[begin : begin + PIECE], told, now)
+            await asyncio.sleep(0)
+
+    def _send_changed(self, robots: Iterable[Robot], told: Mapping[str, _Facts], now: float) -> None:
+        changed = []
+        for robot in robots:
+            if robot.gateway is None:
+                name, facts = robot.name, _facts(robot)
+                if told.get(name) != facts:
+                    changed.append(_details(name, facts))
+                self._told[name] = facts
         for some in in_batches(changed, self._largest):
             self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
 
@@ -64,20 +82,29 @@ class DetailRelay:
         self._newest[batch.gw] = batch.t
         for one in batch.robots:
             described = DescribedElsewhere(
-                one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities
+                one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities, one.magic
             )
             self._robots.describe_elsewhere(one.name, batch.gw, described)
 
 
-def _details(robot: Robot) -> RobotDetails:
-    pose = robot.pose
-    return RobotDetails(
-        robot.name,
+def _facts(robot: Robot) -> _Facts:
+    """Return what is told of a robot, in the order of its :class:`RobotDetails`."""
+    pose, latency = robot.pose, robot.latency
+    battery, status = (None, None) if pose is None else (pose.battery, pose.status)
+    return (
         # Not told again for less than an operator sees.
-        None if pose is None or pose.battery is None else round(pose.battery, 2),
-        None if pose is None else pose.status,
-        None if robot.doubt is None else one_line(robot.doubt, LONGEST_STATUS),
-        None if robot.latency is None else round(robot.latency, 3),
+        None if battery is None else round(battery, 2),
+        status,
+        robot.doubt,
+        None if latency is None else round(latency, 3),
         robot.paths,
         robot.abilities,
+        robot.magic,
+    )
+
+
+def _details(name: str, facts: _Facts) -> RobotDetails:
+    battery, status, doubt, *more = facts
+    return RobotDetails(
+        name, battery, status, None if doubt is None else one_line(doubt, LONGEST_STATUS), *more
     )

@@ -15,7 +15,17 @@ from ...core.logs import RepeatedLines
 from ..model.events import EventBus
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
-from .messages import Beat, BusMessage, BusMessageError, Codec, StopCall, Wake, WakeTopic
+from .messages import (
+    Beat,
+    BusMessage,
+    BusMessageError,
+    Codec,
+    NameAnswer,
+    NameQuery,
+    StopCall,
+    Wake,
+    WakeTopic,
+)
 
 log = logging.getLogger(__name__)
 
@@ -33,7 +43,7 @@ def fleet_key(connection: Connection) -> bytes:
 
 
 class Exchange:
-    """Sends over the first bus; stops, and what wakes others, over all of them.
+    """Sends over the first bus; stops, what wakes others, and questions over all of them.
 
     A subscriber that fails keeps a message from no other one.
     """
@@ -53,7 +63,7 @@ class Exchange:
     def send(self, subject: str, message: BusMessage) -> bool:
         """Send a message; return at once, true where some bus took it."""
         content = self._codec.encode(message)
-        urgent = subject == STOP or isinstance(message, Wake)
+        urgent = subject == STOP or isinstance(message, (Wake, NameQuery, NameAnswer))
         taken = [bus.publish(subject, content) for bus in (self._buses if urgent else self._buses[:1])]
         return any(taken)
 

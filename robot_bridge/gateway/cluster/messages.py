@@ -35,12 +35,15 @@ COLUMNS = 6
 """numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its
 last message."""
 
+MOST_NAMED = 50
+"""robots that are named one by one in a message."""
+
 Gateway = Annotated[str, Meta(max_length=32)]
 Robot = Annotated[str, Meta(max_length=63)]
 Id = Annotated[str, Meta(max_length=64)]
 Line = Annotated[str, Meta(max_length=600)]
 Status = Annotated[str, Meta(max_length=LONGEST_STATUS)]
-Names = Annotated[list[Robot], Meta(max_length=50)]
+Names = Annotated[list[Robot], Meta(max_length=MOST_NAMED)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
 
 
@@ -58,7 +61,7 @@ class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
-WakeTopic = Literal["requests", "answers", "owners", "steps", "stops"]
+WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site", "observations"]
 """What another gateway had better look at."""
 
 
@@ -123,6 +126,7 @@ class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
     latency: Annotated[float, Meta(ge=0, le=1e6)] | None = None
     paths: PathDeclaration | None = None
     abilities: Annotated[str, Meta(max_length=128)] | None = None
+    magic: int | None = None
 
 
 class DetailBatch(BusMessage, frozen=True, tag="details"):
@@ -132,7 +136,39 @@ class DetailBatch(BusMessage, frozen=True, tag="details"):
     robots: Annotated[list[RobotDetails], Meta(max_length=MOST_ROBOTS)]
 
 
-AnyMessage = Beat | Wake | StopCall | StopSeen | AbortCall | PositionBatch | DetailBatch
+class QueuesChanged(BusMessage, frozen=True, tag="queues"):
+    """Queues of robots of the gateway have changed; that is stored."""
+
+    robots: Names
+
+
+class NameQuery(BusMessage, frozen=True, tag="name?"):
+    """Whether another robot runs at the gateway that this goes to, under the name of one that said Ready."""
+
+    id: Id
+    robot: Robot
+    magic: int
+
+
+class NameAnswer(BusMessage, frozen=True, tag="name"):
+    """The answer to a :class:`NameQuery`: why that robot is refused, None where it is not."""
+
+    id: Id
+    refusal: Line | None = None
+
+
+AnyMessage = (
+    Beat
+    | Wake
+    | StopCall
+    | StopSeen
+    | AbortCall
+    | PositionBatch
+    | DetailBatch
+    | QueuesChanged
+    | NameQuery
+    | NameAnswer
+)
 _DECODER = msgspec.msgpack.Decoder(AnyMessage)
 _ENCODER = msgspec.msgpack.Encoder()
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from typing import NamedTuple
@@ -15,7 +16,7 @@ from ..storage.database import Database, to_its_end
 from ..storage.owner_fence import FencedError
 from ..storage.repositories import gateways
 from ..storage.repositories import robots as stored_robots
-from ..storage.repositories.gateways import Claimed
+from ..storage.repositories.gateways import Claimed, Owner
 from .leases import OwnedRobots
 from .membership import Membership
 
@@ -23,6 +24,9 @@ log = logging.getLogger(__name__)
 
 BATCH_S, BATCH = 0.02, 500
 """seconds for which claims wait for one another, and how many are made at once: fleets connect together."""
+
+ALL_S = 30.0
+"""seconds after which the owners of all robots are read, and not those alone that have changed."""
 
 
 class OwnerChanges(NamedTuple):
@@ -50,6 +54,10 @@ class Ownership:
         self._robots = OwnedRobots()
         self._waiting: dict[str, asyncio.Future[bool]] = {}
         self._claiming: asyncio.Task[None] | None = None
+        self._mark: str | None = None
+        self._owners: dict[str, Owner] = {}
+        """who had which robot at the read that :attr:`_mark` is of."""
+        self._read_all_at = -math.inf
 
     # --- the fence --------------------------------------------------------------------------------------
 
@@ -113,7 +121,7 @@ class Ownership:
         The robots that are lost are nobody's here from then on.
         """
         me = self._membership.me
-        owners = await self._database.read(gateways.owners)
+        owners = await self._read_owners()
         mine = {robot: o.fence for robot, o in owners.items() if (o.gw, o.run) == (me.gw, me.run)}
         lost, new = self._robots.compare(mine)
         self._robots.forget(lost)
@@ -121,6 +129,23 @@ class Ownership:
         self._robots.gained({robot: mine[robot] for robot in new})
         gone = {robot for robot, owner in owners.items() if not owner.stored}
         return OwnerChanges(lost, new, gone, {robot: owner.gw for robot, owner in owners.items()})
+
+    async def _read_owners(self) -> dict[str, Owner]:
+        """Return the owner of each robot; those that have changed are read, and all once in a while."""
+        now = asyncio.get_running_loop().time()
+        if now - self._read_all_at >= ALL_S:
+            self._mark = None
+        found = await self._database.read(gateways.owners_since, self._mark)
+        if self._mark is not None:
+            # Those that are not stored are among what was read, whether they have changed or not.
+            stored = {r: o._replace(stored=True) for r, o in self._owners.items() if not o.stored}
+            found = found._replace(owners={**self._owners, **stored, **found.owners})
+            if len(found.owners) != found.total:
+                found = await self._database.read(gateways.owners_since, None)
+        else:
+            self._read_all_at = now
+        self._mark, self._owners = found.mark, found.owners
+        return self._owners
 
     async def _claim_together(self) -> None:
         await asyncio.sleep(BATCH_S)

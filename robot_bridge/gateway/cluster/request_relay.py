@@ -17,6 +17,7 @@ from typing import Any
 import msgspec
 
 from ...core.errors import (
+    BridgeError,
     BusyError,
     DataRefusedError,
     ForbiddenError,
@@ -28,7 +29,15 @@ from ...core.errors import (
 )
 from ...core.json_decoder import decode_json
 from ...core.logs import log_and_continue, log_unforeseen
-from ...core.messages.commands import AbortAll, AbortTask, Send, SendMap, SetPositions
+from ...core.messages.commands import (
+    AbortAll,
+    AbortTask,
+    RefusedRobot,
+    Send,
+    SendMap,
+    SetPositions,
+    TargetPosition,
+)
 from ...core.messages.json_values import to_json
 from ...core.messages.operator_requests import DeskRequest
 from ...core.messages.plans import SubmitPlan
@@ -188,16 +197,20 @@ class RequestRelay:
         return result
 
     async def _set_positions(self, request: SetPositions, operator: str) -> dict[str, Any]:
-        owners = {self._robots.gateway_of(position.robot) for position in request.positions}
-        if owners <= {None}:
-            return await self._handlers.answer(request, operator)
-        if len(owners) > 1:
-            raise RefusedError(
-                "set_positions: these robots are connected to several gateways, so that it cannot be all of "
-                "them or none; send each its target by itself"
-            )
-        (result,) = await self._relay([(request.positions[0].robot, request)], operator)
-        return result
+        """Have each gateway send its robots their targets; raises what the first one raises if none does."""
+        parts: dict[str | None, list[TargetPosition]] = {}
+        for position in request.positions:
+            parts.setdefault(self._robots.gateway_of(position.robot), []).append(position)
+        if len(parts) <= 1:
+            return await self._answer_of(request.positions[0].robot if parts else "", request, operator)
+        request.check_named_once()
+        for position in request.positions:
+            self._robots.check_known(position.robot)
+        results = await asyncio.gather(
+            *(self._answer_of(part[0].robot, SetPositions(part), operator) for part in parts.values()),
+            return_exceptions=True,
+        )
+        return _joined(request, list(zip(parts.values(), results, strict=True)))
 
     def _refuse_others(self, request: DeskRequest[Any]) -> None:
         """Raise RefusedError for what is not done across gateways yet."""
@@ -348,6 +361,28 @@ class RequestRelay:
         for link in self._links:
             with log_and_continue(log, f"sending robot {robot!r} an Abort that is not stored"):
                 link(robot, call_id)
+
+
+def _joined(
+    request: SetPositions, parts: Sequence[tuple[Sequence[TargetPosition], dict[str, Any] | BaseException]]
+) -> dict[str, Any]:
+    """Return the result of a request that several gateways did a part of; raises if none of them did."""
+    place = {position.robot: number for number, position in enumerate(request.positions)}
+    commands, refused, errors = [], [], []
+    for positions, found in parts:
+        if isinstance(found, dict):
+            commands += found["commands"]
+            continue
+        if not isinstance(found, (BridgeError, MessageError)):
+            raise found
+        errors.append(found)
+        refused += [RefusedRobot(position.robot, str(found)) for position in positions]
+    if len(errors) == len(parts):
+        raise errors[0]
+    result: dict[str, Any] = {"commands": sorted(commands, key=lambda one: place[one["robot"]])}
+    if refused:
+        result["refused"] = [to_json(one) for one in sorted(refused, key=lambda one: place[one.robot])]
+    return result
 
 
 def _stops(request: DeskRequest[Any]) -> bool:

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-import asyncio
-
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
 from ..model.events import CommandChanged, EventBus, Listeners
 from ..model.robots import Robots
-from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands
 from .exchange import Exchange
-from .messages import Wake
-
-LOOK_S = 1.0
-WAKE_S = 0.02
-"""seconds for which steps wait for one another before other gateways are woken."""
+from .follower import Follower
 
 
 class StepFeed:
@@ -27,27 +20,17 @@ class StepFeed:
     ) -> None:
         self._robots = robots
         self._listeners = listeners
-        self._exchange = exchange
         self._database = database
         self._newest: int | None = None
         self._seen: set[int] = set()
-        self._woken = asyncio.Event()
-        self._taken = asyncio.Event()
+        self._follower = Follower("steps", self, exchange)
         events.subscribe(CommandChanged, self._note)
-        exchange.subscribe(Wake, self._wake)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
-        waking = asyncio.create_task(self._wake_others())
-        try:
-            while True:
-                self._woken.clear()
-                await self.catch_up()
-                await wait_at_most(self._woken, LOOK_S)
-        finally:
-            waking.cancel()
+        await self._follower.run()
 
-    async def catch_up(self) -> None:
+    async def follow(self) -> None:
         """Tell operators of the steps since the last look; raises StoreError."""
         if self._newest is None:
             self._newest = await self._database.read(commands.newest_step)
@@ -77,15 +60,4 @@ class StepFeed:
 
     def _note(self, changed: CommandChanged) -> None:
         if self._robots.gateway_of(changed.report.robot) is None:
-            self._taken.set()
-
-    def _wake(self, wake: Wake) -> None:
-        if wake.what == "steps":
-            self._woken.set()
-
-    async def _wake_others(self) -> None:
-        while True:
-            await self._taken.wait()
-            await asyncio.sleep(WAKE_S)
-            self._taken.clear()
-            self._exchange.wake("steps")
+            self._follower.note_change()

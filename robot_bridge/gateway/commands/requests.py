@@ -77,14 +77,9 @@ class CommandRequests:
     async def set_positions(self, request: SetPositions, operator: str) -> Commands:
         """Issue a target for each robot, all of them or none."""
         positions = request.positions
-        names = [position.robot for position in positions]
-        twice = sorted({name for name in names if names.count(name) > 1})
-        if twice:
-            raise RefusedError(
-                f"positions: {', '.join(twice)} is named more than once; give each robot one target"
-            )
-        for name in names:
-            self._robots.check_known(name)
+        request.check_named_once()
+        for position in positions:
+            self._robots.check_known(position.robot)
         orders = []
         for position in await targets_in_site_frame(self._site, positions):
             target = {name: value for name, value in to_json(position).items() if name != "robot"}

@@ -97,11 +97,15 @@ class ObservationService:
         self._site.show(await self._database.run(records.on_map))
         self._undrawn = False
 
+    async def redraw(self) -> None:
+        """Draw on the maps what is accepted by now; raises StoreError."""
+        async with self._lock:
+            await self.restore()
+
     async def catch_up(self) -> None:
         """Draw and tell what could not be drawn or told when it was stored or reviewed; raises StoreError."""
         if self._undrawn:
-            async with self._lock:
-                await self.restore()
+            await self.redraw()
         for robot, source in list(self._unsure):
             found = await self._database.run(records.find_reported, robot, source)
             self._unsure.discard((robot, source))

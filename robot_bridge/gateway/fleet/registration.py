@@ -12,8 +12,10 @@ from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
+from ...core.messages.positions import link_elsewhere
 from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
 from ..cluster.exchange import Exchange
+from ..cluster.name_claims import NameClaims
 from ..cluster.ownership import Ownership
 from ..commands.service import CommandService
 from ..model.events import EventBus, RobotLeft
@@ -103,7 +105,7 @@ class Takeover:
         for robot in await self._database.read(stored_robots.load, sorted(names)):
             if robot.name not in self._robots and not self._ownership.owns(robot.name):
                 robot.gateway = gateways[robot.name]
-                robot.link = f"gateway {robot.gateway}"
+                robot.link = link_elsewhere(robot.gateway)
                 self._robots.restore(robot, self._clock.time())
 
     async def _take_up(self, names: Sequence[str]) -> None:
@@ -213,8 +215,10 @@ class Registration:
         database: Database,
         clock: Clock,
         takeover: Takeover | None = None,
+        exchange: Exchange | None = None,
     ) -> None:
         self._takeover = takeover
+        self._claims = None if exchange is None else NameClaims(exchange, self)
         self.holds = ConnectionClaims()
         self._site = site
         self._robots = robots
@@ -247,7 +251,7 @@ class Registration:
         :raises StoreError: when that cannot be stored; the robot is not in then.
         """
         async with self._greeting.setdefault(robot, asyncio.Lock()):
-            reason = await self._refusal(robot, request.magic)
+            reason = await self._refusal_anywhere(robot, request.magic)
             if reason is not None:
                 log.warning("link %s: a second robot said Ready: %s", link, reason)
                 return RequestOutcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
@@ -282,11 +286,29 @@ class Registration:
             await self._emergency.ready(robot)
         return starts_anew
 
-    async def _refusal(self, robot: str, magic: int) -> str | None:
-        if robot not in self._robots:
+    async def refusal(self, robot: str, magic: int) -> str | None:
+        """Return why a Ready with ``magic`` is refused: another robot of that name is here. None if not."""
+        if robot not in self._robots or self._robots.gateway_of(robot) is not None:
             return None
         known, limit = self._robots.get(robot), self._site.report.stale_after
-        return await claim_refusal(known, magic, self._clock.time() - known.received_at, limit, self.holds)
+        return await claim_refusal(known, magic, self._silence(known), limit, self.holds)
+
+    async def _refusal_anywhere(self, robot: str, magic: int) -> str | None:
+        """Return as :meth:`refusal`, also where the other robot is at another gateway of the fleet."""
+        gateway = self._robots.gateway_of(robot)
+        if gateway is None or self._claims is None:
+            return await self.refusal(robot, magic)
+        known, limit = self._robots.get(robot), self._site.report.stale_after
+        # One that goes on here, as those of a gateway that died do all at once, is not asked about.
+        if known.magic == magic or self._silence(known) >= limit:
+            return None
+        # A robot that said Ready there a moment ago is stored, and its number not told yet.
+        if any(one.magic == magic for one in await self._database.read(stored_robots.load, [robot])):
+            return None
+        return await self._claims.refusal(robot, magic, gateway)
+
+    def _silence(self, known: Robot) -> float:
+        return self._clock.time() - known.received_at
 
 
 # --- Robots that somebody removes while the gateway runs, with a program or at a desk: gone everywhere

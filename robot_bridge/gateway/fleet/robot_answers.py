@@ -224,10 +224,12 @@ class MapSender:
         return (await self._offer(robot)).content if content is None else content
 
     async def send_all(self) -> None:
-        """Send all robots their map, one by one; those that are offline get it with their next Ready."""
+        """Send the robots of this gateway their map; those that are offline get it with their next Ready."""
         for name in self._robots.names():
+            if name not in self._robots:
+                continue
             robot = self._robots.get(name)
-            if robot.state is not RobotState.OFFLINE and robot.can("map"):
+            if robot.gateway is None and robot.state is not RobotState.OFFLINE and robot.can("map"):
                 await self.send(name)
 
     async def run(self) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
+from ...core.messages.administration import Gateways
 from ...core.messages.commands import CommandState
 from ...core.messages.json_values import to_json
 from ...core.messages.positions import RobotReport
@@ -32,6 +33,8 @@ from ...core.messages.robots import (
     Stopped,
 )
 from ...core.messages.validation import LONGEST_REFUSAL, MOST_GATEWAYS, one_line
+from ..auth.accounts import TokenKind
+from ..auth.authorisation import PATHS
 from ..cluster.cluster import Cluster
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
@@ -88,6 +91,7 @@ class Fleet:
         self._database = database
         self._clock = clock
         self._cluster = cluster
+        self._announced_gateways: Gateways | None = None
         self.listeners = events.Listeners()
         """the operators' sessions, told what happens."""
         self.events = events.EventBus()
@@ -145,6 +149,7 @@ class Fleet:
             database,
             clock,
             self.takeover,
+            None if cluster is None else cluster.exchange,
         )
         self.removals = Decommissioning(
             self.robots,
@@ -251,6 +256,20 @@ class Fleet:
         addresses = self._cluster.membership.addresses()[:MOST_GATEWAYS]
         return [f"{address}{endpoint}" for address in addresses] or None
 
+    def gateways_of_operators(self) -> Gateways | None:
+        """Return where operators reach the gateways of the fleet, None where one serves it alone."""
+        if self._cluster is None:
+            return None
+        urls = self.gateway_urls(PATHS[TokenKind.OPERATOR])
+        return Gateways(self._cluster.membership.name, urls or [])
+
+    async def announce_gateways(self) -> None:
+        """Tell operators where the gateways of the fleet are, unless they have been told so."""
+        gateways = self.gateways_of_operators()
+        if gateways is not None and gateways != self._announced_gateways:
+            self._announced_gateways = gateways
+            self.listeners.announce("gateways", "", to_json(gateways))
+
     async def receive(
         self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False
     ) -> RequestOutcome:
@@ -340,6 +359,11 @@ class Fleet:
         self._book.set_tolerance(report.reached_tolerance)
         await self.observations.restore()
         await self.roads.closures.site_changed()
+        self.announce_site()
+
+    def announce_site(self) -> None:
+        """Tell operators of the site that is served."""
+        report = self.site.report
         self.listeners.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------

@@ -57,6 +57,16 @@ class QueueChanged:
 
 
 @dataclass(frozen=True)
+class QueueReported:
+    """Operators of this gateway are told of a robot's queue, which is stored."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the report of the queue of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
 class RobotReturned:
     """A robot is heard again that was lost or offline; nobody heard it for ``away_s`` seconds."""
 
@@ -76,6 +86,16 @@ class RobotLeft:
 
     def __str__(self) -> str:
         return f"robot {self.robot!r} that went to gateway {self.gateway!r}"
+
+
+@dataclass(frozen=True)
+class SiteChosen:
+    """A supervisor chose at this gateway which site is served; that is stored."""
+
+    site: str
+
+    def __str__(self) -> str:
+        return f"the choice of site {self.site}"
 
 
 Event = TypeVar("Event")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
-from ...core.messages.positions import RobotReport
+from ...core.messages.positions import RobotReport, link_elsewhere
 from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from ...core.messages.validation import check_robot_name
@@ -76,6 +76,7 @@ class DescribedElsewhere(NamedTuple):
     latency: float | None
     paths: PathDeclaration | None
     abilities: str | None
+    magic: int | None = None
 
 
 @dataclass
@@ -375,7 +376,7 @@ class Robots:
         """Note that another gateway has a robot."""
         robot = self._robots.get(name)
         if robot is not None and robot.gateway != gateway:
-            robot.gateway, robot.link = gateway, f"gateway {gateway}"
+            robot.gateway, robot.link = gateway, link_elsewhere(gateway)
             self._touch(robot)
 
     def observe_elsewhere(self, name: str, gateway: str, seen: ReportedElsewhere) -> None:
@@ -383,7 +384,7 @@ class Robots:
         robot = self._robots.get(name)
         if robot is None:
             robot = self._robots[name] = Robot(
-                name, 0, f"gateway {gateway}", seen.received_at, gateway=gateway
+                name, 0, link_elsewhere(gateway), seen.received_at, gateway=gateway
             )
             self._removed.pop(name, None)
         if robot.gateway != gateway:
@@ -402,6 +403,7 @@ class Robots:
             return
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
+        robot.magic = robot.magic if said.magic is None else said.magic
         if robot.pose is not None:
             robot.pose = replace(robot.pose, battery=said.battery, status=said.status)
         self._touch(robot)

@@ -48,6 +48,10 @@ class QueuedTask:
         return self.state is TaskState.CURRENT
 
 
+REPORTED_ENDED = 10
+"""tasks that ended which a queue's report holds."""
+
+
 @dataclass(frozen=True)
 class Queue:
     """The open tasks of a robot in order; one that is current is the first."""

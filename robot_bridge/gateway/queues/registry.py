@@ -16,9 +16,9 @@ from ...core.messages.records import PlacementReport
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Planner, StraightPlanner
-from ..model.events import EventBus, Listeners, QueueChanged
+from ..model.events import EventBus, Listeners, QueueChanged, QueueReported
 from ..model.robots import Robots
-from ..model.task_queue import Queue, QueuedTask, queue_report
+from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.owner_fence import SOLE_FENCE, OwnerFence
@@ -28,8 +28,6 @@ from ..storage.repositories.queues import ChangedError
 # --- The queues of the fleet as they are stored; each change is stored before it is told ---
 
 T = TypeVar("T")
-REPORTED_ENDED = 10
-"""tasks that ended which a queue's report holds."""
 
 
 class QueueRegistry:
@@ -144,6 +142,7 @@ class QueueRegistry:
         """Tell operators of a robot's queue."""
         report = queue_report(self.get(robot), self._robots.get(robot).state, self._ended.get(robot, ()))
         self._listeners.announce("queue", robot, to_json(report))
+        self._events.publish(QueueReported(robot))
         return report
 
     def announce_placement(self, report: PlacementReport) -> None:

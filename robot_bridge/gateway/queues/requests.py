@@ -334,11 +334,17 @@ class QueueEditor:
         """Return queues as they are."""
         if request.robot is not None:
             self._robots.check_known(request.robot)
+        names = [request.robot] if request.robot is not None else self._book.names()
+        asked = {name: self._book.get(name) for name in names}
+        if request.robot is None and (others := self._robots.commanded_elsewhere()):
+            # What other gateways of the fleet have stored.
+            asked |= await self._database.read(queues.load, others)
         found = []
-        for name in self._book.names() if request.robot is None else [request.robot]:
+        for name, queue in asked.items():
             ended = await self._database.read(queues.newest_ended, name, request.ended)
-            state = self._robots.get(name).state
-            found.append(queue_report(self._book.get(name), state, ended, paths=request.paths))
+            if name in self._robots:
+                state = self._robots.get(name).state
+                found.append(queue_report(queue, state, ended, paths=request.paths))
         return Queues(found)
 
     @handles(GetPlacements)

@@ -209,6 +209,7 @@ class SiteMaps:
 
     def __init__(self, site: Site) -> None:
         self._site = site
+        self._problem: str | None = None
         self._earth = GpsTransform(site.frame)
         self._shown: tuple[list[ObservationReport], float] = [], site.settings.observations.object_radius_m
         self._drawn = MapContent(site, ObservedObjects(*self._shown))
@@ -222,6 +223,10 @@ class SiteMaps:
         """Serve ``site`` from now on, another publication with the same frame."""
         self._site = site
         self._drawn = MapContent(site, self._drawn.objects)
+
+    def note_problem(self, problem: str | None) -> None:
+        """Note why this gateway does not serve the site that was chosen for the fleet; None where it does."""
+        self._problem = problem
 
     @property
     def site(self) -> Site:
@@ -249,6 +254,7 @@ class SiteMaps:
             stale_after=settings.liveness.stale_after_s,
             lost_after=settings.liveness.lost_after_s,
             roads=bool(site.centrelines),
+            problem=self._problem,
         )
 
     def contains(self, x: float, y: float) -> bool:

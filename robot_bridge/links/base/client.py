@@ -18,6 +18,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError
+from ...core.gateway_addresses import GatewayAddresses
 from ...core.logs import log_and_continue
 from ...core.messages.administration import Playback, SiteReport
 from ...core.messages.json_values import site_report, to_json
@@ -30,7 +31,6 @@ from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from ...protocol.credentials import AccessError, ClientCredentials
-from ...protocol.gateway_addresses import GatewayAddresses
 from .adapter import Adapter
 from .errors import CommandRefusedError, LinkError
 from .frames import LinkFrame
@@ -64,7 +64,7 @@ class LinkClient:
             None if gateway.token_file is None else folder / gateway.token_file,
             None if gateway.ca is None else folder / gateway.ca,
         )
-        self._addresses = GatewayAddresses(gateway.url)
+        self._addresses = GatewayAddresses(gateway.url, has_token=gateway.token_file is not None)
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
         self._ids = itertools.count(1)

@@ -18,6 +18,7 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 
 WAY = [[0.5 * k, 20.0 + 0.25 * k] for k in range(600)]
 """Along 300 m of roads."""
@@ -84,6 +85,6 @@ def test_every_way_on_which_commands_come_packs_them():
         assert all(isinstance(report.params["points"], PathPoints) for report in reports)
     assert [report.command for report in commands_in(answer)] == ["c1", "c2"]
     mailbox = UpdateBuffer()
-    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, ManualClock())
+    protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, ManualClock())
     protocol.receive(json.dumps({"jsonrpc": "2.0", "method": "command", "params": told()}))
     assert isinstance(mailbox.collect().commands["c1"].params["points"], PathPoints)

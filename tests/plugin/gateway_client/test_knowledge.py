@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words
-from fleet_supervisor.plugin.gateway_client.connection import Backoff
 from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, OperatorRequest, UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
 from fleet_supervisor.plugin.gateway_client.report_caches import (
@@ -23,31 +22,10 @@ from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_fro
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from fleet_supervisor.robot_bridge.core.messages.json_values import placement_report, queue_report, to_json
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
-from hypothesis import given
-from hypothesis import strategies as st
-
-
-@given(st.lists(st.floats(0.0, 1.0, exclude_max=True), min_size=1, max_size=40))
-def test_every_wait_lies_between_half_a_second_and_fifteen(chances):
-    chance = iter(chances)
-    backoff = Backoff(chance=lambda: next(chance))
-    waits = [backoff.next_wait() for _ in chances]
-    assert all(0.5 <= wait <= 15.0 for wait in waits)
-
-
-def test_waits_double_up_to_the_longest_and_begin_anew_after_a_success():
-    backoff = Backoff(chance=lambda: 0.0)
-    assert [backoff.next_wait() for _ in range(6)] == [1.0, 2.0, 4.0, 8.0, 15.0, 15.0]
-    backoff.reset()
-    assert backoff.next_wait() == 1.0
-
-
-def test_desks_do_not_come_back_in_the_same_moment():
-    early, late = Backoff(chance=lambda: 0.999), Backoff(chance=lambda: 0.0)
-    assert early.next_wait() < 0.6 * late.next_wait()
 
 
 def test_the_same_order_is_kept_once_and_answered_once():
@@ -170,7 +148,9 @@ def test_a_window_that_does_not_look_costs_a_bounded_memory(make_robot):
 
 def greeted(site):
     mailbox = UpdateBuffer()
-    protocol = GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, clock=ManualClock(uptime=50.0))
+    protocol = GatewayProtocol(
+        "anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, clock=ManualClock(uptime=50.0)
+    )
     (hello,) = protocol.begin()
     answer = {"jsonrpc": "2.0", "id": json.loads(hello)["id"]}
     sent = protocol.receive(json.dumps({**answer, "result": {"protocol": 1, "site": to_json(site)}}))

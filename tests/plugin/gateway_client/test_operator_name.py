@@ -8,6 +8,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 
 
 @pytest.mark.parametrize(
@@ -20,5 +21,7 @@ from fleet_supervisor.robot_bridge.core.clock import ManualClock
     ],
 )
 def test_it_is_one_line_that_is_not_too_long(name, said):
-    (hello,) = GatewayProtocol(name, 5.0, "ws://127.0.0.1:1", UpdateBuffer(), ManualClock()).begin()
+    (hello,) = GatewayProtocol(
+        name, 5.0, GatewayAddresses("ws://127.0.0.1:1"), UpdateBuffer(), ManualClock()
+    ).begin()
     assert json.loads(hello)["params"]["operator"] == said

@@ -7,6 +7,7 @@ import json
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 
 
 def told(desk, *robots):
@@ -14,7 +15,9 @@ def told(desk, *robots):
     mailbox = UpdateBuffer()
     mailbox.add(link=desk.state.link)
     frame = {"jsonrpc": "2.0", "method": "suspensions", "params": {"robots": list(robots)}}
-    GatewayProtocol("Ada", 1.0, "ws://gateway/desk", mailbox, ManualClock()).receive(json.dumps(frame))
+    GatewayProtocol("Ada", 1.0, GatewayAddresses("ws://gateway/desk"), mailbox, ManualClock()).receive(
+        json.dumps(frame)
+    )
     desk.state.merge(mailbox.collect())
 
 

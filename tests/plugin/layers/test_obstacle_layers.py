@@ -6,7 +6,7 @@ import math
 
 import pytest
 import shapely
-from fleet_supervisor.plugin.layers.layer_source import subset_without_geometry
+from fleet_supervisor.plugin.layers.layer_source import rows_without_index, subset_without_geometry
 from fleet_supervisor.plugin.layers.roles import (
     KEEPOUT,
     RAMP,
@@ -21,6 +21,7 @@ from qgis.core import (
     NULL,
     QgsCoordinateTransformContext,
     QgsDataSourceUri,
+    QgsFeature,
     QgsFeedback,
     QgsGeometry,
     QgsVectorFileWriter,
@@ -163,6 +164,33 @@ def test_features_outside_the_window_are_not_asked_for_and_those_without_geometr
     whole = read(layer, window=None)
     assert [row.source for row in whole.rows] == ["walls:2", "walls:3"]
     assert whole.warnings[0] == NOWHERE
+
+
+def test_what_the_index_of_a_geopackage_lacks_has_no_geometry(make_layer, read, tmp_path):
+    nothing = {3, 70, 71, 4097, 9000}
+    features = [(None if id in nothing else f"LineString({id} 900, {id} 950)", 1.0) for id in range(1, 9001)]
+    features[69] = ("LineString EMPTY", 1.0)
+    file = tmp_path / "walls.gpkg"
+    layer = saved(make_layer(fields=HEIGHT, features=features), file)
+    assert layer.dataProvider().deleteFeatures([5, 71])
+    assert rows_without_index(layer.source()) == [3, 5, 70, 71, 4097, 9000]
+    reading = read(layer, window=(-5, -5, 5, 5))
+    assert reading.warnings == ["Layer walls, features 3, 70, 4097, 9000: has no geometry; it is left out"]
+    assert layer.dataProvider().deleteFeatures(list(range(100, 9000)))
+    assert layer.setSubsetString('"height" < 9') and rows_without_index(layer.source()) is None
+    plain = QgsVectorLayer(f"{file}|layername=walls", "walls", "ogr")
+    assert plain.dataProvider().addFeatures([far_away(plain, 40_000)])[0]
+    assert rows_without_index(plain.source()) is None
+    assert read(plain, window=(-5, -5, 5, 5)).warnings == [
+        "Layer walls, features 3, 70, 9000: has no geometry; it is left out"
+    ]
+
+
+def far_away(layer, id):
+    feature = QgsFeature(layer.fields())
+    feature.setAttributes([id, 1.0])
+    feature.setGeometry(QgsGeometry.fromWkt(LINE.replace("0", "900")))
+    return feature
 
 
 def test_what_does_not_count_needs_no_geometry(make_layer, read, tmp_path):

@@ -8,7 +8,7 @@ from fleet_supervisor.plugin.layers import obstacle_layers
 from fleet_supervisor.plugin.layers.geometry import line_wkb, multi_line_wkb, polygon_wkb, rings_of
 from fleet_supervisor.plugin.layers.layer_expressions import ObstacleValues
 from fleet_supervisor.plugin.layers.layer_source import FeatureWarnings
-from fleet_supervisor.plugin.layers.obstacle_layers import OutlineBatch, ReadFeature
+from fleet_supervisor.plugin.layers.obstacle_layers import OutlineBatch
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, set_expressions, set_role
 from fleet_supervisor.plugin.layers.site_transform import LayerToSiteTransform
 from fleet_supervisor.robot_bridge.core.robotmap.outlines import Outlines
@@ -36,26 +36,21 @@ ODD = (
 
 
 @pytest.fixture
-def outlines(qgis_app):
+def outlines(qgis_app, monkeypatch):
     """Return the outlines of shapes with their heights, and the warnings; ``plain`` reads them by bytes."""
+    read = obstacle_layers.rings_of
 
     def run(shapes, heights, plain, rotation=0.0):
+        monkeypatch.setattr(obstacle_layers, "rings_of", read if plain else lambda wkb: None)
         warnings = FeatureWarnings()
         batch = OutlineBatch(
             "all", "", LayerToSiteTransform(None, SiteFrame("", (3.0, 4.0), rotation)), warnings
         )
-        features = [
-            ReadFeature(
-                number,
-                geometry,
-                rings_of(geometry.asWkb().data()) if plain else None,
-                None,
-                ObstacleValues(height, height == 3.0, height == 3.0, 0.0, f"label {height}", True, []),
-            )
-            for number, (shape, height) in enumerate(zip(shapes, heights, strict=True))
-            for geometry in [QgsGeometry.fromWkt(shape)]
-        ]
-        made = Outlines.joined(list(batch.outlines(features)))
+        for number, (shape, height) in enumerate(zip(shapes, heights, strict=True)):
+            values = ObstacleValues(height, height == 3.0, height == 3.0, 0.0, f"label {height}", True, [])
+            geometry = QgsGeometry.fromWkt(shape)
+            batch.add(number, geometry.asWkb().data(), geometry, values)
+        made = Outlines.joined(list(batch.outlines()))
         return made, [*warnings.texts(), str(batch.unknown)]
 
     return run

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.layers.layer_expressions import LayerRules
+from fleet_supervisor.plugin.layers.layer_expressions import FeatureValues, LayerRules
+from fleet_supervisor.plugin.layers.roles import LayerExpressions
 from qgis.core import NULL, QgsExpressionContext, QgsFeature, QgsField, QgsFields
 from qgis.PyQt.QtCore import QVariant
 
@@ -69,3 +70,27 @@ def test_what_fails_fails_each_time(qgis_app):
         rules.at(feature)
         assert rules.value("test", rule, notes) is None
     assert len(notes) == 2
+
+
+@pytest.mark.parametrize("estimate", ['"a" * 3', "$id"])
+def test_what_is_said_of_a_feature_is_that_of_its_own_values(qgis_app, estimate):
+    fields = QgsFields()
+    for name, kind in (("height", QVariant.Double), ("a", QVariant.Double), ("b", QVariant.String)):
+        fields.append(QgsField(name, kind))
+    some = [(h, a, b) for h in (NULL, 2.0, -1.0) for a in (NULL, 0.0, 1.0, 1, True) for b in (NULL, "x", "y")]
+    expressions = LayerExpressions(semantics='"b" || "a"', estimate=estimate, base='"a"')
+
+    def values():
+        return FeatureValues(
+            "layer", "", expressions, 3.0, LayerRules("layer", fields, QgsExpressionContext())
+        )
+
+    def feature(number):
+        made = QgsFeature(fields, number)
+        made.setAttributes(list(some[number % len(some)]))
+        return made
+
+    together = values()
+    for number in range(2 * len(some)):
+        apart = values().of(feature(number))
+        assert repr(together.of(feature(number))) == repr(apart)

@@ -31,7 +31,7 @@ SOUTH = (60.0, 8.0)
 @pytest.fixture
 def at_roads(loop, operator):
     """One robot at the beginning of the southern road, selected, and the tool for routes in hand."""
-    loop.start_robot("r1", (10, 8, 0), speed=5)
+    loop.start_robot("r1", (10, 8, 0), speed=10)
     operator.connect_to(loop, ["r1"])
     operator.show_site()
     operator.select("r1")

@@ -94,3 +94,14 @@ def test_a_draft_for_other_robots_is_taken_away_and_that_is_said(drawn, gateway,
         wait(lambda: drawn.desk.state.site.id == "other", 10, "the other gateway")
     assert drawn.desk.drafts.draft is None
     assert any("was not sent: another site is served now" in text for text in iface.texts())
+
+
+def test_a_gateway_that_does_not_serve_what_was_chosen_is_named_until_it_does(at_desk, gateway, site, wait):
+    began, over = [], []
+    at_desk.desk.failed.connect(began.append)
+    at_desk.desk.settled.connect(over.append)
+    tell(gateway, replace(site, problem="site south cannot be read"), wait, at_desk)
+    text = "This gateway serves another site than the rest of the fleet: site south cannot be read."
+    assert began == [text] and over == []
+    tell(gateway, site, wait, at_desk)
+    assert over == [text]

@@ -11,6 +11,7 @@ from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
+from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 from fleet_supervisor.robot_bridge.core.messages.records import ObservationState
 
 
@@ -33,7 +34,7 @@ def mailbox():
 
 @pytest.fixture
 def protocol(mailbox):
-    return GatewayProtocol("anna", 10.0, "ws://here/desk", mailbox, ManualClock())
+    return GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, ManualClock())
 
 
 def hear(protocol, params):

@@ -57,7 +57,13 @@ def at_of(offer):
     return next(at for at, step in enumerate(STEPS) if step.offer == offer)
 
 
-def test_it_is_offered_once_and_again_in_the_menu(iface):
+@pytest.fixture
+def new_profile(iface):
+    """Settings of QGIS in which the tour was not offered yet."""
+    QgsSettings().remove(OFFERED)
+
+
+def test_it_is_offered_once_and_again_in_the_menu(iface, new_profile):
     first = Tour(iface)
     assert iface.findChild(QPushButton, "fleet_tour_start").isVisible()
     first.click("fleet_tour_start")
@@ -227,7 +233,7 @@ def test_its_address_is_not_kept_for_the_next_session(tour):
     tour.desk.close_link()
 
 
-def test_its_offer_is_read_whole_beside_its_button(iface, plugin, wait):
+def test_its_offer_is_read_whole_beside_its_button(iface, new_profile, plugin, wait):
     label = iface.findChild(QLabel, "fleet_tour_offer_text")
     button = iface.findChild(QPushButton, "fleet_tour_start")
     wait(lambda: label.isVisible() and button.isVisible(), what="the offer")

@@ -45,6 +45,7 @@ def work(session: Session) -> None:
     session.happened("driving", "all of them drive")
     watch_without_nats(session)
     wait_for_another_gateway(session)
+    go_on_at_another_gateway(session)
     stop(session)
     end()
 
@@ -73,7 +74,7 @@ def watch_without_nats(session: Session) -> None:
 def wait_for_another_gateway(session: Session) -> None:
     """Wait until the robots of the gateway that was killed drive on at others."""
     plan, operator = session.plan, session.operator
-    orphans, gone = plan["orphans"], f"gateway {plan['doomed']}"
+    orphans, gone = plan["orphans"], f"@{plan['doomed']}"
 
     def are_elsewhere() -> bool:
         rows = operator.robots()
@@ -84,6 +85,16 @@ def wait_for_another_gateway(session: Session) -> None:
     there = ", ".join(f"{robot} by {rows[robot]['Link']} at {rows[robot]['Speed']}" for robot in orphans)
     picture(session, "gateway-killed")
     session.happened("elsewhere", f"{seconds:.1f} s later the desk has its robots again: {there}")
+
+
+def go_on_at_another_gateway(session: Session) -> None:
+    """Wait until the desk itself is at another gateway than the one that it was given, and has all robots."""
+    plan, operator = session.plan, session.operator
+    line, given = operator.find(QLabel, "fleet_link_state"), plan["name"]
+    seconds = operator.wait("the desk elsewhere", lambda: f"{given} did not answer" in line.text(), STEP)
+    operator.wait_for_fleet(plan["robots"], STEP)
+    where = re.search(r"at (\w+) \(", line.text()).group(1)
+    session.happened("instead", f"{seconds:.1f} s later the desk is at {where}, and shows all robots fresh")
 
 
 def stop(session: Session) -> None:

@@ -12,6 +12,7 @@ import time
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from robot_bridge.protocol.jsonrpc import INTERNAL_ERROR
 from tests.support.databases.database_client import DatabaseClient
 from tests.support.patience import BUSY
 from tests.support.wire import RefusedError, Wire
@@ -75,8 +76,20 @@ class RobotWire(Wire):
         self.connection.send(json.dumps(frame))
 
     def plug_in(self, magic: int, **declared: Any) -> dict[str, Any]:
-        """Say Ready and take the map; return the gateway's acknowledgement."""
-        ack = self.ask("Ready", {"magic": magic, **declared})
+        """Say Ready and take the map; return the gateway's acknowledgement.
+
+        Said again, as robots do, where it cannot be stored just now: a gateway that was stopped in the middle
+        of a transaction holds its rows until the server ends that.
+        """
+        until = time.monotonic() + 5 * BUSY
+        while True:
+            try:
+                ack: dict[str, Any] = self.ask("Ready", {"magic": magic, **declared})
+                break
+            except RefusedError as error:
+                if error.code != INTERNAL_ERROR or time.monotonic() > until:
+                    raise
+                time.sleep(0.2)
         self.say(self.wait_for("SetMap")["id"])
         return ack
 

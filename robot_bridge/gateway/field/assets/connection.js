@@ -28,6 +28,21 @@ function address() {
   return `${location.protocol === "https:" ? "wss" : "ws"}://${location.host}/desk`;
 }
 
+/**
+ * Return the addresses of this page at the other gateways of a fleet, of which hello named the URLs of desks, this
+ * one's first. A page with https leads to none without.
+ */
+export function otherPages(urls) {
+  const schemes = location.protocol === "https:" ? ["wss:"] : ["ws:", "wss:"], pages = [];
+  for (const text of (urls ?? []).slice(1)) {
+    const url = new URL(text);
+    if (!schemes.includes(url.protocol) || url.host === location.host) continue;
+    const path = url.pathname.replace(/\/desk$/, "/field");
+    pages.push(`${url.protocol === "wss:" ? "https" : "http"}://${url.host}${path}`);
+  }
+  return pages;
+}
+
 function openSocket(token) {
   const socket = new WebSocket(address(), token ? ["robot-bridge", `token.${token}`] : []);
   socket.binaryType = "arraybuffer";

@@ -1,7 +1,7 @@
 /** The field page: wires the connection, the map, the emergency stop and what is said of robots. */
 
 import { PositionBudget } from "/field/budget.js";
-import { Connection, newId, SILENT_AFTER_MS } from "/field/connection.js";
+import { Connection, newId, otherPages, SILENT_AFTER_MS } from "/field/connection.js";
 import { SiteMap } from "/field/map.js";
 import { EmergencyStop } from "/field/stop.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
@@ -16,6 +16,7 @@ class Field {
     this.tasks = new Map();
     this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
     this.account = null;
+    this.others = [];
     this.selected = null;
     this.place = null;
     this.site = null;
@@ -132,6 +133,7 @@ class Field {
   _greeted(hello) {
     const before = this.account?.role;
     this.account = { name: hello.operator, role: hello.role };
+    this.others = otherPages(hello.gateways);
     this._banner("refused", "");
     this.stop.update(hello.emergency);
     by("account").textContent = tr("{name}, {role}", this.account);
@@ -183,10 +185,25 @@ class Field {
       null,
       "bad",
     );
+    this._offerOthers(this.account !== null && isSilent && navigator.onLine);
     this._measure();
     if (this.selected) this._showRobot();
     this._draw();
     this.stop.show();
+  }
+
+  /** Name the other gateways of the fleet: the page itself may connect to its own alone. */
+  _offerOthers(isSilent) {
+    const wanted = isSilent && this.others.length > 0;
+    // Replaced under the thumb, a link would not be followed.
+    if (wanted === this.banners.has("others")) return;
+    const links = element("span");
+    for (const address of wanted ? this.others : []) {
+      const link = element("a", new URL(address).host);
+      link.href = address;
+      links.append(" ", link);
+    }
+    this._banner("others", wanted ? tr("Open this page at another gateway of the fleet:") : "", links);
   }
 
   /** Keep to the budget of a phone's contract: fewer positions where there are many robots. */

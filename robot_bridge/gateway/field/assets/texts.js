@@ -45,6 +45,11 @@ const TEXTS = {
     "La passarel·la no respon. Els robots es mostren on eren fa {s} s.",
     "La pasarela no responde. Los robots se muestran donde estaban hace {s} s.",
   ],
+  "Open this page at another gateway of the fleet:": [
+    "Nyissa meg ezt az oldalt a flotta egy másik átjáróján:",
+    "Obriu aquesta pàgina en una altra passarel·la de la flota:",
+    "Abra esta página en otra pasarela de la flota:",
+  ],
   "This phone has no network.": ["A telefonnak nincs hálózata.", "Aquest telèfon no té xarxa.", "Este teléfono no tiene red."],
   "Sending the stop…": ["A leállítás küldése…", "S'està enviant l'aturada…", "Enviando la parada…"],
   "NOT CONFIRMED for {s} s: the gateway does not answer. Use the robots' own stop buttons. It is tried again.": [

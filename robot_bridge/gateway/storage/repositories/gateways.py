@@ -51,6 +51,17 @@ class Owner(NamedTuple):
     stored: bool = True
 
 
+class OwnersRead(NamedTuple):
+    """Owners of robots, those that changed ``since`` the mark of an earlier read, or all without one.
+
+    Those of robots that are not stored are always among them; ``total`` is how many there are in all.
+    """
+
+    mark: str
+    total: int
+    owners: dict[str, Owner]
+
+
 class Claimed(NamedTuple):
     """A robot that was claimed: the fence of its new owner, and the owner before, if there was one."""
 
@@ -159,6 +170,10 @@ _ALL = text(
     "select o.robot, o.gw, o.run, o.fence, r.name is not null from robot_owners o "
     "left join robots r on r.name = o.robot"
 )
+# Transactions that were not over when the mark was read, and all later ones, are at most as old as that.
+_CHANGED = text(f"{_ALL.text} where r.name is null or age(o.xmin) <= age(xid(cast(:since as xid8)))")  # nosec B608 # names of ours
+_MARK = text("select cast(pg_snapshot_xmin(pg_current_snapshot()) as text)")
+_COUNT = text("select count(*) from robot_owners")
 _PRESENT = text(
     "select count(*) from robots r join robot_owners o on o.robot = r.name where o.gw = :gw and o.run = :run"
 )
@@ -206,9 +221,13 @@ def owned(connection: Connection, me: Member) -> dict[str, int]:
     return dict(connection.execute(_OWNED, {"gw": me.gw, "run": me.run}).all())
 
 
-def owners(connection: Connection) -> dict[str, Owner]:
-    """Return the owner of each robot that has one."""
-    return {row[0]: Owner(*row[1:]) for row in connection.execute(_ALL)}
+def owners_since(connection: Connection, since: str | None) -> OwnersRead:
+    """Return the owners that have changed since the mark of an earlier read, whenever that was committed."""
+    # Before the rows: what ends meanwhile is read once more next time.
+    mark = str(connection.execute(_MARK).scalar_one())
+    rows = connection.execute(_ALL) if since is None else connection.execute(_CHANGED, {"since": since})
+    found = {row[0]: Owner(*row[1:]) for row in rows}
+    return OwnersRead(mark, int(connection.execute(_COUNT).scalar_one()), found)
 
 
 def present(connection: Connection, me: Member) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 
-from sqlalchemy import Connection, delete, func, insert, select
+from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.dialects import postgresql
 
 from ..schema import audit, bridge, commands, observations, robots, trajectories
@@ -43,8 +43,10 @@ def chosen_site(connection: Connection) -> str | None:
 
 def choose_site(connection: Connection, folder: str) -> None:
     """Note which site a supervisor chose."""
-    forget_site(connection)
-    connection.execute(insert(bridge).values(name=_SITE, value=folder))
+    # Of several gateways that choose at once each has its turn.
+    if connection.execute(update(bridge).where(bridge.c.name == _SITE).values(value=folder)).rowcount == 0:
+        forget_site(connection)
+        connection.execute(insert(bridge).values(name=_SITE, value=folder))
 
 
 def forget_site(connection: Connection) -> None:

@@ -8,7 +8,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
-from sqlalchemy import Connection, Select, Update, bindparam, delete, exists, insert, or_, select, update
+from sqlalchemy import (
+    Connection,
+    Select,
+    Update,
+    bindparam,
+    delete,
+    exists,
+    insert,
+    or_,
+    select,
+    text,
+    update,
+)
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
@@ -28,6 +40,18 @@ _REVISION = select(queues.c.revision, queues.c.state).where(_OF_ROBOT)
 _QUEUE_COLUMNS = ("revision", "state", "reason", "by", "at")
 _SAVE_QUEUE = (
     update(queues).where(_OF_ROBOT).values({name: bindparam(f"new_{name}") for name in _QUEUE_COLUMNS})
+)
+
+
+# Whatever changes a row gives it another xmin.
+_VERSIONS_ELSEWHERE = text(
+    """
+    select q.robot, concat_ws(' ', max(cast(q.xmin as text)), count(t.id),
+        sum(cast(cast(t.xmin as text) as numeric) * (t.place + 1)))
+    from queues q join robot_owners o on o.robot = q.robot and o.gw <> :gw
+    left join queue_tasks t on t.robot = q.robot and t.state = any(:open)
+    group by q.robot
+    """
 )
 
 
@@ -58,6 +82,20 @@ def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[st
     found = connection.execute(query).mappings()
     read = readable(found, lambda row: _queue(row, tasks), lambda row: f"the queue of robot {row['robot']}")
     return {queue.robot: queue for queue in read}
+
+
+def load_with_ended(
+    connection: Connection, robots: Sequence[str], limit: int
+) -> list[tuple[Queue, list[QueuedTask]]]:
+    """Return the queues of some robots, each with its newest tasks that ended, ``limit`` at most."""
+    found = load(connection, robots).values()
+    return [(queue, newest_ended(connection, queue.robot, limit)) for queue in found]
+
+
+def versions_elsewhere(connection: Connection, gateway: str) -> dict[str, str]:
+    """Return of each queue whose robot another gateway has what changes with it; PostgreSQL alone."""
+    values = {"gw": gateway, "open": _OPEN}
+    return dict(connection.execute(_VERSIONS_ELSEWHERE, values).all())
 
 
 def _queue(row: Any, tasks: Mapping[str, Sequence[QueuedTask]]) -> Queue:

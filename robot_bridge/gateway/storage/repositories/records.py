@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sqlalchemy import ColumnElement, Connection, func, insert, select, update
+from sqlalchemy import ColumnElement, Connection, func, insert, select, text, update
 
 from ....core.errors import RefusedError, counted
 from ....core.json_decoder import decode_json
@@ -28,6 +28,22 @@ _REPORTED = [
     *(column for column in table.c if column.name != "image"),
     func.length(table.c.image).label("image_bytes"),
 ]
+# Whatever changes a row gives it another xmin, in whichever order transactions are committed.
+_ON_MAP = text(
+    "select count(*), coalesce(sum(id * cast(cast(xmin as text) as numeric)), 0) from observations "
+    f"where state = :state and kind = '{SetObject.__name__}'"  # nosec B608 # names of ours
+)
+_NEWEST = text("select id, cast(xmin as text) from observations order by id desc limit :newest")
+
+
+class ObservationChanges(NamedTuple):
+    """What another number or text of which says that observations have changed.
+
+    ``on_map`` is of all that are drawn, ``newest`` of each of the newest by its id.
+    """
+
+    on_map: tuple[int, int]
+    newest: dict[int, str]
 
 
 class NewObservation(NamedTuple):
@@ -98,6 +114,20 @@ def on_map(connection: Connection) -> list[ObservationReport]:
     accepted = table.c.state == ObservationState.ACCEPTED.value
     query = select(*_REPORTED).where(accepted, table.c.kind == SetObject.__name__).order_by(table.c.id)
     return _reports(connection.execute(query).mappings())
+
+
+def changes(connection: Connection, newest: int) -> ObservationChanges:
+    """Return what changes with the observations on the map and with the ``newest`` ones; PostgreSQL alone."""
+    count, of_all = connection.execute(_ON_MAP, {"state": ObservationState.ACCEPTED.value}).one()
+    rows = connection.execute(_NEWEST, {"newest": newest}).all()
+    return ObservationChanges((int(count), int(of_all)), {int(id): str(version) for id, version in rows})
+
+
+def find_each(connection: Connection, ids: Sequence[int]) -> list[ObservationReport]:
+    """Return those of some observations that are stored, oldest first."""
+    return _reports(
+        connection.execute(select(*_REPORTED).where(table.c.id.in_(ids)).order_by(table.c.id)).mappings()
+    )
 
 
 def image(connection: Connection, id: int) -> tuple[bytes, str] | None:

@@ -48,7 +48,9 @@ def alarm_tab(window) -> int:
 
 
 def alarms(window) -> list[tuple[str, str]]:
-    model = window.dock.findChild(QTableView, "fleet_alarms").model()
+    # In its page: what is asked for again and again would pass every part of the panel each time.
+    page = window.dock.tabs.widget(alarm_tab(window))
+    model = page.findChild(QTableView, "fleet_alarms").model()
     return [tuple(model.index(row, column).data() for column in (1, 2)) for row in range(model.rowCount())]
 
 

@@ -301,11 +301,25 @@ async def test_a_session_can_be_ended_by_how_its_id_begins(database):
 
 async def test_what_an_earlier_gateway_left_open_is_ended_and_old_ones_are_forgotten(database):
     await database.run(session_rows.begin_session, SessionRow("aa", "Ada", None, "viewer", "here", 1.0))
-    await database.run(session_rows.end_all_sessions, 5.0, "the gateway ended")
+    await database.run(session_rows.end_all_sessions, 5.0)
     (session,) = await database.run(lambda c: session_rows.list_sessions(c, everything=True, limit=9))
     assert (session.ended_at, session.reason) == (5.0, "the gateway ended")
     await database.run(session_rows.forget_ended_sessions, 6.0, 9)
     assert await database.run(lambda c: session_rows.list_sessions(c, everything=True, limit=9)) == []
+
+
+async def test_a_gateway_that_starts_ends_no_session_of_another(database):
+    """It takes all that are open for those that it left itself; the other gateway knows better."""
+    for id in ("aa11", "bb22", "cc33"):
+        await database.run(session_rows.begin_session, SessionRow(id, "Ada", None, "viewer", "here", 1.0))
+    await database.run(session_rows.end_session, "bb22", 2.0, "the gateway ended")
+    await database.run(session_rows.end_all_sessions, 5.0)
+    # By hand a session is ended with whatever reason.
+    ended = await database.run(session_rows.ended_sessions, ["aa11", "bb22"])
+    assert ended == {"aa11": "the gateway ended", "bb22": "the gateway ended (by hand)"}
+    await database.run(session_rows.reopen_sessions, ["aa11", "bb22"])
+    left = await database.run(lambda c: session_rows.list_sessions(c, everything=False, limit=9))
+    assert [(session.id, session.reason) for session in left] == [("aa11", None)]
 
 
 async def test_who_reads_the_log_reads_what_has_just_happened(database):

@@ -206,7 +206,7 @@ class Fleet(RuleBasedStateMachine):
         robot, fence, at = process.checked.pop()
         is_valid = self.clock.steady() - at < CHECK_VALID_S
         if is_valid and robot in process.robots and process.trust.holds and self.connected.get(robot) == name:
-            owner = self.run(gateways.owners)[robot]
+            owner = self.run(gateways.owners_since, None).owners[robot]
             # As long as that takes, a message may be on its way that was right when it was checked.
             on_its_way = self.now - self.claimed_at[robot] < CHECK_VALID_S
             assert owner.fence == fence or on_its_way, (robot, name, owner)
@@ -283,6 +283,40 @@ def test_a_gateway_of_the_version_before_is_a_member_without_an_address(engine):
         assert gateways.renew(connection, new._replace(address=None), LEASE_S, 52.0)
         assert gateways.join(connection, Member("new", "run-2"), LEASE_S, 53.0)
         assert gateways.members(connection, 53.0)[1].address == "ws://10.0.0.2:1"
+
+
+def test_a_change_is_read_whenever_it_is_committed(engine):
+    """A transaction that begins before another and ends after it is not passed over."""
+    stored = "insert into robots (name, magic, link, received_at, ended_in_order) values (:r, 1, 'sql', 0, 0)"
+    change = text("update robot_owners set gw = :gw where robot = :robot")
+    robots = ("o1", "o2", "o3")
+    with engine.begin() as setup:
+        setup.execute(text("delete from robot_owners"))
+        for robot in robots:
+            setup.execute(text(stored), {"r": robot})
+            setup.execute(text("insert into robot_owners values (:r, 'a', 'run', 1)"), {"r": robot})
+
+    def read(mark):
+        with engine.begin() as connection:
+            return gateways.owners_since(connection, mark)
+
+    first = read(None)
+    assert {*first.owners} == {*robots} and all(owner.stored for owner in first.owners.values())
+    with engine.connect() as slow:
+        slow.execute(change, {"gw": "b", "robot": "o1"})
+        with engine.begin() as quick:
+            quick.execute(change, {"gw": "b", "robot": "o2"})
+        second = read(first.mark)
+        assert {*second.owners} == {"o2"} and second.total == 3
+        slow.commit()
+    third = read(second.mark)
+    assert third.owners["o1"].gw == "b" and "o3" not in third.owners
+    assert not read(read(third.mark).mark).owners
+    with engine.begin() as connection:
+        connection.execute(text("delete from robots where name = 'o3'"))
+    assert not read(third.mark).owners["o3"].stored
+    with engine.begin() as connection:
+        connection.execute(text("delete from robots"))
 
 
 @pytest.fixture

@@ -2,39 +2,23 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import signal
 import time
-from contextlib import contextmanager
 
 import pytest
 from websockets.exceptions import ConnectionClosed
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.gateway_pair import GatewayPair, desk_at
+from tests.support.databases.database_client import DatabaseClient
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
-
-
-class Gateways:
-    """Gateways a and b of one fleet."""
-
-    def __init__(self, start_bridge, site, url, folder, *options):
-        def start(name):
-            state = folder / name
-            state.mkdir(exist_ok=True)
-            return start_bridge(site, url, ["--gateway-name", name, "--state", state, *options])
-
-        self.a, self.b = start("a"), start("b")
-
-    def robot(self, bridge, name, magic=1, at=(20.0, 8.0)):
-        wire = bridge.robot(name)
-        wire.plug_in(magic)
-        wire.tell("SendPos", {"x": at[0], "y": at[1], "theta": 0.5, "v": 0.0})
-        return wire
 
 
 @pytest.fixture(scope="module")
@@ -44,18 +28,12 @@ def site(limited_site):
 
 @pytest.fixture(scope="module")
 def pair(start_bridge, site, fleet_url, nats, tmp_path_factory):
-    yield Gateways(start_bridge, site, fleet_url, tmp_path_factory.mktemp("state"), "--bus", nats.url)
+    yield GatewayPair(start_bridge, site, fleet_url, tmp_path_factory.mktemp("state"), "--bus", nats.url)
 
 
 @pytest.fixture
 def name():
     return f"robot-{next(NUMBERS)}"
-
-
-def desk_at(bridge):
-    desk = bridge.desk()
-    desk.ask("subscribe", {"rate": 20})
-    return desk
 
 
 def close_code(wire):
@@ -66,7 +44,7 @@ def close_code(wire):
         return closed.rcvd.code
 
 
-@contextmanager
+@contextlib.contextmanager
 def standing_still(bridge):
     """Have a gateway do nothing until the block ends, however it ends."""
     bridge.gateway.send_signal(signal.SIGSTOP)
@@ -158,6 +136,33 @@ def test_the_newest_connection_counts(pair, name):
     new.hear("SetPosEnd")
 
 
+def test_a_second_robot_of_one_name_is_refused_at_the_other_gateway(pair, name):
+    first, desk = pair.robot(pair.a, name, magic=1), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    second = pair.b.robot(name)
+    for _ in range(3):
+        with pytest.raises(RefusedError, match=rf"at gateway a another robot runs as '{name}' \(magic 1"):
+            second.ask("Ready", {"magic": 2})
+    # The first one has kept its connection and is commanded on it.
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    first.hear("SetPosEnd")
+    assert pair.b.sql("select gw, fence from robot_owners where robot = ?", name) == [("a", 1)]
+    # One that was started anew is let in: its old connection is gone.
+    first.hang_up()
+    pair.robot(pair.b, name, magic=2)
+    desk.until(lambda: desk.robots[name]["link"] == "websocket")
+
+
+def test_a_robot_that_moves_to_another_gateway_is_known_there(pair, name):
+    """Its gateway stands still, and is not waited for."""
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    robot.plug_in(7, asks_path=True)
+    desk.until(lambda: desk.robots.get(name, {}).get("paths") == "asks")
+    with standing_still(pair.a):
+        pair.robot(pair.b, name, magic=7)
+    assert "does not say whether another robot" not in pair.b.output()
+
+
 def test_a_gateway_that_dies_is_replaced(pair, name):
     """Its robot is commanded at the other: what was queued meanwhile is delivered once, by that one alone."""
     pair.robot(pair.a, name)
@@ -215,6 +220,46 @@ def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, 
     desk.until(lambda: desk.emergency.get("gateways") == {"reached": 1, "of": 1, "missing": []})
     clear(desk)
     pair.a.start_gateway()
+
+
+def test_desks_are_told_of_all_gateways_and_again_when_they_change(pair, name):
+    urls = [f"{bridge.address}/desk" for bridge in (pair.a, pair.b)]
+    wait_until(lambda: pair.a.desk().hello["gateways"] == urls)
+    at_b = pair.b.desk()
+    assert (at_b.hello["gateway"], at_b.hello["gateways"]) == ("b", urls[::-1])
+    assert at_b.hello["database"] == pair.a.desk().hello["database"]
+    # One that ends in good order is gone, and one that comes is there.
+    pair.a.end()
+    at_b.until(lambda: at_b.gateways == urls[1:])
+    pair.a.start_gateway()
+    at_b.until(lambda: at_b.gateways == urls[::-1])
+
+
+def test_what_was_asked_at_one_gateway_is_known_at_the_other(pair, name):
+    """A desk asks again there when its gateway dies before it has answered."""
+    robot, other = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
+    desks = [desk_at(bridge) for bridge in (pair.a, pair.b)]
+    for desk in desks:
+        desk.wait_for_robots(name, f"{name}-b")
+    for one, wire in ((name, robot), (f"{name}-b", other)):
+        first, again = (desk.send(f"c-{one}", one, "SetPosEnd", x=22.0, y=8.0) for desk in desks)
+        assert (first["command"], first["op"]) == (again["command"], again["op"])
+        wire.hear("SetPosEnd")
+    robots = {name, f"{name}-b"}
+    aborts = [desk.ask("abort_all", {"command": f"all-{name}"})["commands"] for desk in desks]
+    first, again = ({c["command"] for c in found if c["robot"] in robots} for found in aborts)
+    assert first == again and len(first) == 2
+    for desk in desks:
+        stop(desk, name)
+    clear(desks[1])
+    desks[0].until(lambda: not desks[0].emergency["in_force"])
+    # Asked again once it was cleared, a stop begins at neither.
+    for desk in desks:
+        assert not stop(desk, name)["in_force"]
+    for wire in (robot, other):
+        wire.wait_for("Abort")
+        # Beside the one that it has heard.
+        assert not [call for call in wire.calls if call["method"] == "SetPosEnd"]
 
 
 def test_a_stop_goes_out_with_the_bus_dead(pair, nats, name):
@@ -290,6 +335,57 @@ def test_robots_of_two_gateways_are_aborted_together(pair, name):
         one.wait_for("Abort")
 
 
+def targets(*robots):
+    return {"positions": [{"robot": robot, "x": 22.0 + n, "y": 8.0} for n, robot in enumerate(robots)]}
+
+
+def test_targets_of_robots_of_two_gateways_are_sent_together(pair, name):
+    there, here = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
+    desk = desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    result = desk.ask("set_positions", targets(name, f"{name}-b"))
+    assert [(one["robot"], one["params"]["x"]) for one in result["commands"]] == [
+        (name, 22.0),
+        (f"{name}-b", 23.0),
+    ]
+    assert "refused" not in result
+    assert (there.hear("SetPosEnd")["x"], here.hear("SetPosEnd")["x"]) == (22.0, 23.0)
+    # What is wrong with all of it is sent to nobody.
+    with pytest.raises(RefusedError, match=r"nobody.*is not known"):
+        desk.ask("set_positions", targets(name, f"{name}-b", "nobody"))
+    with pytest.raises(RefusedError, match="named more than once"):
+        desk.ask("set_positions", targets(name, f"{name}-b", name))
+    # What one gateway refuses is refused of its robots, by name.
+    there.tell("Stopped")
+    wrong = targets(f"{name}-b", name)
+    wrong["positions"][1]["x"] = 9e5
+    result = desk.ask("set_positions", wrong)
+    assert [one["robot"] for one in result["commands"]] == [f"{name}-b"]
+    ((robot, reason),) = [(one["robot"], one["reason"]) for one in result["refused"]]
+    assert robot == name and "site" in reason
+
+
+def test_targets_are_not_sent_again_when_a_gateway_dies_over_them(pair, name):
+    """The one that takes its robots over sends none that the other one may have sent."""
+    pair.robot(pair.a, name)
+    here, desk = pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0)), desk_at(pair.b)
+    desk.wait_for_robots(name, f"{name}-b")
+    with contextlib.closing(DatabaseClient(pair.b.database)) as client:
+        client.sql("begin")
+        client.sql("lock table commands in exclusive mode")
+        id = desk.begin("set_positions", targets(name, f"{name}-b"))
+        begun = "select begun_by from relayed_requests where robot = ? and begun_by is not null"
+        wait_until(lambda: pair.b.sql(begun, name))
+        pair.a.kill_gateway()
+    result = desk.answer(id, 20.0)
+    assert here.hear("SetPosEnd")["x"] == 23.0
+    ((robot, reason),) = [(one["robot"], one["reason"]) for one in result["refused"]]
+    assert robot == name and "ended while it did this" in reason
+    sent = pair.b.sql("select robot from commands where robot in (?, ?)", name, f"{name}-b")
+    assert sent == [(f"{name}-b",)]
+    pair.a.start_gateway()
+
+
 def test_a_second_gateway_of_one_name_is_refused(pair, start_bridge, site, fleet_url, nats):
     with pytest.raises(StageError, match="another gateway named 'a' serves this fleet: process"):
         start_bridge(site, fleet_url, ["--gateway-name", "a", "--bus", nats.url])
@@ -323,7 +419,7 @@ def test_what_cannot_be_is_named(start_bridge, site, fleet_url, new_database, op
 
 def test_two_gateways_need_no_further_server(start_bridge, site, new_database, tmp_path, name):
     """On PostgreSQL's notifications alone."""
-    pair = Gateways(start_bridge, site, new_database("postgresql"), tmp_path)
+    pair = GatewayPair(start_bridge, site, new_database("postgresql"), tmp_path)
     robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
     desk.wait_for_robots(name)
     desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)

@@ -1,13 +1,14 @@
-"""Which gateway a robot connects to next, what it takes for an address, and what it passes over."""
+"""Which gateway robots and desks connect to next, what is an address for them, and what they pass over."""
 
 from __future__ import annotations
 
 import pytest
 
+from robot_bridge.core.gateway_addresses import DESK_PACE, ROBOT_PACE, SPREAD, GatewayAddresses
+from robot_bridge.core.messages.administration import Gateways
 from robot_bridge.core.messages.robots import OpAck, Start
 from robot_bridge.core.messages.validation import LONGEST_ADDRESS, MOST_GATEWAYS
 from robot_bridge.protocol.codec import decode_answer
-from robot_bridge.protocol.gateway_addresses import FIRST_WAIT, LONGEST_WAIT, SPREAD, GatewayAddresses
 
 A, B, C = (f"ws://{name}:8765/robot" for name in ("127.0.0.1", "south.example.org", "[::1]"))
 
@@ -38,8 +39,8 @@ def test_its_own_is_tried_once_more_and_then_the_others_in_turn(addresses):
     assert tried[0] == A
     assert sorted(tried[1:3]) == sorted((B, C))
     assert tried == [*tried[:3], *tried[:3], A]
-    assert all(is_about(wait, FIRST_WAIT) for wait in waits[:3])
-    assert all(is_about(wait, 2 * FIRST_WAIT) for wait in waits[3:6])
+    assert all(is_about(wait, ROBOT_PACE.first_wait) for wait in waits[:3])
+    assert all(is_about(wait, 2 * ROBOT_PACE.first_wait) for wait in waits[3:6])
 
 
 def test_from_one_that_says_that_it_ends_it_goes_to_another_at_once(addresses):
@@ -55,7 +56,10 @@ def test_one_alone_is_tried_again_and_again_ever_later():
     addresses = GatewayAddresses(A)
     tried, waits = tries(addresses, 8)
     assert set(tried) == {A}
-    assert all(is_about(wait, min(FIRST_WAIT * 2**n, LONGEST_WAIT)) for n, wait in enumerate(waits))
+    assert all(
+        is_about(wait, min(ROBOT_PACE.first_wait * 2**n, ROBOT_PACE.longest_wait))
+        for n, wait in enumerate(waits)
+    )
 
 
 def test_the_robots_of_one_gateway_are_spread_over_all_others():
@@ -90,6 +94,90 @@ def test_who_came_with_tls_goes_nowhere_without():
     assert addresses.known == ["wss://north.example.org/robot", "wss://east.example.org/robot"]
 
 
+@pytest.mark.parametrize(
+    ("given", "has_token", "known"),
+    [
+        ("wss://north.example.org/desk", True, ["wss://south.example.org/desk"]),
+        ("wss://north.example.org/desk", False, ["wss://south.example.org/desk"]),
+        ("ws://127.0.0.1:8765/desk", True, ["ws://[::1]:8766/desk", "ws://localhost:8767/desk"]),
+        ("ws://127.0.0.1:8765/desk", False, None),
+        ("ws://10.0.0.1/desk", False, None),
+    ],
+)
+def test_a_token_goes_nowhere_that_is_less_safe(given, has_token, known):
+    told = [
+        "ws://[::1]:8766/desk",
+        "ws://localhost:8767/desk",
+        "ws://south.example.org/desk",
+        "wss://south.example.org/desk",
+    ]
+    addresses = GatewayAddresses(given, DESK_PACE, has_token=has_token)
+    addresses.learn(told)
+    assert sorted(addresses.known) == sorted([given, *(told if known is None else known)])
+
+
+@pytest.fixture
+def desk():
+    """A desk at the gateway that was given."""
+    addresses = GatewayAddresses(A, DESK_PACE)
+    addresses.learn([A, B, C])
+    addresses.answered()
+    return addresses
+
+
+def test_a_desk_tries_the_given_gateway_first_and_then_the_others_soon(desk):
+    tried, waits = tries(desk, 4)
+    others = tried[1:3]
+    assert tried == [A, *others, A] and sorted(others) == sorted((B, C))
+    assert sum(waits[:3]) < 1.0 < 0.5 + sum(waits[:4])
+    # Lost at another gateway, the given one is tried first again.
+    desk.next_wait()
+    desk.answered()
+    assert desk.current == others[0]
+    assert tries(desk, 2)[0] == [A, others[0]]
+
+
+def test_a_desk_does_not_stay_where_a_gateway_ends(desk):
+    desk.next_wait(ends=True)
+    assert desk.current != A
+    desk.answered()
+    desk.next_wait(ends=True)
+    assert desk.current == A
+
+
+def test_a_gateway_that_takes_no_connection_costs_a_desk_two_seconds_and_a_slow_one_is_waited_for(desk):
+    spent = 0.0
+    for _ in range(2):
+        spent += desk.next_wait() + (desk.patience if desk.current == A else 0.0)
+    assert desk.current != A and spent < 2.2
+    tries(desk, 3)
+    assert desk.patience == 2 * DESK_PACE.of_several
+    tries(desk, 5)
+    assert desk.patience == DESK_PACE.alone == GatewayAddresses(A, DESK_PACE).patience
+
+
+def test_who_refuses_is_passed_over_until_another_has_answered(desk):
+    desk.refused()
+    tried, _ = tries(desk, 4)
+    assert tried == [*tried[:2], *tried[:2]] and A not in tried
+    assert not desk.all_refuse
+    desk.answered()
+    assert tries(desk, 1)[0] == [A]
+
+
+def test_where_all_refuse_there_is_none_left_to_try(desk):
+    for left in (2, 1, 0):
+        assert not desk.all_refuse
+        desk.refused()
+        assert desk.all_refuse is (left == 0)
+        desk.next_wait()
+
+
+def test_a_desk_forgets_what_another_fleet_told(desk):
+    desk.forget()
+    assert desk.known == [A]
+
+
 @pytest.mark.parametrize("op", ["Start", "OpAck"])
 @pytest.mark.parametrize(
     "wrong",
@@ -114,7 +202,7 @@ def test_what_is_no_address_is_passed_over_and_no_robot_is_lost_for_it(op, wrong
 
 def test_only_so_many_are_taken():
     many = [f"ws://gateway-{n}.example.org:8765/robot" for n in range(10_000)]
-    for message in (Start(gateways=many), OpAck(gateways=many)):
+    for message in (Start(gateways=many), OpAck(gateways=many), Gateways("north", many)):
         assert message.gateways == many[:MOST_GATEWAYS]
     addresses = GatewayAddresses(A)
     for begin in range(0, 1000, 100):

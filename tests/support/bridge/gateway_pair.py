@@ -1,0 +1,47 @@
+"""Two gateways of one fleet, each a process of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+from tests.support.bridge.bridge_programs import Bridge
+from tests.support.operators import Desk
+from tests.support.robots.robot_wires import RobotWire
+
+
+class GatewayPair:
+    """Gateways a and b of one fleet; ``site`` is the folder of both, or that of each."""
+
+    def __init__(
+        self,
+        start_bridge: Callable[..., Bridge],
+        site: Path | Mapping[str, Path],
+        url: str,
+        folder: Path,
+        *options: str,
+    ):
+        def start(name: str) -> Bridge:
+            state = folder / name
+            state.mkdir(exist_ok=True)
+            served = site if isinstance(site, Path) else site[name]
+            return start_bridge(served, url, ["--gateway-name", name, "--state", state, *options])
+
+        self.a, self.b = start("a"), start("b")
+
+    def robot(
+        self, bridge: Bridge, name: str, magic: int = 1, at: tuple[float, float] = (20.0, 8.0)
+    ) -> RobotWire:
+        """Return a robot that stands at one of the two."""
+        wire = bridge.robot(name)
+        wire.plug_in(magic)
+        wire.tell("SendPos", {"x": at[0], "y": at[1], "theta": 0.5, "v": 0.0})
+        return wire
+
+
+def desk_at(bridge: Bridge, **options: Any) -> Desk:
+    """Return an operator who watches the positions."""
+    desk = bridge.desk(**options)
+    desk.ask("subscribe", {"rate": 20})
+    return desk
