@@ -9,6 +9,7 @@ from qgis.gui import QgisInterface, QgsMapTool
 from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
+from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.positions import AlarmLimits
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic
@@ -162,7 +163,7 @@ class FleetWindow(QObject):
         self._project_match.differs.connect(self.notices.error)
         self._project_match.over.connect(self.notices.take_down)
         desk.state.link_changed.connect(self._show_link)
-        desk.state.gateways_changed.connect(lambda told: self._gateways.keep(desk.state.url, told))
+        desk.state.gateways_changed.connect(self._keep_gateways)
 
     def _follow(self, mode: FollowMode, on: bool) -> None:
         if on:
@@ -196,6 +197,9 @@ class FleetWindow(QObject):
             panel.remember()
         except FleetError as error:
             self.notices.warning(str(error))
+
+    def _keep_gateways(self, told: FleetGateways) -> None:
+        self._gateways.keep(self.desk.state.url, told)
 
     def _show_link(self) -> None:
         link = self.desk.state.link

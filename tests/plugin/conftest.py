@@ -280,11 +280,6 @@ class Window(QMainWindow):
     def addToolBar(self, name):
         return super().addToolBar(name)
 
-    def addDockWidget(self, area, dock):
-        super().addDockWidget(area, dock)
-        # QGIS shows what it is given.
-        dock.show()
-
     def removeDockWidget(self, dock):
         super().removeDockWidget(dock)
 

@@ -77,6 +77,7 @@ TEXTS = {
         ("to the left", "to the right", "left limit", "right limit"),
         "the bridge's word for a choice of a layout's dimension, with the operator's word beside it",
     ),
+    **dict.fromkeys(("), (SELECT max(rowid) FROM ", " WHERE rowid BETWEEN ? AND ?"), "a part of a query"),
     **dict.fromkeys(("PyVRP", "RoutingKit", "SciPy", "QGIS", "GeoJSON", "GeoPackage"), "a proper name"),
     **{kind.value: "the value that a kind of alarm is kept under, beside its words" for kind in AlarmKind},
 }
