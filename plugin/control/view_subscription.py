@@ -20,6 +20,7 @@ from ...robot_bridge.core.messages.positions import (
     Subscribe,
     View,
 )
+from ...robot_bridge.core.messages.validation import is_robot_name
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..gateway_client.protocol import VIEWS_FROM
@@ -132,7 +133,9 @@ class ViewSubscription(QObject):
         canvas = self._in_site(site)
         draft = self._drafts.draft
         drafted = () if draft is None else (draft.robot,)
-        always = dict.fromkeys((*drafted, *self._selected, *self._found, *self._alarmed))
+        wanted = (*drafted, *self._selected, *self._found, *self._alarmed)
+        # A gateway refuses the whole view for a name that can be no robot's.
+        always = dict.fromkeys(filter(is_robot_name, wanted))
         told = View(canvas, list(always)[:MOST_ALWAYS], alarms=self._limits)
         if self._asked is None or not _will_do(self._asked.bounds, canvas):
             return replace(told, bounds=_grown(canvas))
