@@ -9,6 +9,7 @@ import re
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from benchmarks.endurance_findings import Run, Sample, Unloaded
 from benchmarks.endurance_page import report
 from benchmarks.limits import LimitError, Throttling, small_computer
 from benchmarks.page import Beginning, Part, goal, with_part
+from tests.support.patience import BUSY
 
 ROOT = Path(__file__).resolve().parents[2]
 INSTANCE = "e_n51_k5.py"
@@ -178,10 +180,14 @@ def test_a_small_computer_holds_what_runs_on_it():
     limits = {"cores": 0.2, "megabytes": 200, "cpus": "0"}
     try:
         with small_computer(f"fleet-test-{os.getpid()}", ("busy", "idle"), **limits) as (whole, parts):
-            subprocess.run([*parts["busy"].through, sys.executable, "-c", busy], check=True)
+            began = time.monotonic()
+            # Beside others it gets little of its share at first, and is not held back from more.
+            while whole.throttling().throttled <= 5 or whole.throttling().seconds <= 0.1:
+                assert time.monotonic() - began < 10 * BUSY, whole.throttling()
+                subprocess.run([*parts["busy"].through, sys.executable, "-c", busy], check=True)
+            passed = time.monotonic() - began
             used = {name: part.cpu_seconds() for name, part in parts.items()}
-            assert whole.throttling().throttled > 5 and whole.throttling().seconds > 0.1
-            assert used["idle"] == 0.0 and used["busy"] <= whole.cpu_seconds() < 0.3
+            assert used["idle"] == 0.0 and used["busy"] <= whole.cpu_seconds() < 0.1 + 0.2 * passed
             assert whole.killed() == 0 and whole.megabytes() < 200
             too_much = [*parts["idle"].through, sys.executable, "-c", "bytearray(300_000_000)"]
             assert subprocess.run(too_much).returncode == -signal.SIGKILL

@@ -12,6 +12,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.planning.layouts.layout_layer import MARK
+from fleet_supervisor.plugin.planning.plan_settings import participating_robots
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.robot_bridge.core.layouts.catalogue import LAYOUTS
 from fleet_supervisor.robot_bridge.core.messages.plans import PlanState
@@ -99,10 +100,17 @@ class Planner:
 
     def solve(self, seconds):
         self.dock.form.seconds.setValue(seconds)
+        # On a busy machine a robot may not be heard for a while, and takes no part then.
+        self.operator.wait("a robot that takes part", self._has_robots, 10)
         self.press("fleet_plan_solve")
         drafts = self.dock.drafts
         self.operator.wait("the plan", lambda: not drafts.busy and drafts.draft is not None, seconds + 20)
         return self.dock.drafts.draft.plan
+
+    def _has_robots(self):
+        desk = self.operator.desk
+        robots = desk.state.robots.arrays(desk.clock.steady())
+        return participating_robots(robots, self.dock.drafts.settings).any()
 
     def send(self):
         self.press("fleet_plan_send")

@@ -210,7 +210,7 @@ class Yard:
             crew.process.terminate()
             crew.process.wait(20)
         # What is not there then is lost, which the audit tells.
-        self._wait(self._last_words_are_stored, BUSY * STORED_WITHIN_S)
+        self._wait(self._last_words_are_stored, STORED_WITHIN_S)
 
     # ---------------------------------------------------------------------------------------------------
 
@@ -244,7 +244,7 @@ class Yard:
         return run_once(self.place.url, _newest_stored) == last
 
     def _wait(self, condition: Callable[[], bool], seconds: float) -> bool:
-        until = time.monotonic() + seconds
+        until = time.monotonic() + BUSY * seconds
         while not condition():
             if time.monotonic() > until:
                 return False
