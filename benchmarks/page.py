@@ -58,6 +58,7 @@ BENCH = [
     "assignment",
     "desk",
     "field_page",
+    "fleet_views",
     "appliance",
     "cluster",
     "endurance",

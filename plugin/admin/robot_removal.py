@@ -13,6 +13,7 @@ from qgis.PyQt.QtWidgets import QAction, QWidget
 from ...robot_bridge.core.messages.administration import RemoveRobots
 from ...robot_bridge.core.messages.safety import RobotState
 from ..control.fleet_controller import FleetController
+from ..gateway_client.robot_states import part_in_words
 from ..panel.connection_panel import ConnectionMenu
 from ..panel.robot_table import RobotTableView
 from ..ui.actions import ICONS
@@ -116,6 +117,8 @@ class RobotRemoval:
         if why:
             self._desk.complained.emit(tr("No robot was removed: {why}", why=why))
             return
+        if told := part_in_words(self._desk.state.robots):
+            self._desk.complained.emit(f"{told} {tr('Others cannot be chosen here.')}")
         chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)

@@ -41,6 +41,7 @@ from .roads import RoadStatus
 from .route_queries import RouteQuery, TargetRoutes
 from .sending import CommandSender
 from .validation import CommandChecks, ValidationRunner
+from .view_subscription import ViewSubscription
 
 STOPPED_BY = "emergency stop"
 """What a gateway's refusal holds where an emergency stop is the reason."""
@@ -114,6 +115,10 @@ class FleetController(QObject):
         self._links = LinkNotices(self)
         self._site_problem = ReportNotices(self)
         self.selection = Selection(self)
+        self.view = ViewSubscription(
+            canvas, state, self.site_to_canvas, self.drafts, self.sender, clock, self
+        )
+        self.selection.changed.connect(lambda: self.view.select(self.selection.robots))
         self._rules = CommandChecks(project, self.site_to_canvas, state, self)
         self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
         self.checks.found.connect(self._found)
@@ -220,9 +225,10 @@ class FleetController(QObject):
         self.orders.watch()
         self.target_ways.watch()
         self.preview.watch()
+        self.view.renew()
 
     def _answered(self, answer: RequestResult) -> None:
-        if self.target_ways.accept_answer(answer) or self.preview.accept_answer(answer):
+        if any(part.accept_answer(answer) for part in (self.target_ways, self.preview, self.view)):
             return
         self.orders.accept_answer(answer)
         self.emergency_changed.emit()

@@ -202,7 +202,7 @@ class FleetState(QObject):
     replaced = pyqtSignal(str)
     """Another site or database is served than before: the text, which must not go unseen."""
     robots_removed = pyqtSignal(object)
-    """Robots are there no more, and others have moved up into their rows: the RemovedRobots."""
+    """Robots are gone or out of view, and others have moved up into their rows: the RemovedRobots."""
     commands_changed = pyqtSignal(list)
     """The CommandReports that told something new."""
     queues_changed = pyqtSignal(list)
@@ -354,9 +354,12 @@ class FleetState(QObject):
 
     def _merge_robots(self, table: RobotTable) -> None:
         gone = self.robots.merge(table)
+        if not len(gone.rows):
+            return
+        # What those out of view do goes on.
+        self.queues.forget(gone.names)
+        self.robots_removed.emit(gone)
         if gone.names:
-            self.queues.forget(gone.names)
-            self.robots_removed.emit(gone)
             self.queues_changed.emit(sorted(gone.names))
 
     def _merge_roads(self, update: StateUpdate) -> None:

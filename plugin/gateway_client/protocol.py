@@ -14,7 +14,7 @@ from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
 from ...robot_bridge.core.messages.commands import GetCommands
 from ...robot_bridge.core.messages.plans import GetPlans
-from ...robot_bridge.core.messages.positions import PositionForm, Subscribe
+from ...robot_bridge.core.messages.positions import PositionForm, Subscribe, View
 from ...robot_bridge.core.messages.queues import GetQueue
 from ...robot_bridge.core.messages.roads import GetClosures
 from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
@@ -52,6 +52,8 @@ EACH_COUNTS = {
 }
 """Notifications of one thing among many: the topic, and what decodes it."""
 
+VIEWS_FROM = 5000
+"""With more robots than these the desk is told of those in its view, with fewer of every one."""
 ALL_QUEUES = "every queue"
 """The key of what asks for all queues when a link begins."""
 ALL_PLANS = "every plan"
@@ -137,6 +139,9 @@ class GatewayProtocol:
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
         self._pending: dict[int, OperatorRequest] = {}
+        self._view: dict[str, Any] | None = None
+        """The view that the window wants to be told of, None for every robot."""
+        self._knows_views = False
         self.ready = False
         self.operator, self.role = "", ""
         """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
@@ -156,7 +161,13 @@ class GatewayProtocol:
         return [self._request(OperatorRequest("hello", Hello.method, json_values.to_json(Hello(name))))]
 
     def submit(self, order: OperatorRequest) -> list[str]:
-        """Return the texts to send now for a new order: none while the link is not ready."""
+        """Return the texts to send now for a new order: none while the link is not ready.
+
+        A subscription holds from then on, on later links as well; a gateway that knows no views gets none.
+        """
+        if order.method == Subscribe.method:
+            self._view = order.params.get("view")
+            return [self._subscription()] if self.ready and self._knows_views else []
         if not self._outbox.add(order) or not self.ready:
             return []
         return [self._request(order)]
@@ -226,6 +237,12 @@ class GatewayProtocol:
         number = next(self._ids)
         self._pending[number] = order
         return json.dumps({"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params})
+
+    def _subscription(self) -> str:
+        params = json_values.to_json(Subscribe(self._rate, PositionForm.COLUMNS))
+        if self._knows_views and self._view is not None:
+            params["view"] = self._view
+        return self._request(OperatorRequest("subscribe", Subscribe.method, params))
 
     def _notified(self, method: str, params: dict[str, Any]) -> None:
         if method == "positions":
@@ -309,6 +326,7 @@ class GatewayProtocol:
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
             self._buffer.add(emergency=json_values.emergency_report(result["emergency"]))
+        self._choose_view(result)
         self.ready = True
         orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
@@ -316,17 +334,19 @@ class GatewayProtocol:
                 RequestResult(order, error=_too_old(self._clock.steady() - order.requested_at))
             )
         first = [
-            OperatorRequest(
-                "subscribe",
-                Subscribe.method,
-                json_values.to_json(Subscribe(self._rate, PositionForm.COLUMNS)),
-            ),
             OperatorRequest("get_commands", GetCommands.method, json_values.to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
             OperatorRequest(ALL_QUEUES, GetQueue.method, json_values.to_json(GetQueue())),
             OperatorRequest(ALL_PLANS, GetPlans.method, json_values.to_json(GetPlans())),
         ]
-        return [self._request(order) for order in (*first, *orders)]
+        return [self._subscription(), *(self._request(order) for order in (*first, *orders))]
+
+    def _choose_view(self, result: dict[str, Any]) -> None:
+        """Begin with a view where there are many robots; the window then says what it shows of them."""
+        robots = result.get("robots")
+        self._knows_views = isinstance(robots, int)
+        if self._view is None and self._knows_views and robots > VIEWS_FROM:
+            self._view = json_values.to_json(View(tuple(result["site"]["bounds"])))
 
     def _learn(self, told: object) -> None:
         """Know where else the fleet is reached, and have that kept for the next session."""

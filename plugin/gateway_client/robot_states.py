@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from ...robot_bridge.core.messages.commands import CommandState
 from ...robot_bridge.core.messages.json_values import robot_report
-from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.positions import FleetView, RobotReport
 from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from ...robot_bridge.core.messages.safety import RobotState
 from ..ui.language import time_of_day, tr, tr_count
@@ -89,6 +89,8 @@ class RobotStates:
         """Counts how often rows became other robots': all were forgotten, or one was removed."""
         self.revision = 0
         """Counts how often something was taken in."""
+        self.fleet: FleetView | None = None
+        """The fleet as a whole, where the desk is told of the robots in its view; None where of every one."""
         self._seen = RobotTable()
         self._names: list[str] = []
         self._by_name: list[int] = []
@@ -98,6 +100,11 @@ class RobotStates:
     def __len__(self) -> int:
         return len(self._seen)
 
+    @property
+    def count(self) -> int:
+        """How many robots there are, those out of view among them."""
+        return len(self._seen) if self.fleet is None else self.fleet.robots
+
     def set_limits(self, stale_after: float, lost_after: float) -> None:
         """Have robots count as stale and as lost after so many seconds without a message."""
         self.stale_after, self.lost_after = stale_after, lost_after
@@ -105,14 +112,20 @@ class RobotStates:
     def merge(self, sightings: RobotTable) -> RemovedRobots:
         """Take in newer sightings; one that arrived before what is known is passed over.
 
-        Return the robots that are there no more.
+        Return the robots that are there no more, or out of view.
         """
         if sightings.tells_nothing:
             return RemovedRobots(frozenset(), np.empty(0, dtype=np.intp))
         gone = self._seen.merge(sightings)
+        if sightings.view is not None or sightings.everything:
+            self.fleet = sightings.view
         self.revision += 1
-        if gone.names:
-            self._names, self._by_name, self._orders = [], [], []
+        if len(gone.rows):
+            # To find again what thousands are sorted by takes longer than all else, and robots leave views
+            # all the time.
+            rows = set(gone.rows.tolist())
+            self._orders = [order for row, order in enumerate(self._orders) if row not in rows]
+            self._names, self._by_name = [], []
             self.arrangement += 1
         return gone
 
@@ -120,6 +133,7 @@ class RobotStates:
         """Forget every robot."""
         self._seen = RobotTable()
         self._names, self._by_name, self._orders = [], [], []
+        self.fleet = None
         self.generation += 1
         self.arrangement += 1
         self.revision += 1
@@ -249,6 +263,17 @@ MEETINGS = {
     "standing": tr("standing"),
 }
 """How two robots come into each other's way, by the kind of a ConflictReport."""
+
+
+def part_in_words(robots: RobotStates) -> str:
+    """Return of how many of all robots the desk is told; empty where of every one."""
+    if robots.fleet is None:
+        return ""
+    return tr(
+        "This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.",
+        known=len(robots),
+        all=robots.count,
+    )
 
 
 def longest_word(words: dict) -> str:

@@ -8,12 +8,13 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages.json_values import fleet_view, robot_report
 from ...robot_bridge.core.messages.positions import (
     POSITION_ALWAYS,
     POSITION_FLAGS,
     POSITION_NUMBERS,
     POSITION_TEXTS,
+    FleetView,
     RobotReport,
 )
 from ...robot_bridge.core.messages.safety import RobotState
@@ -37,10 +38,16 @@ Numbers = npt.NDArray[np.float64]
 
 
 class RemovedRobots(NamedTuple):
-    """Robots that are there no more, and (n,) the rows that they had."""
+    """Robots that are there no more, those that are out of view, and (n,) the rows that all these had."""
 
     names: frozenset[str]
     rows: npt.NDArray[np.intp]
+    untracked: frozenset[str] = frozenset()
+
+    @property
+    def all_names(self) -> frozenset[str]:
+        """Those of whom nothing is known from now on, whether they are there or not."""
+        return self.names | self.untracked
 
 
 class RobotTable:
@@ -48,7 +55,8 @@ class RobotTable:
 
     ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
     it points at. All are the table's own from then on. With ``everything`` there are no other robots;
-    ``removed`` are gone for good.
+    ``removed`` are gone for good. With ``view`` they are those of a view: others than ``everything`` are out
+    of it, as ``untracked`` are.
     """
 
     def __init__(
@@ -58,9 +66,12 @@ class RobotTable:
         words: list[str] | None = None,
         *,
         removed: Iterable[str] = (),
+        untracked: Iterable[str] = (),
         everything: bool = False,
+        view: FleetView | None = None,
     ) -> None:
-        self.removed, self.everything = set(removed), everything
+        self.removed, self.untracked, self.everything = set(removed), set(untracked), everything
+        self.view = view
         self.names = [] if names is None else names
         self._numbers = np.empty((len(COLUMNS), 0)) if numbers is None else numbers
         self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
@@ -76,13 +87,14 @@ class RobotTable:
     @property
     def tells_nothing(self) -> bool:
         """Whether there is nothing in it."""
-        return not (self.names or self.removed or self.everything)
+        return not (self.names or self.removed or self.untracked or self.everything or self.view)
 
     def gone_by(self, newer: RobotTable) -> list[int]:
-        """Return the rows of the robots that are there no more, as ``newer`` tells."""
+        """Return the rows of the robots that are there no more or out of view, as ``newer`` tells."""
         if newer.everything:
             return [row for row, name in enumerate(self.names) if name not in newer]
-        return sorted(row for name in newer.removed if (row := self.row(name)) is not None)
+        gone = newer.removed | newer.untracked
+        return sorted(row for name in gone if (row := self.row(name)) is not None)
 
     def drop(self, rows: Collection[int]) -> None:
         """Take robots out; those below them move up."""
@@ -124,14 +136,20 @@ class RobotTable:
     def merge(self, newer: RobotTable) -> RemovedRobots:
         """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
 
-        Return the robots that are there no more.
+        Return the robots that are there no more, or out of view.
         """
         rows = self.gone_by(newer)
-        gone = RemovedRobots(frozenset(self.names[row] for row in rows), np.array(rows, dtype=np.intp))
+        names = frozenset(self.names[row] for row in rows)
+        removed = names & newer.removed if newer.untracked or newer.view else names
+        gone = RemovedRobots(removed, np.array(rows, dtype=np.intp), names - removed)
         if rows:
             self.drop(rows)
+        self.view = newer.view if newer.everything or newer.view else self.view
         self.everything |= newer.everything
         self.removed = (self.removed | newer.removed).difference(newer.names)
+        # In place: who pans over a large fleet leaves many names behind.
+        self.untracked |= newer.untracked
+        self.untracked.difference_update(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
         self._say_in_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
@@ -181,14 +199,16 @@ class RobotTable:
 
 
 def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
-    """Return ``removed`` and ``everything`` of a message, as :class:`RobotTable` has them.
+    """Return who is gone, by a message, and what is known of the others, as :class:`RobotTable` has them.
 
-    An older gateway tells neither. Raises ValueError where they are not what they have to be.
+    An older gateway tells nothing of that. Raises ValueError where they are not what they have to be.
     """
     everything = params.get("everything", False)
     if not isinstance(everything, bool):
         raise ValueError(f"everything is {everything!r}, neither true nor false")
-    return {"removed": check_texts("removed", params.get("removed", [])), "everything": everything}
+    gone = {name: check_texts(name, params.get(name, [])) for name in ("removed", "untracked")}
+    view = params.get("view")
+    return {**gone, "everything": everything, "view": None if view is None else fleet_view(view)}
 
 
 def check_texts(name: str, values: Any) -> list[str]:

@@ -10,7 +10,7 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.robot_states import RemovedRobots, part_in_words
 from ..layers.live_layers import ProjectWatch
 from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import MapTransformError
@@ -144,6 +144,8 @@ class LiveView(QObject):
     def follow(self, mode: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = mode
+        if mode is FollowMode.ALL and (told := part_in_words(self._desk.state.robots)):
+            self._desk.complained.emit(f"{tr('All robots cannot be followed.')} {told}")
         if mode is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.complained.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")
@@ -182,7 +184,7 @@ class LiveView(QObject):
 
     def _robots_removed(self, gone: RemovedRobots) -> None:
         self._trails.drop(gone.rows)
-        self.layer.drop(gone.names)
+        self.layer.drop(gone.all_names)
         self._frame.start()
 
     def _way_changed(self) -> None:
@@ -213,6 +215,9 @@ class LiveView(QObject):
 
     def _go_after(self) -> None:
         if self.following is FollowMode.NOBODY or self._desk.state.site is None:
+            return
+        if self.following is FollowMode.ALL and self._desk.state.robots.fleet is not None:
+            # Those in view are no fleet to go after: the map would never show another one.
             return
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         xy = robots.xy
@@ -251,6 +256,7 @@ class LiveView(QObject):
             },
             draft=desk.drafts.draft,
             cursor=desk.drafts.cursor,
+            fleet=desk.state.robots.fleet,
             rows=rows,
         )
 

@@ -28,7 +28,7 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.robot_states import RemovedRobots, part_in_words
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
@@ -276,12 +276,15 @@ class RobotPanel(QWidget):
     def _narrow(self, *_what: object) -> None:
         which = list(RobotChoice)[self._which.currentIndex()]
         self.table.robots.set_filter(self._search.text(), which)
+        self._desk.view.search(self._search.text())
         self.table.refresh()
 
     def _show_count(self) -> None:
-        listed, all_ = self.table.robots.rowCount(), self.table.robots.count()
+        listed, all_ = self.table.robots.rowCount(), self._desk.state.robots.count
         part = tr("{listed} of {all}", listed=listed, all=all_)
         self._count.setText(f"{listed}" if listed == all_ else part)
+        if told := part_in_words(self._desk.state.robots):
+            self._count.setToolTip(f"{told} {tr('The search finds others by name.')}")
 
     def _fill_menu(self) -> None:
         menu = self._columns.menu()

@@ -10,6 +10,7 @@ from qgis.PyQt.QtCore import QObject, Qt
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
 from ...robot_bridge.core.gateway_addresses import FleetGateways
+from ...robot_bridge.core.messages.positions import AlarmLimits
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic
 from ..control.roads import RoutePreferencesDialog
@@ -267,6 +268,9 @@ class WindowAlarms(QObject):
         alarms = self.watch.board.alarms()
         robots = {name for alarm in alarms for name in (alarm.robot, alarm.other) if name}
         self._window.dock.robots.mark_troubled(robots)
+        limits = self.watch.board.limits
+        judged = AlarmLimits(limits.low_battery, limits.unsure, limits.outside_margin)
+        self._window.desk.view.watch_alarms(sorted(robots), judged)
 
     def _count(self, new: int) -> None:
         self._tabs.show_count(self.panel, tr("Alarms"), new)

@@ -25,6 +25,7 @@ from ...robot_bridge.core.messages.validation import MessageError
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import part_in_words
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from . import plan_settings
@@ -159,6 +160,8 @@ class PlanEditor(QObject):
         self, targets: tuple[ConeTarget, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
     ) -> None:
         stores = plan_settings.read_stores(self._desk.project, self.settings, frame)
+        if not preview and (told := part_in_words(self._desk.state.robots)):
+            self._desk.complained.emit(f"{told} {tr('Others take no part in the plan.')}")
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
             objective = Objective(

@@ -374,6 +374,11 @@
         </message>
         <message>
             <location filename="../../plugin/admin/robot_removal.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Els altres no es poden triar aquí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/robot_removal.py" />
             <source>Remove</source>
             <translation>Treu</translation>
         </message>
@@ -2102,6 +2107,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/robot_states.py" />
+            <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
+            <translation>Aquesta consola rep notícies de {known} de {all} robots: els que es veuen al mapa, els seleccionats i els que tenen una alarma.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>avortada</translation>
         </message>
@@ -3209,6 +3219,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
+            <source>All robots cannot be followed.</source>
+            <translation>No es poden seguir tots els robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat per seguir. Seleccioneu-ne un a la taula o al mapa.</translation>
         </message>
@@ -3216,6 +3231,14 @@
             <location filename="../../plugin/map/live_view.py" />
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} encara no ha dit on és; el mapa no hi pot anar.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/density_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrat com a densitat; amplieu el mapa per veure'l</numerusform>
+                <numerusform>%n robots aquí, mostrats com a densitat; amplieu el mapa per veure'ls un a un</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
@@ -5272,6 +5295,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_table.py" />
+            <source>The search finds others by name.</source>
+            <translation>La cerca troba els altres pel nom.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_table.py" />
             <source>Which columns are shown, and in which CRS positions are</source>
             <translation>Quines columnes es mostren, i en quin SRC són les posicions</translation>
         </message>
@@ -6016,6 +6044,11 @@
             <location filename="../../plugin/planning/plan_editor.py" />
             <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
             <translation>No s'ha triat cap robot present: marqueu robots a la taula, o connecteu-ne.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
+            <source>Others take no part in the plan.</source>
+            <translation>Els altres no participen en el pla.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />

@@ -374,6 +374,11 @@
         </message>
         <message>
             <location filename="../../plugin/admin/robot_removal.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Los demás no se pueden elegir aquí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/robot_removal.py" />
             <source>Remove</source>
             <translation>Quitar</translation>
         </message>
@@ -2102,6 +2107,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/robot_states.py" />
+            <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
+            <translation>Esta consola recibe noticias de {known} de {all} robots: los que se ven en el mapa, los seleccionados y los que tienen una alarma.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>abortada</translation>
         </message>
@@ -3209,6 +3219,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
+            <source>All robots cannot be followed.</source>
+            <translation>No se pueden seguir todos los robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado para seguir. Seleccione uno en la tabla o en el mapa.</translation>
         </message>
@@ -3216,6 +3231,14 @@
             <location filename="../../plugin/map/live_view.py" />
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} aún no ha dicho dónde está; el mapa no puede ir allí.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/density_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrado como densidad; amplíe el mapa para verlo</numerusform>
+                <numerusform>%n robots aquí, mostrados como densidad; amplíe el mapa para verlos uno a uno</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
@@ -5272,6 +5295,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_table.py" />
+            <source>The search finds others by name.</source>
+            <translation>La búsqueda encuentra los demás por su nombre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_table.py" />
             <source>Which columns are shown, and in which CRS positions are</source>
             <translation>Qué columnas se muestran, y en qué SRC están las posiciones</translation>
         </message>
@@ -6016,6 +6044,11 @@
             <location filename="../../plugin/planning/plan_editor.py" />
             <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
             <translation>No se ha elegido ningún robot presente: marque robots en la tabla, o conecte alguno.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
+            <source>Others take no part in the plan.</source>
+            <translation>Los demás no participan en el plan.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />

@@ -371,6 +371,11 @@
         </message>
         <message>
             <location filename="../../plugin/admin/robot_removal.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Mások itt nem választhatók.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/robot_removal.py" />
             <source>Remove</source>
             <translation>Eltávolítás</translation>
         </message>
@@ -2093,6 +2098,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/robot_states.py" />
+            <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
+            <translation>Ez a kezelőpult {all} robotból {known} robotról kap hírt: a térképen láthatókról, a kijelöltekről és a riasztásban lévőkről.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>aborted</source>
             <translation>megszakítva</translation>
         </message>
@@ -3189,6 +3199,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/live_view.py" />
+            <source>All robots cannot be followed.</source>
+            <translation>Az összes robot nem követhető.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/live_view.py" />
             <source>No robot is selected to be followed. Select one in the table or on the map.</source>
             <translation>Nincs követendő kijelölt robot. Jelöljön ki egyet a táblázatban vagy a térképen.</translation>
         </message>
@@ -3196,6 +3211,13 @@
             <location filename="../../plugin/map/live_view.py" />
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} még nem mondta meg, hol van; a térkép nem tud odamenni.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/density_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot itt, sűrűségként; nagyítson, hogy mindegyik látható legyen</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
@@ -5244,6 +5266,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/robot_table.py" />
+            <source>The search finds others by name.</source>
+            <translation>A keresés a többit név szerint megtalálja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_table.py" />
             <source>Which columns are shown, and in which CRS positions are</source>
             <translation>Mely oszlopok látszanak, és milyen vetületben vannak a helyzetek</translation>
         </message>
@@ -5979,6 +6006,11 @@
             <location filename="../../plugin/planning/plan_editor.py" />
             <source>No robot that is there is chosen: tick robots in the table, or connect some.</source>
             <translation>Nincs kiválasztva jelen lévő robot: jelöljön be robotokat a táblázatban, vagy kapcsoljon be néhányat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/plan_editor.py" />
+            <source>Others take no part in the plan.</source>
+            <translation>A többi nem vesz részt a tervben.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/plan_editor.py" />

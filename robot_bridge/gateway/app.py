@@ -315,6 +315,7 @@ def request_handlers(
         fleet.roads.closures,
         fleet.roads.traffic,
         fleet.snapshots,
+        fleet.views,
         fleet.observations,
         fleet.maps,
         fleet.removals,

@@ -313,6 +313,31 @@ def test_positions_in_columns_are_read_as_it_is_told(bridge):
     assert program["state_of"]("r1", frame)[:3] == (20.0, 8.0, "fresh")
 
 
+def test_a_view_is_asked_for_and_told_as_it_is_told(bridge):
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    robot.ask("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    desk = bridge.desk()
+    ((_, asked),), ((_, wanted),) = blocks("desk-asks-view"), blocks("desk-hears-view")
+    ((_, density),) = blocks("density")
+    assert accepts("desk/subscribe.json", asked["params"])
+    assert accepts("news/positions.json", wanted["params"])
+    desk.ask("subscribe", asked["params"])
+    desk.until(lambda: desk.snapshots)
+    assert shape(desk.snapshots[0]) == shape(wanted["params"])
+    assert desk.snapshots[0]["view"] == wanted["params"]["view"]
+    view = {**asked["params"]["view"], "most": 1}
+    other = bridge.robot("r9")
+    other.plug_in(9)
+    other.ask("SendPos", {"x": 21.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+    desk.ask("subscribe", {**asked["params"], "view": view})
+    desk.until(lambda: desk.snapshots[-1].get("view", {}).get("density"))
+    told = desk.snapshots[-1]["view"]["density"]
+    assert shape(told) == shape(density)
+    assert [told[name] for name in ("cell", "columns", "rows")] == [1.0, 61, 41]
+    assert all(told[name] == density[name] for name in ("cell", "x", "y", "columns", "rows", "cells"))
+
+
 def take_the_last_abort(bridge, robot):
     """Let the robot give up what it was sent before: what it had fetched by the Abort would keep it busy."""
     ((newest,),) = bridge.sql("select max(sa_id) from commands where op = 'Abort'")

@@ -20,6 +20,7 @@ from ...gateway_client.command_cache import command_in_words
 from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView
 from ...ui.glyphs import STATE_COLOURS
 from ...ui.language import tr
+from .density_painter import DensityPainter
 from .labels import Labels, NamesPainter, age_in_words
 from .robots_painter import BorderHints, Hint, RobotsPainter, circles, paint_circles
 from .scene import InView, MapScene, Screen, in_view, screen_of
@@ -35,6 +36,7 @@ class ScenePainter:
         self._trails = TrailImage(Trails() if trails is None else trails)
         self._plans = PathsPainter(self._labels)
         self._draft = PendingCommandPainter()
+        self._density = DensityPainter(self._labels)
         self.robots = RobotsPainter()
         self._names = NamesPainter(self._labels)
         self._borders = BorderHints(self._labels)
@@ -69,6 +71,7 @@ class ScenePainter:
     def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
         """Paint the scene that was prepared last."""
         view = self._view(placed, screen)
+        self._density.paint(painter, placed, screen)
         self._trails.paint(painter, screen)
         paint_circles(painter, self._circles, placed, screen)
         self._plans.paint(painter, placed, view.pixels, screen, self.robots.marks)

@@ -16,6 +16,7 @@ from qgis.gui import QgsMapCanvas, QgsMapCanvasItem
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QTransform
 
 from ....robot_bridge.core.messages.commands import CommandReport
+from ....robot_bridge.core.messages.positions import FleetView
 from ....robot_bridge.core.messages.robots import SetPath
 from ...control.pending_command import PendingCommand, Point
 from ...gateway_client.command_cache import ON_PATH_M, PathApproach
@@ -307,6 +308,8 @@ class SiteScene:
     remaining: dict[str, float] = field(default_factory=dict)
     draft: PendingCommand | None = None
     cursor: Point | None = None
+    fleet: FleetView | None = None
+    """The whole fleet, where the robots are those in view."""
     rows: dict[str, int] = field(default_factory=dict)
     """The rows of the robots that draft and selection name, and of those with a distance in ``remaining``."""
 

@@ -278,11 +278,12 @@ class AlarmBoard:
         self._ordered = None
 
     def drop(self, gone: RemovedRobots) -> None:
-        """Forget robots that are there no more, with their alarms. The log stays."""
+        """Forget robots that are there no more or out of view, with their alarms. The log stays."""
         for latch in (*self._rows.values(), self._pairs):
             latch.drop(gone.rows)
+        names = gone.all_names
         for key, alarm in list(self._alarms.items()):
-            if {alarm.robot, alarm.other} & gone.names:
+            if {alarm.robot, alarm.other} & names:
                 del self._alarms[key]
                 self._reported.pop(key, None)
         self._ordered = None

@@ -49,8 +49,8 @@ class HelloResult:
     """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
 
     ``database`` tells the gateway's database from every other: with another one, robots and commands of the
-    same names are others. ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways
-    serve the fleet.
+    same names are others. ``robots`` is how many there are now; a gateway that tells it knows views.
+    ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways serve the fleet.
     """
 
     protocol: int
@@ -59,6 +59,7 @@ class HelloResult:
     role: Role
     emergency: EmergencyReport
     database: str = ""
+    robots: int | None = None
     gateway: str | None = None
     gateways: list[str] | None = None
 

@@ -26,7 +26,7 @@ from .administration import (
 from .commands import CommandReport, CommandState, CommandStep
 from .operator_requests import Role
 from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, PlanStopReport
-from .positions import RobotReport
+from .positions import MOST_CELLS, Density, FleetView, RobotReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from .records import ObservationReport, ObservationState, PlacementReport
 from .safety import EmergencyReport, RobotState, StoppedGateways
@@ -65,6 +65,40 @@ def _plain(value: Any) -> Any:
 def robot_report(values: dict[str, Any]) -> RobotReport:
     """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
     return RobotReport(**{**known_fields(RobotReport, values), "state": RobotState(values["state"])})
+
+
+def fleet_view(values: dict[str, Any]) -> FleetView:
+    """Return the fleet as a desk sees it by its view, as a gateway sent it as JSON.
+
+    :raises ValueError: when a count is none, or the cells of a density lie outside its grid.
+    """
+    view = FleetView(**{**known_fields(FleetView, values), "density": None})
+    _check_counts("view", *(getattr(view, f.name) for f in dataclasses.fields(view) if f.name != "density"))
+    if values.get("density") is None:
+        return view
+    density = Density(**known_fields(Density, values["density"]))
+    groups = (density.fresh, density.silent, density.offline)
+    _check_counts(
+        "density", density.columns, density.rows, *density.cells, *(n for one in groups for n in one)
+    )
+    corner = (density.cell, density.x, density.y)
+    if (
+        not all(isinstance(value, (int, float)) and math.isfinite(value) for value in corner)
+        or density.cell <= 0
+    ):
+        raise ValueError(f"the cells of a density have no place or no size: {corner}")
+    size = density.columns * density.rows
+    if not 0 < size <= MOST_CELLS**2 or any(cell >= size for cell in density.cells):
+        raise ValueError(f"a density has cells outside its {density.columns} x {density.rows}")
+    if any(len(group) != len(density.cells) for group in groups):
+        raise ValueError("a density has other counts than cells")
+    return dataclasses.replace(view, density=density)
+
+
+def _check_counts(name: str, *counts: Any) -> None:
+    for count in counts:
+        if isinstance(count, bool) or not isinstance(count, int) or count < 0:
+            raise ValueError(f"a count of {name} is {count!r}")
 
 
 def command_report(values: dict[str, Any]) -> CommandReport:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from .operator_requests import DeskRequest, Done, Role
+from .operator_requests import DeskRequest, Done, Priority, Role
 from .safety import PathDeclaration, RobotState
-from .validation import MessageError, check_finite
+from .validation import COORDINATE, MessageError, check_finite, check_robot_name
 
 # --- Positions as a table of numbers: what a desk asks for that shows thousands of robots ---
 # A binary frame (:mod:`..core.position_frame`): a JSON-RPC notification ``positions`` whose params are
@@ -52,6 +52,109 @@ class PositionForm(str, Enum):
     PLACES = "places"
 
 
+# --- What a desk is told of a fleet too large for it: robots in its view, and how many are where ---
+
+MOST_IN_VIEW = 5000
+"""robots in a view that a desk is told of one by one."""
+MOST_ALWAYS = 500
+"""robots that a desk is told of wherever they are."""
+MOST_ALARMED = 1000
+"""robots with an alarm that a desk is told of outside its view, or in one that is told as a density."""
+MOST_CELLS = 64
+"""cells of a density along an axis."""
+LARGEST_LIMIT = 1e6
+"""metres."""
+MOST_FOUND, LONGEST_SEARCH = 500, 63
+"""robots in the answer to a search, and characters of what is searched for."""
+
+
+@dataclass(frozen=True)
+class AlarmLimits:
+    """When a robot has an alarm besides being lost, or at a place that is not believed.
+
+    ``low_battery`` is the part of a full one below which, ``unsure`` the accuracy in metres from which, and
+    ``outside`` the metres off the site's bounds beyond which it has; None is never.
+    """
+
+    low_battery: float | None = None
+    unsure: float | None = None
+    outside: float | None = None
+
+    def __post_init__(self) -> None:
+        for name, most in (("low_battery", 1.0), ("unsure", LARGEST_LIMIT), ("outside", LARGEST_LIMIT)):
+            value = getattr(self, name)
+            if value is not None and not 0.0 <= value <= most:
+                raise MessageError(f"{name} is {value}; give a number from 0 to {most:g}, or none")
+
+
+@dataclass(frozen=True)
+class View:
+    """What a desk shows of the fleet: ``bounds`` is x_min, y_min, x_max, y_max in the site frame.
+
+    It is told of robots within them one by one, but of none of them where they are more than ``most``: then
+    of how many there are in each cell of a grid. Of those in ``always``, and of those with an alarm by
+    ``alarms``, it is told wherever they are.
+    """
+
+    bounds: tuple[float, float, float, float]
+    always: list[str] = field(default_factory=list)
+    most: int = MOST_IN_VIEW
+    alarms: AlarmLimits = field(default_factory=AlarmLimits)
+
+    def __post_init__(self) -> None:
+        low, high = COORDINATE
+        x_min, y_min, x_max, y_max = self.bounds
+        if not (low <= x_min < x_max <= high and low <= y_min < y_max <= high):
+            raise MessageError(
+                f"bounds is {list(self.bounds)}; give x_min, y_min, x_max, y_max in metres, each from "
+                f"{low:g} to {high:g}, with x_min < x_max and y_min < y_max"
+            )
+        if not 1 <= self.most <= MOST_IN_VIEW:
+            raise MessageError(f"most is {self.most}; give 1 to {MOST_IN_VIEW} robots")
+        if len(self.always) > MOST_ALWAYS:
+            raise MessageError(f"always has {len(self.always)} robots; give at most {MOST_ALWAYS}")
+        for name in self.always:
+            check_robot_name(name)
+
+
+@dataclass(frozen=True)
+class Density:
+    """How many robots are in each ``cell`` x ``cell`` metres of a grid of ``columns`` by ``rows``.
+
+    Its first corner is ``x``, ``y`` in the site frame, multiples of ``cell``, which is a power of two.
+    ``cells`` are the places of those that hold robots, counted from 0 along x and then along y;
+    ``fresh``, ``silent`` (stale or lost) and ``offline`` have a count for each of them.
+    """
+
+    cell: float
+    x: float
+    y: float
+    columns: int
+    rows: int
+    cells: list[int]
+    fresh: list[int]
+    silent: list[int]
+    offline: list[int]
+
+
+@dataclass(frozen=True)
+class FleetView:
+    """The fleet as a desk sees it that asked for a view: how many ``robots`` there are, and in which state.
+
+    ``inside`` are in the bounds of its view, ``alarmed`` have an alarm, of which it is told of the first
+    1000. With ``density`` those inside are too many to be told of one by one.
+    """
+
+    robots: int
+    fresh: int
+    stale: int
+    lost: int
+    offline: int
+    inside: int
+    alarmed: int
+    density: Density | None = None
+
+
 @dataclass(frozen=True)
 class PositionColumns:
     """What the table behind it holds, at the gateway's time ``t``.
@@ -59,8 +162,8 @@ class PositionColumns:
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
     floats (32-bit in the form ``places``), one for each of ``robots``; NaN is what is not known, and what is
     known of no robot is left out. In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``,
-    ``paths`` and ``abilities`` a number is a place in ``words``, counted from 0. With ``everything`` they
-    are all robots that there are; otherwise ``removed`` are gone for good.
+    ``paths`` and ``abilities`` a number is a place in ``words``, counted from 0. ``removed``, ``everything``,
+    ``untracked`` and ``view`` are as in :class:`Positions`.
     """
 
     t: float
@@ -69,6 +172,8 @@ class PositionColumns:
     words: list[str]
     removed: list[str] = field(default_factory=list)
     everything: bool = False
+    untracked: list[str] = field(default_factory=list)
+    view: FleetView | None = None
 
 
 @dataclass  # not frozen: thousands are made every second, and a frozen one takes three times as long
@@ -110,26 +215,32 @@ class RobotReport:
 class Positions:
     """Where robots are, at the gateway's time ``t``.
 
-    With ``everything`` they are all robots that there are; otherwise ``removed`` are gone for good.
+    With ``everything`` they are all robots that there are; otherwise ``removed`` are gone for good. To who
+    asked for a view, ``everything`` are all that are told of one by one, and ``untracked`` are told of no
+    more: they are there, and out of view. ``view`` comes with each change of it.
     """
 
     t: float
     robots: list[RobotReport]
     removed: list[str] = field(default_factory=list)
     everything: bool = False
+    untracked: list[str] = field(default_factory=list)
+    view: FleetView | None = None
 
 
 @dataclass(frozen=True)
 class Subscribe(DeskRequest[Done]):
     """Ask for ``positions`` up to ``rate`` times a second, what changed only; everything at first.
 
-    ``form`` says whether they come as an object for each robot or as a table of numbers.
+    ``form`` says whether they come as an object for each robot or as a table of numbers. With ``view`` they
+    are those of the robots in it; asked again with another view, what follows is what that changes.
     """
 
     method = "subscribe"
     least_role = Role.VIEWER
     rate: float = 5.0
     form: PositionForm = PositionForm.ROWS
+    view: View | None = None
 
     def __post_init__(self) -> None:
         check_finite(rate=self.rate)
@@ -143,3 +254,37 @@ class GetPositions(DeskRequest[Positions]):
 
     method = "get_positions"
     least_role = Role.VIEWER
+
+
+@dataclass(frozen=True)
+class FoundRobots:
+    """Robots whose names were searched for, by name; ``count`` is how many there are with such a name."""
+
+    t: float
+    robots: list[RobotReport]
+    count: int
+
+
+@dataclass(frozen=True)
+class FindRobots(DeskRequest[FoundRobots]):
+    """Ask for robots with ``text`` in their names, in any case; every robot where it is empty.
+
+    At most ``limit`` are told, by name; the next ones are those ``after`` the last name of these.
+    """
+
+    method = "find_robots"
+    least_role = Role.VIEWER
+    priority = Priority.SLOW
+    text: str = ""
+    after: str = ""
+    limit: int = 50
+
+    def __post_init__(self) -> None:
+        for name in ("text", "after"):
+            value = getattr(self, name)
+            if len(value) > LONGEST_SEARCH:
+                raise MessageError(
+                    f"{name} has {len(value)} characters; give at most {LONGEST_SEARCH}: no name is longer"
+                )
+        if not 1 <= self.limit <= MOST_FOUND:
+            raise MessageError(f"limit is {self.limit}; give 1 to {MOST_FOUND} robots")

@@ -112,9 +112,14 @@ def check_texts(message: Any) -> None:
             raise MessageError(f"{name} is {value[:40]!r}; give 1 to {longest} printable characters")
 
 
+def is_robot_name(name: str) -> bool:
+    """Tell whether ``name`` can name a robot."""
+    return ROBOT_NAME.fullmatch(name) is not None
+
+
 def check_robot_name(name: str) -> str:
     """Return ``name`` if it can name a robot, else raise MessageError."""
-    if not ROBOT_NAME.fullmatch(name):
+    if not is_robot_name(name):
         raise MessageError(
             f"robot name {name!r} cannot be used; take 1 to 63 letters, digits, '_', '.' or '-', "
             "beginning with a letter or digit"

@@ -42,6 +42,7 @@ from ..auth.authorisation import AuthGate
 from ..auth.client_connection import ClientConnection
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
+from ..fleet.views import ViewWatch
 from ..model.request_handlers import Answering
 
 # --- The order of requests, and what one overtakes ---
@@ -198,8 +199,10 @@ OWN = (Hello, Subscribe)
 """Requests that concern the connection itself; everything later goes by them."""
 SUBJECTS = ("robot", "session", "operator", "site", "observation", "command", "plan")
 """Parameters that say what a request is about; of several the first."""
-UNNOTED = ("hello", "subscribe")
+UNNOTED = ("hello", "subscribe", "find_robots")
 """Requests that change nothing but the connection they come from."""
+VIEW_REST_S = 0.1
+"""between frames to a desk whose view moves."""
 
 
 class OperatorSession:
@@ -221,6 +224,7 @@ class OperatorSession:
         self._news: dict[tuple[str, str], dict[str, Any]] = {}
         self._news_event = asyncio.Event()
         self._tasks: dict[str, asyncio.Task[None]] = {}
+        self._watch: ViewWatch | None = None
         self._lanes = RequestScheduler(self._settle)
 
     async def run(self) -> None:
@@ -316,7 +320,7 @@ class OperatorSession:
         if isinstance(request, Hello):
             return self._hello(request)
         if isinstance(request, Subscribe):
-            self._start("positions", self._push_positions(1 / request.rate, request.form))
+            self._subscribe(request)
             return {}
         role = self._gate.role(self._connection)
         override_role = Role(self._fleet.site.settings.commands.override_role)
@@ -344,8 +348,25 @@ class OperatorSession:
             "role": self._gate.role(self._connection).value,
             "emergency": to_json(self._fleet.emergency.report()),
             "database": self._fleet.reception.database_id,
+            "robots": self._fleet.robots.count(),
             **({} if gateways is None else to_json(gateways)),
         }
+
+    def _subscribe(self, request: Subscribe) -> None:
+        watch, view = self._watch, request.view
+        if (
+            watch is not None
+            and view is not None
+            and (watch.rate, watch.form) == (request.rate, request.form)
+        ):
+            watch.show(view)
+            return
+        self._watch = None
+        if view is None:
+            self._start("positions", self._push_positions(1 / request.rate, request.form))
+            return
+        self._watch = ViewWatch(self._fleet.views, view, request.rate, request.form)
+        self._start("positions", self._push_view(self._watch))
 
     def _start(self, name: str, work: Any) -> None:
         if name in self._tasks:
@@ -365,6 +386,25 @@ class OperatorSession:
                 missed = due.number > tick.number + 1
                 frame, seen = self._fleet.snapshots.after(EVERYTHING if missed else seen, due, form)
                 tick = due
+        except ConnectionClosed:
+            return
+
+    async def _push_view(self, watch: ViewWatch) -> None:
+        tick = Tick.last(1 / watch.rate, time.monotonic())
+        try:
+            while True:
+                watch.changed.clear()
+                frame = watch.next_frame()
+                if frame is not None:
+                    await self._connection.send(frame, text=watch.form is PositionForm.ROWS)
+                now = time.monotonic()
+                due = tick.following(now)
+                try:
+                    async with asyncio.timeout(due.wait(now)):
+                        await watch.changed.wait()
+                        await asyncio.sleep(VIEW_REST_S)
+                except TimeoutError:
+                    tick = due
         except ConnectionClosed:
             return
 

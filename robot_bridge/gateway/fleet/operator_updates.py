@@ -27,7 +27,6 @@ from ...core.messages.positions import (
     POSITION_ALWAYS,
     POSITION_TEXTS,
     GetPositions,
-    PositionColumns,
     PositionForm,
     Positions,
     RobotReport,
@@ -322,13 +321,25 @@ def table_frame(
     With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
     """
     columns, words = position_table(robots, now)
+    names = [robot.name for robot in robots]
+    return packed_table(t, names, columns, words, form, removed=list(removed), everything=everything)
+
+
+def packed_table(
+    t: float,
+    names: Sequence[str],
+    columns: dict[str, npt.NDArray[np.float64]],
+    words: Sequence[str],
+    form: PositionForm,
+    **news: Any,
+) -> bytes:
+    """Return the binary frame of a table by :func:`position_table`; ``news`` stand in its head besides."""
     value = POSITION_VALUE
     if form is PositionForm.PLACES:
         columns = {name: columns[name] for name in PLACE_COLUMNS if name in columns}
         value = PLACE_VALUE
-    names = [robot.name for robot in robots]
-    head = PositionColumns(t, names, list(columns), words, list(removed), everything)
-    text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": head})
+    params = {"t": t, "robots": names, "columns": list(columns), "words": words, **news}
+    text = msgspec.json.encode({"jsonrpc": "2.0", "method": METHOD, "params": params})
     return packed_frame(text, columns.values(), value)
 
 

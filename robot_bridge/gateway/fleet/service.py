@@ -64,6 +64,7 @@ from .operator_updates import ObservationService, Snapshots
 from .outbox import RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration, Takeover
 from .robot_answers import MapSender, RobotAnswers
+from .views import FleetViews
 
 log = logging.getLogger(__name__)
 
@@ -97,6 +98,7 @@ class Fleet:
         self.robots = Robots(site.report.stale_after, site.report.lost_after, self.events)
         self.links = LinkWatch(self.robots, self.listeners)
         self.snapshots = Snapshots(self.robots, clock)
+        self.views = FleetViews(self.robots, site, clock)
         rules, waiting = CommandRules(site, self.robots), WaitingRobots()
         self._book = CommandService(
             database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence

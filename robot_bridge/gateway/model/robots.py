@@ -147,6 +147,10 @@ class Robots:
     def __contains__(self, name: str) -> bool:
         return name in self._robots
 
+    def count(self) -> int:
+        """Return how many there are."""
+        return len(self._robots)
+
     def names(self) -> list[str]:
         """Return the names of all robots, sorted."""
         return sorted(self._robots)
@@ -462,11 +466,15 @@ class Robots:
 
     def rows(self, now: float, since: int, kind: Callable[..., Report]) -> list[Report]:
         """Return them as ``kind``, which takes the parameters of a RobotReport by name."""
-        return [_report(robot, now, kind) for robot in self.changed(since)]
+        return reports_of(self.changed(since), now, kind)
 
     def changed(self, since: int) -> list[Robot]:
         """Return the robots that changed after revision ``since``."""
         return [robot for robot in self._robots.values() if robot.revision > since]
+
+    def known(self, names: Iterable[str]) -> list[Robot]:
+        """Return those of ``names`` that there are."""
+        return [robot for name in names if (robot := self._robots.get(name)) is not None]
 
     def _judge(self, robot: Robot, now: float) -> RobotState:
         return liveness(
@@ -479,6 +487,11 @@ class Robots:
     def _touch(self, robot: Robot) -> None:
         self.revision += 1
         robot.revision = self.revision
+
+
+def reports_of(robots: Iterable[Robot], now: float, kind: Callable[..., Report]) -> list[Report]:
+    """Return ``robots`` as ``kind``, which takes the parameters of a RobotReport by name."""
+    return [_report(robot, now, kind) for robot in robots]
 
 
 def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:

@@ -38,6 +38,8 @@ NEVER_ONE = {
     "smaller area.": "more than the most",
     "The file {path} has {size} bytes, and a robot map at most {largest_text}: choose a map.":
         "a large number",
+    "This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.":
+        "all are thousands",
     "{target}: {content} bytes": "a file has more",
     "{size} bytes in binary, {ratio:.3g} bytes/m²": "a file has more",
     "{size} bytes of text, {ratio:.3g} bytes/m² (paper 1: about 3 bytes/m² as text)": "a file has more",

@@ -134,6 +134,54 @@ def test_a_robot_that_falls_silent_turns_stale_then_lost_and_comes_back_fresh(br
     assert states(desk, "silent") == ["fresh", "stale", "lost", "fresh"]
 
 
+def test_a_view_brings_who_is_in_it_and_another_one_what_it_changes(bridge):
+    for name, x in (("left", 100.0), ("middle", 110.0), ("right", 120.0)):
+        robot = bridge.robot(name)
+        robot.plug_in(1)
+        robot.ask("SendPos", {**POSE, "x": x, "y": 150.0})
+    desk = bridge.desk()
+    assert desk.hello["robots"] >= 3
+    view = {"bounds": [99.0, 149.0, 111.0, 151.0]}
+    desk.ask("subscribe", {"rate": 50, "view": view})
+    seen = InView(desk)
+    desk.until(lambda: seen.names() & {"left", "middle", "right"} == {"left", "middle"})
+    desk.ask("subscribe", {"rate": 50, "view": {**view, "bounds": [109.0, 149.0, 121.0, 151.0]}})
+    desk.until(lambda: seen.names() & {"left", "middle", "right"} == {"middle", "right"})
+    assert [s.get("everything", False) for s in desk.snapshots].count(True) == 1
+    untracked = [name for s in desk.snapshots for name in s.get("untracked", [])]
+    assert "left" in untracked
+    assert desk.snapshots[0]["view"]["robots"] >= 3
+    desk.ask("subscribe", {"rate": 50, "view": {**view, "most": 1, "bounds": [99.0, 149.0, 121.0, 151.0]}})
+    desk.until(lambda: (desk.snapshots[-1].get("view") or {}).get("density"))
+    density = desk.snapshots[-1]["view"]["density"]
+    assert sum(sum(density[group]) for group in ("fresh", "silent", "offline")) >= 3
+    desk.ask("subscribe", {"rate": 50})
+    desk.until(lambda: desk.snapshots[-1].get("everything") and "view" not in desk.snapshots[-1])
+
+
+class InView:
+    """Which robots a desk was told of one by one."""
+
+    def __init__(self, desk):
+        self.desk = desk
+
+    def names(self):
+        """Return their names."""
+        names = set()
+        for told in self.desk.snapshots:
+            names = set() if told.get("everything") else names
+            names |= {robot["robot"] for robot in told["robots"]}
+            names -= {*told.get("untracked", []), *told.get("removed", [])}
+        return names
+
+
+def test_robots_are_found_by_name(bridge):
+    bridge.robot("seek-1").plug_in(1)
+    bridge.robot("seek-2").plug_in(1)
+    found = bridge.desk().ask("find_robots", {"text": "SEEK", "limit": 1})
+    assert ([robot["robot"] for robot in found["robots"]], found["count"]) == (["seek-1"], 2)
+
+
 @pytest.mark.parametrize("how", ["stopped", "closed", "cut off"])
 def test_a_robot_that_ends_in_order_goes_offline_and_one_that_is_cut_off_is_lost(bridge, how):
     name = how.replace(" ", "-")
@@ -168,6 +216,7 @@ def test_a_robot_on_sql_that_said_stopped_goes_offline(bridge):
     [
         ("fly", {}, -32601, "unknown method 'fly'; known are hello, subscribe"),
         ("subscribe", {"rate": 0}, -32602, "subscribe: rate is 0"),
+        ("subscribe", {"view": {"bounds": [5, 0, 5, 9]}}, -32602, r"subscribe: bounds is \[5"),
         ("subscribe", {"rate": "fast"}, -32602, r"subscribe: .*\$\.rate"),
         ("get_commands", {"limit": -1}, -32602, "get_commands: limit is -1"),
         ("send", {"command": "id", "robot": "x", "op": "Abort"}, -32602, "command is 'id'; give an id of 8"),

@@ -22,7 +22,14 @@ from robot_bridge.core.messages.commands import (
 )
 from robot_bridge.core.messages.json_values import command_report, robot_report, site_report, to_json
 from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
-from robot_bridge.core.messages.positions import GetPositions, RobotReport, Subscribe
+from robot_bridge.core.messages.positions import (
+    AlarmLimits,
+    FindRobots,
+    GetPositions,
+    RobotReport,
+    Subscribe,
+    View,
+)
 from robot_bridge.core.messages.robots import (
     ANSWERS,
     REQUESTS,
@@ -142,6 +149,8 @@ def test_a_map_travels_in_the_payload_and_inside_json(content):
     [
         Hello("Ada", 1),
         Subscribe(rate=2.0),
+        Subscribe(view=View((0.0, 1.0, 2.5, 3.0), ["r1"], 100, AlarmLimits(None, 1.5, 0.0))),
+        FindRobots("r", "r1", 10),
         GetPositions(),
         SetPositions([TargetPosition("r1", 1.0, 2.0, 0.5, cone=True), TargetPosition("r2", 3.0, 4.0)]),
         Send("command-1", "r1", "SetPosEnd", {"x": 1.0, "y": 2.0}),
@@ -262,6 +271,25 @@ WRONG_DESK_REQUESTS = [
     ("subscribe", {"rate": 0}, "rate is 0"),
     ("subscribe", {"rate": 51}, "rate is 51"),
     ("subscribe", {"rate": math.nan}, "rate is nan"),
+    ("subscribe", {"view": {}}, "bounds"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1]}}, "bounds"),
+    ("subscribe", {"view": {"bounds": [0, 0, 0, 1]}}, "x_min < x_max"),
+    ("subscribe", {"view": {"bounds": [0, 2, 1, 1]}}, "y_min < y_max"),
+    ("subscribe", {"view": {"bounds": [0, 0, math.nan, 1]}}, "bounds is"),
+    ("subscribe", {"view": {"bounds": [-math.inf, 0, 1, 1]}}, "bounds is"),
+    ("subscribe", {"view": {"bounds": [0, 0, 2e8, 1]}}, "from -1e+08 to 1e+08"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "most": 0}}, "most is 0"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "most": 5001}}, "most is 5001"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "always": ["r"] * 501}}, "always has 501 robots"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "always": ["a b"]}}, "robot name 'a b'"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "alarms": {"low_battery": 1.1}}}, "low_battery is 1.1"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "alarms": {"unsure": math.nan}}}, "unsure is nan"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "alarms": {"outside": -1}}}, "outside is -1"),
+    ("subscribe", {"view": {"bounds": [0, 0, 1, 1], "area": 1}}, "view.area is no parameter"),
+    ("find_robots", {"text": "x" * 64}, "text has 64 characters"),
+    ("find_robots", {"after": "x" * 64}, "after has 64 characters"),
+    ("find_robots", {"limit": 0}, "limit is 0"),
+    ("find_robots", {"limit": 501}, "limit is 501"),
     ("send", {"command": "short", "robot": "r1", "op": "Abort"}, "command is 'short'"),
     ("send", {"command": "long enough", "op": "Abort"}, "`robot`"),
     ("set_positions", {"positions": [{"robot": "r1", "x": 1}]}, "$.positions[0]"),

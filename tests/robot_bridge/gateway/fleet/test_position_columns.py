@@ -88,6 +88,11 @@ def test_its_columns_are_the_fields_of_a_report():
     assert sorted([*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS, "robot"]) == sorted(fields)
 
 
+def test_who_asks_for_no_view_is_told_nothing_of_views():
+    params, _ = unpacked(table_frame(1.0, fleet_of({"a": None}).changed(-1), 12.0))
+    assert list(params) == ["t", "robots", "columns", "words", "removed", "everything"]
+
+
 def test_what_no_robot_has_said_takes_no_column():
     params, _ = unpacked(table_frame(1.0, fleet_of({"a": None}).changed(-1), 12.0))
     assert sorted(params["columns"]) == ["age", "command", "latency", "link", "state", "stopped"]

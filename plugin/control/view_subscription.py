@@ -1,0 +1,205 @@
+"""What the desk asks the gateway to be told of, where there are too many robots to be told of each."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable
+from dataclasses import replace
+
+from qgis.core import QgsPointXY, QgsRectangle
+from qgis.gui import QgsMapCanvas
+from qgis.PyQt.QtCore import QObject
+
+from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.positions import (
+    MOST_ALWAYS,
+    AlarmLimits,
+    FindRobots,
+    PositionForm,
+    Subscribe,
+    View,
+)
+from ...robot_bridge.core.messages.validation import is_robot_name
+from ..gateway_client.connection_status import ConnectionPhase
+from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
+from ..gateway_client.protocol import VIEWS_FROM
+from ..layers.site_transform import SiteToCanvas
+from ..ui.errors import FleetError, MapTransformError
+from .pending_command import PendingCommandModel
+from .request_tracker import RequestSender
+
+Bounds = tuple[float, float, float, float]
+
+VIEWS_UNTIL = 0.8 * VIEWS_FROM
+"""Robots below which the desk is told of every one again."""
+LEAST_REST_S = 0.3
+"""between two subscriptions of a canvas that moves."""
+BUFFER = 0.25
+"""The part of the canvas's width and height that the view is larger at each side."""
+TOO_LARGE = 2.5
+"""times as wide or high as the canvas: then the view is asked for anew, with finer cells."""
+MOST_ALARMED = 200
+MOST_SELECTED = 200
+EDGE = tuple(itertools.product((0.0, 0.25, 0.5, 0.75, 1.0), repeat=2))
+"""Where the canvas is looked at: its edges may be bent in the site frame."""
+
+
+class ViewSubscription(QObject):
+    """Asks for the robots in the canvas, with those that are selected, drafted for, alarmed or searched for.
+
+    Nothing is asked for where the fleet is small, or the gateway knows no views: all robots come then.
+    """
+
+    def __init__(
+        self,
+        canvas: QgsMapCanvas,
+        state: FleetState,
+        site_to_canvas: SiteToCanvas,
+        drafts: PendingCommandModel,
+        sender: RequestSender,
+        clock: Clock,
+        parent: QObject | None = None,
+    ):
+        super().__init__(parent)
+        self._canvas, self._state, self._site_to_canvas = canvas, state, site_to_canvas
+        self._drafts, self._sender, self._clock = drafts, sender, clock
+        self._numbers = itertools.count(1)
+        self._selected: tuple[str, ...] = ()
+        self._alarmed: tuple[str, ...] = ()
+        self._found: tuple[str, ...] = ()
+        self._limits = AlarmLimits()
+        self._search = ""
+        self._asked_for = ("", "")
+        """The text that was searched for last, and the key of that request."""
+        self._asked: View | None = None
+        self._looked_at = -LEAST_REST_S
+        self._seen: tuple[QgsRectangle, Bounds] | None = None
+        """The canvas's extent in the map, and in the site frame."""
+
+    def select(self, robots: Iterable[str]) -> None:
+        """Be told of these robots wherever they are."""
+        self._selected = tuple(robots)[-MOST_SELECTED:]
+
+    def watch_alarms(self, robots: Iterable[str], limits: AlarmLimits) -> None:
+        """Be told of these robots, which have alarms, and of all that get some by ``limits``."""
+        self._alarmed, self._limits = tuple(itertools.islice(robots, MOST_ALARMED)), limits
+
+    def search(self, text: str) -> None:
+        """Be told of robots with ``text`` in their names wherever they are, as many as a search finds."""
+        self._search = text.strip()
+
+    def renew(self) -> None:
+        """Ask for what the canvas shows now, unless that is what was asked for; called all the time."""
+        site = self._state.site
+        if site is None or self._state.link.phase is not ConnectionPhase.CONNECTED:
+            self._asked, self._seen = None, None
+            return
+        fleet = self._state.robots.fleet
+        if self._state.robots.count <= (VIEWS_FROM if fleet is None else VIEWS_UNTIL):
+            if fleet is not None and self._asked is not None:
+                self._subscribe(None)
+            return
+        now = self._clock.steady()
+        if now - self._looked_at < LEAST_REST_S:
+            return
+        self._looked_at = now
+        if fleet is not None:
+            self._find()
+        if (view := self._wanted(site.bounds)) is not None:
+            self._subscribe(view)
+
+    def accept_answer(self, answer: RequestResult) -> bool:
+        """Take in what a search found; false when it is the answer to something else."""
+        if answer.order.method != FindRobots.method:
+            return False
+        if answer.order.key == self._asked_for[1]:
+            robots = (answer.result or {}).get("robots", [])
+            self._found = tuple(str(one.get("robot")) for one in robots)
+        return True
+
+    def _find(self) -> None:
+        words = self._search.split()
+        text = max(words, key=len, default="")[:60]
+        if text == self._asked_for[0]:
+            return
+        self._found = ()
+        self._asked_for = text, f"find_robots {next(self._numbers)}"
+        if text:
+            self._submit(OperatorRequest(self._asked_for[1], FindRobots.method, to_json(FindRobots(text))))
+
+    def _wanted(self, site: Bounds) -> View | None:
+        """Return the view to ask for, None where what was asked for will do."""
+        canvas = self._in_site(site)
+        draft = self._drafts.draft
+        drafted = () if draft is None else (draft.robot,)
+        wanted = (*drafted, *self._selected, *self._found, *self._alarmed)
+        # A gateway refuses the whole view for a name that can be no robot's.
+        always = dict.fromkeys(filter(is_robot_name, wanted))
+        told = View(canvas, list(always)[:MOST_ALWAYS], alarms=self._limits)
+        if self._asked is None or not _will_do(self._asked.bounds, canvas):
+            return replace(told, bounds=_grown(canvas))
+        renewed = replace(told, bounds=self._asked.bounds)
+        return None if renewed == self._asked else renewed
+
+    def _in_site(self, site: Bounds) -> Bounds:
+        """Return what of the site, and a little around it, the canvas shows."""
+        extent = self._canvas.extent()
+        if self._seen is None or self._seen[0] != extent:
+            self._seen = extent, _shown(self._placed(extent, site), _grown(site))
+        return self._seen[1]
+
+    def _placed(self, extent: QgsRectangle, site: Bounds) -> Bounds:
+        try:
+            placement = self._site_to_canvas.transform()
+            width, height = extent.width(), extent.height()
+            points = [
+                placement.to_site(QgsPointXY(extent.xMinimum() + x * width, extent.yMinimum() + y * height))
+                for x, y in EDGE
+            ]
+        except MapTransformError:
+            # The canvas shows more of the world than the site's CRS can say.
+            return site
+        xs, ys = [x for x, _ in points], [y for _, y in points]
+        return min(xs), min(ys), max(xs), max(ys)
+
+    def _subscribe(self, view: View | None) -> None:
+        self._asked = view
+        # Rate and form are the connection's own.
+        params = to_json(Subscribe(form=PositionForm.COLUMNS, view=view))
+        self._submit(OperatorRequest("view", Subscribe.method, params))
+
+    def _submit(self, request: OperatorRequest) -> None:
+        try:
+            self._sender.submit(replace(request, requested_at=self._clock.steady()))
+        except FleetError:
+            # The link has just gone: it is asked for again on the next one.
+            self._asked, self._asked_for = None, ("", "")
+
+
+def _grown(bounds: Bounds) -> Bounds:
+    x_min, y_min, x_max, y_max = bounds
+    # Never without an extent.
+    dx, dy = max(BUFFER * (x_max - x_min), 1.0), max(BUFFER * (y_max - y_min), 1.0)
+    return x_min - dx, y_min - dy, x_max + dx, y_max + dy
+
+
+def _shown(canvas: Bounds, site: Bounds) -> Bounds:
+    """Return what both have; the canvas where it shows nothing of the site, with 1 m at least."""
+    x_min, y_min = max(canvas[0], site[0]), max(canvas[1], site[1])
+    x_max, y_max = min(canvas[2], site[2]), min(canvas[3], site[3])
+    if x_min < x_max and y_min < y_max:
+        return x_min, y_min, x_max, y_max
+    # Beside the site nobody is seen: a metre of its corner holds as many.
+    return site[0], site[1], site[0] + 1.0, site[1] + 1.0
+
+
+def _will_do(asked: Bounds, canvas: Bounds) -> bool:
+    """Tell whether a view that was asked for holds the canvas, and is not much larger."""
+    holds = (
+        asked[0] <= canvas[0] and asked[1] <= canvas[1] and asked[2] >= canvas[2] and asked[3] >= canvas[3]
+    )
+    width, height = canvas[2] - canvas[0], canvas[3] - canvas[1]
+    # As much as a view is grown by, at least, is never too much.
+    is_close = asked[2] - asked[0] <= TOO_LARGE * width + 2.0
+    return holds and (is_close or asked[3] - asked[1] <= TOO_LARGE * height + 2.0)

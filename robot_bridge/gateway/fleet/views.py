@@ -1,0 +1,429 @@
+"""What desks are told of a fleet too large for them: robots in a view, or how many there are where.
+
+Where everybody is is looked up twice a second for all desks together, what is told of a robot is made a row
+once for all desks that see it, and how many there are in each cell is counted once. So another desk costs
+what it is sent, and the size of the fleet costs the gateway and no desk.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import heapq
+import math
+import time
+from collections.abc import Collection, Sequence
+from typing import Any, NamedTuple
+
+import msgspec
+import numpy as np
+import numpy.typing as npt
+
+from ...core.clock import Clock
+from ...core.messages.positions import (
+    MOST_ALARMED,
+    MOST_CELLS,
+    POSITION_ALWAYS,
+    POSITION_FLAGS,
+    POSITION_NUMBERS,
+    POSITION_TEXTS,
+    AlarmLimits,
+    Density,
+    FindRobots,
+    FleetView,
+    FoundRobots,
+    PositionForm,
+    View,
+)
+from ...core.messages.safety import RobotState
+from ..model.request_handlers import Encoded, handles
+from ..model.robots import Robot, Robots, reports_of
+from ..site.places import Ground
+from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions
+
+PLACES_EVERY_S = 0.5
+"""How old it may be where everybody is: who comes into a view is told of that much later."""
+PLACES_PART = 0.1
+"""The part of the gateway's time that it may take to look that up; in large fleets it is done less often."""
+DENSE_UNTIL = 0.9
+"""The part of the most robots in a view down to which a density stays one, so that it does not flicker."""
+SPARE = 1000
+
+Floats = npt.NDArray[np.float64]
+Bounds = tuple[float, float, float, float]
+
+# --- Where all robots are at one moment, as arrays ---
+
+_STATES = tuple(state.value for state in RobotState)
+_CODES = {state: code for code, state in enumerate(_STATES)}
+_GROUPS = np.array([{"fresh": 0, "offline": 2}.get(state, 1) for state in _STATES])
+"""Of each state whether it counts as fresh, silent or offline."""
+_LOST = _CODES[RobotState.LOST.value]
+
+
+class _Nowhere(NamedTuple):
+    """In place of the pose of a robot that has not said where it is."""
+
+    x: float = math.nan
+    y: float = math.nan
+    battery: float | None = None
+    accuracy: float | None = None
+
+
+_NOWHERE = _Nowhere()
+
+
+class FleetPlaces:
+    """All robots at one moment; what is asked of it is worked out once. ``bounds`` are the site's."""
+
+    def __init__(self, robots: Sequence[Robot], bounds: Bounds) -> None:
+        self.names = [robot.name for robot in robots]
+        self._bounds = bounds
+        self._codes = np.array([_CODES[robot.state._value_] for robot in robots], dtype=np.intp)
+        self._disbelieved = np.array([robot.doubt is not None for robot in robots], dtype=np.bool_)
+        # Column by column: 100 000 rows in tuples would take twice as long.
+        poses = [robot.pose or _NOWHERE for robot in robots]
+        self._x, self._y = (np.array(one) for one in ([at.x for at in poses], [at.y for at in poses]))
+        self._battery = np.array([at.battery for at in poses], dtype=np.float64)
+        self._accuracy = np.array([at.accuracy for at in poses], dtype=np.float64)
+        self.counts = dict(zip(_STATES, np.bincount(self._codes, minlength=4).tolist(), strict=True))
+        self._alarmed: dict[AlarmLimits, tuple[list[str], int]] = {}
+        self._grid: DensityGrid | None = None
+
+    def inside(self, bounds: Bounds) -> list[int]:
+        """Return the rows of the robots within ``bounds``."""
+        x_min, y_min, x_max, y_max = bounds
+        x, y = self._x, self._y
+        within = (x >= x_min) & (x <= x_max) & (y >= y_min) & (y <= y_max)
+        rows: list[int] = np.flatnonzero(within).tolist()
+        return rows
+
+    def alarmed(self, limits: AlarmLimits) -> tuple[list[str], int]:
+        """Return the first :data:`MOST_ALARMED` robots with an alarm, and how many have one."""
+        if limits not in self._alarmed:
+            rows = np.flatnonzero(self._are_alarmed(limits))
+            first = [self.names[row] for row in rows[:MOST_ALARMED].tolist()]
+            self._alarmed[limits] = first, len(rows)
+        return self._alarmed[limits]
+
+    def density(self, bounds: Bounds) -> Density:
+        """Return how many robots are in each cell of a grid over ``bounds``."""
+        if self._grid is None:
+            self._grid = DensityGrid(self._x, self._y, _GROUPS[self._codes])
+        return self._grid.over(bounds)
+
+    def _are_alarmed(self, limits: AlarmLimits) -> npt.NDArray[np.bool_]:
+        # What is not known is NaN, and compares false.
+        found: npt.NDArray[np.bool_] = (self._codes == _LOST) | self._disbelieved
+        if limits.low_battery is not None:
+            found |= self._battery < limits.low_battery
+        if limits.unsure is not None:
+            found |= self._accuracy >= limits.unsure
+        if limits.outside is not None:
+            x_min, y_min, x_max, y_max = self._bounds
+            margin = limits.outside
+            found |= (self._x < x_min - margin) | (self._x > x_max + margin)
+            found |= (self._y < y_min - margin) | (self._y > y_max + margin)
+        return found
+
+
+# --- How many robots are where: a grid of all that is made once, and coarser ones that are sums of it ---
+
+BASE_CELLS = 512
+"""Cells of the finest grid of all robots along an axis, at most."""
+
+
+class Cells(NamedTuple):
+    """A part of the grid with cells of 2**``level`` m: its first cell, from the origin, and its size."""
+
+    level: int
+    column: int
+    row: int
+    columns: int
+    rows: int
+
+    @classmethod
+    def over(cls, bounds: Bounds, most: int, level: int = 0) -> Cells:
+        """Return the cells that hold ``bounds``, the smallest of which there are at most ``most`` an axis."""
+        x_min, y_min, x_max, y_max = bounds
+        while True:
+            size = 2.0**level
+            column, row = math.floor(x_min / size), math.floor(y_min / size)
+            columns, rows = math.floor(x_max / size) - column + 1, math.floor(y_max / size) - row + 1
+            if max(columns, rows) <= most:
+                return cls(level, column, row, columns, rows)
+            level += 1
+
+
+class DensityGrid:
+    """How many robots are in each cell; ``x`` and ``y`` (n,), metres, and ``groups`` (n,), 0, 1 or 2."""
+
+    def __init__(self, x: Floats, y: Floats, groups: npt.NDArray[np.intp]) -> None:
+        placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+        self._x, self._y, self._groups = x[placed], y[placed], groups[placed]
+        self._levels: list[tuple[Cells, npt.NDArray[np.intp]]] = []
+        """Each twice as coarse as the one before."""
+        if len(placed):
+            corners = (self._x.min(), self._y.min(), self._x.max(), self._y.max())
+            base = Cells.over(tuple(float(value) for value in corners), BASE_CELLS)  # type: ignore[arg-type]
+            self._levels.append((base, self._counted(base)))
+        self._made: dict[Cells, Density] = {}
+
+    def over(self, bounds: Bounds) -> Density:
+        """Return the density over ``bounds``; the same object to all who see the same cells."""
+        cells = Cells.over(bounds, MOST_CELLS)
+        if cells not in self._made:
+            self._made[cells] = _density(cells, self._counts(cells))
+        return self._made[cells]
+
+    def _counts(self, cells: Cells) -> npt.NDArray[np.intp]:
+        """Return (3, rows, columns) how many of each group are in each of ``cells``."""
+        counts = np.zeros((3, cells.rows, cells.columns), dtype=np.intp)
+        if not self._levels:
+            return counts
+        base = self._levels[0][0].level
+        if cells.level < base:
+            return self._counted(cells)
+        while len(self._levels) <= cells.level - base:
+            self._levels.append(_halved(*self._levels[-1]))
+        have, counted = self._levels[cells.level - base]
+        (here, there), (in_here, in_there) = (
+            _shared(cells.row, cells.rows, have.row, have.rows),
+            _shared(cells.column, cells.columns, have.column, have.columns),
+        )
+        counts[:, here, in_here] = counted[:, there, in_there]
+        return counts
+
+    def _counted(self, cells: Cells) -> npt.NDArray[np.intp]:
+        size = 2.0**cells.level
+        column = np.floor(self._x / size) - cells.column
+        row = np.floor(self._y / size) - cells.row
+        inside = np.flatnonzero((column >= 0) & (column < cells.columns) & (row >= 0) & (row < cells.rows))
+        places = (self._groups[inside] * cells.rows + row[inside].astype(np.intp)) * cells.columns
+        places += column[inside].astype(np.intp)
+        counted = np.bincount(places, minlength=3 * cells.rows * cells.columns)
+        return counted.reshape(3, cells.rows, cells.columns)
+
+
+def _halved(cells: Cells, counts: npt.NDArray[np.intp]) -> tuple[Cells, npt.NDArray[np.intp]]:
+    """Return the next coarser grid: each of its cells is the sum of four."""
+    row, column = cells.row // 2, cells.column // 2
+    rows = (cells.row + cells.rows + 1) // 2 - row
+    columns = (cells.column + cells.columns + 1) // 2 - column
+    whole = np.zeros((3, 2 * rows, 2 * columns), dtype=np.intp)
+    down, right = cells.row - 2 * row, cells.column - 2 * column
+    whole[:, down : down + cells.rows, right : right + cells.columns] = counts
+    sums = whole.reshape(3, rows, 2, columns, 2).sum(axis=(2, 4))
+    return Cells(cells.level + 1, column, row, columns, rows), sums
+
+
+def _shared(first: int, count: int, other: int, others: int) -> tuple[slice, slice]:
+    """Return where two ranges, each with its first and its count, are the same: in the one, in the other."""
+    begin, end = max(first, other), min(first + count, other + others)
+    end = max(begin, end)
+    return slice(begin - first, end - first), slice(begin - other, end - other)
+
+
+def _density(cells: Cells, counts: npt.NDArray[np.intp]) -> Density:
+    size = 2.0**cells.level
+    flat = counts.reshape(3, -1)
+    full = np.flatnonzero(flat.any(axis=0))
+    fresh, silent, offline = flat[:, full].tolist()
+    return Density(
+        size,
+        cells.column * size,
+        cells.row * size,
+        cells.columns,
+        cells.rows,
+        full.tolist(),
+        fresh,
+        silent,
+        offline,
+    )
+
+
+# --- What is told of robots as rows of a table, each made once for all desks that see its robot ---
+
+_COLUMNS = (*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS)
+_AT = {name: place for place, name in enumerate(_COLUMNS)}
+_TEXTS_AT = [_AT[name] for name in POSITION_TEXTS]
+_AGES = {"age": "received_at", "pose_age": "pose_at"}
+
+
+class RowStore:
+    """The newest row of each robot that some desk sees; made again when its robot has changed."""
+
+    def __init__(self) -> None:
+        self._forget()
+
+    def table(self, robots: Sequence[Robot], now: float) -> tuple[dict[str, Floats], list[str]]:
+        """Return what :func:`position_table` does."""
+        if not robots:
+            return {name: np.empty(0) for name in POSITION_ALWAYS}, []
+        if len(self._words) > SPARE + 2 * len(self._rows) or len(self._rows) > SPARE + 4 * len(robots):
+            # Words that no robot says any more, and robots that nobody looks at.
+            self._forget()
+        rows = self._rows_of(robots, now)
+        table = self._table[:, rows]
+        for name, since in _AGES.items():
+            times = np.array([getattr(robot, since) for robot in robots], np.float64)
+            table[_AT[name]] = np.maximum(now - times, 0.0).round(3)
+        words = self._own_words(table)
+        known = ~np.isnan(table).all(axis=1)
+        return {name: table[place] for name, place in _AT.items() if known[place]}, words
+
+    def _forget(self) -> None:
+        self._rows: dict[str, int] = {}
+        self._revisions: list[int] = []
+        self._table = np.empty((len(_COLUMNS), 0))
+        self._words: dict[str, int] = {}
+
+    def _rows_of(self, robots: Sequence[Robot], now: float) -> list[int]:
+        known, revisions = self._rows, self._revisions
+        rows, changed = [], []
+        for robot in robots:
+            row = known.get(robot.name)
+            if row is None:
+                row = known[robot.name] = len(revisions)
+                revisions.append(-1)
+            if revisions[row] != robot.revision:
+                revisions[row] = robot.revision
+                changed.append((row, robot))
+            rows.append(row)
+        if changed:
+            self._write(changed, now)
+        return rows
+
+    def _write(self, changed: list[tuple[int, Robot]], now: float) -> None:
+        missing = len(self._revisions) - self._table.shape[1]
+        if missing > 0:
+            more = np.empty((len(_COLUMNS), max(missing, self._table.shape[1])))
+            self._table = np.concatenate([self._table, more], axis=1)
+        columns, words = position_table([robot for _, robot in changed], now)
+        own = np.array([self._words.setdefault(word, len(self._words)) for word in words], np.float64)
+        fresh = np.full((len(_COLUMNS), len(changed)), np.nan)
+        for name, values in columns.items():
+            if name in POSITION_TEXTS:
+                known = ~np.isnan(values)
+                fresh[_AT[name], known] = own[values[known].astype(np.intp)]
+            else:
+                fresh[_AT[name]] = values
+        self._table[:, [row for row, _ in changed]] = fresh
+
+    def _own_words(self, table: Floats) -> list[str]:
+        """Return the words that ``table`` says, and have it point at those."""
+        texts = table[_TEXTS_AT]
+        known = ~np.isnan(texts)
+        places = texts[known].astype(np.intp)
+        said = np.zeros(len(self._words), dtype=np.bool_)
+        said[places] = True
+        texts[known] = (np.cumsum(said) - 1)[places]
+        table[_TEXTS_AT] = texts
+        words = list(self._words)
+        return [words[place] for place in np.flatnonzero(said).tolist()]
+
+
+# --- The views of all desks ---
+
+
+class FleetViews:
+    """What the views of all desks share, and the search for robots by name."""
+
+    def __init__(self, robots: Robots, site: Ground, clock: Clock) -> None:
+        self.robots = robots
+        self.clock = clock
+        self.rows = RowStore()
+        self._site = site
+        self._places: FleetPlaces | None = None
+        self._due_at = -math.inf
+
+    def places(self) -> FleetPlaces:
+        """Return where everybody was at most :data:`PLACES_EVERY_S` ago, in large fleets a little longer."""
+        now = self.clock.steady()
+        if self._places is None or now >= self._due_at:
+            began = time.perf_counter()
+            self._places = FleetPlaces(self.robots.changed(-1), self._site.report.bounds)
+            took = time.perf_counter() - began
+            self._due_at = now + max(PLACES_EVERY_S, took / PLACES_PART)
+        return self._places
+
+    @handles(FindRobots)
+    async def find(self, request: FindRobots) -> Encoded[FoundRobots]:
+        """Return the robots whose names hold a text, by name."""
+        text = request.text.lower()
+        names = [robot.name for robot in self.robots.changed(-1) if text in robot.name.lower()]
+        told = heapq.nsmallest(request.limit, (name for name in names if name > request.after))
+        rows = reports_of(self.robots.known(told), self.clock.time(), ReportRow)
+        return Encoded({"t": round(time.time(), 3), "robots": rows, "count": len(names)})
+
+
+class ViewWatch:
+    """What one desk was told by its view, and what it has to be told next."""
+
+    def __init__(self, views: FleetViews, view: View, rate: float, form: PositionForm) -> None:
+        self.rate, self.form = rate, form
+        self.changed = asyncio.Event()
+        """set when the desk shows another view."""
+        self._views = views
+        self._view = view
+        self._places: FleetPlaces | None = None
+        """those by which it was chosen whom to tell of."""
+        self._chosen: list[str] = []
+        self._is_dense = False
+        self._told: set[str] = set()
+        self._seen = EVERYTHING
+        self._seen_view: FleetView | None = None
+
+    def show(self, view: View) -> None:
+        """Show another view from now on."""
+        self._view, self._places = view, None
+        self.changed.set()
+
+    def next_frame(self) -> bytes | None:
+        """Return the frame that tells what is new since the last one; None where nothing is."""
+        robots, seen, told = self._views.robots, self._seen, self._told
+        fleet = self._choose()
+        there = robots.known(self._chosen)
+        news: dict[str, Any] = {}
+        removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in told]
+        fresh = [robot for robot in there if robot.revision > seen or robot.name not in told]
+        self._told = {robot.name for robot in there}
+        if untracked := sorted(told - self._told - set(removed)):
+            news["untracked"] = untracked
+        if fleet != self._seen_view:
+            news["view"] = {name: value for name, value in vars(fleet).items() if value is not None}
+        self._seen, self._seen_view = robots.revision, fleet
+        if not (fresh or removed or news):
+            return None
+        return self._encoded(fresh, removed, news, everything=seen == EVERYTHING)
+
+    def _choose(self) -> FleetView:
+        """Choose whom to tell of, where everybody was looked up anew or the view is another one."""
+        places = self._views.places()
+        if places is self._places and self._seen_view is not None:
+            return self._seen_view
+        self._places, view = places, self._view
+        rows = places.inside(view.bounds)
+        self._is_dense = len(rows) > view.most * (DENSE_UNTIL if self._is_dense else 1.0)
+        alarmed, alarms = places.alarmed(view.alarms)
+        one_by_one = [] if self._is_dense else [places.names[row] for row in rows]
+        self._chosen = list(dict.fromkeys([*view.always, *alarmed, *one_by_one]))
+        return FleetView(
+            robots=len(places.names),
+            **places.counts,
+            inside=len(rows),
+            alarmed=alarms,
+            density=places.density(view.bounds) if self._is_dense else None,
+        )
+
+    def _encoded(
+        self, robots: Sequence[Robot], removed: Collection[str], news: dict[str, Any], *, everything: bool
+    ) -> bytes:
+        now, t = self._views.clock.time(), round(time.time(), 3)
+        if self.form is PositionForm.ROWS:
+            rows = reports_of(robots, now, ReportRow)
+            params = {**positions(rows, list(removed), everything=everything), **news}
+            return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})
+        columns, words = self._views.rows.table(robots, now)
+        names = [robot.name for robot in robots]
+        news = {"removed": list(removed), "everything": everything, **news}
+        return packed_table(t, names, columns, words, self.form, **news)
