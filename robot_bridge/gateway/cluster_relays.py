@@ -7,13 +7,10 @@ from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
-from .cluster.follower import Followed, Follower
+from .cluster.feeds import Followed, Follower, ObservationRelay, QueueFeed, StepFeed
 from .cluster.messages import Wake
-from .cluster.observation_relay import ObservationRelay
 from .cluster.position_relay import PositionRelay
-from .cluster.queue_feed import QueueFeed
 from .cluster.request_relay import RequestRelay
-from .cluster.step_feed import StepFeed
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.events import SiteChosen
