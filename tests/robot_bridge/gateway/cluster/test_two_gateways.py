@@ -46,12 +46,30 @@ def close_code(wire):
 
 @contextlib.contextmanager
 def standing_still(bridge):
-    """Have a gateway do nothing until the block ends, however it ends."""
-    bridge.gateway.send_signal(signal.SIGSTOP)
+    """Have a gateway do nothing until the block ends, however it ends.
+
+    Not in the middle of a transaction: the server holds what that has locked for some seconds, and ends it.
+    """
+    stop_between_transactions(bridge)
     try:
         yield
     finally:
         bridge.gateway.send_signal(signal.SIGCONT)
+
+
+def stop_between_transactions(bridge):
+    open_for_long = (
+        "select count(*) from pg_stat_activity where datname = current_database() "
+        "and state like 'idle in transaction%' and now() - state_change > interval '0.2 seconds'"
+    )
+    for _ in range(20):
+        bridge.gateway.send_signal(signal.SIGSTOP)
+        time.sleep(0.3)
+        if bridge.sql(open_for_long) == [(0,)]:
+            return
+        bridge.gateway.send_signal(signal.SIGCONT)
+        time.sleep(0.1)
+    raise AssertionError("the gateway is in the middle of a transaction all the time")
 
 
 def clear(desk):
