@@ -185,7 +185,7 @@ def _grown(bounds: Bounds) -> Bounds:
 
 
 def _shown(canvas: Bounds, site: Bounds) -> Bounds:
-    """Return what both have; the canvas where it shows nothing of the site, with 1 m at least."""
+    """Return what both have; a metre of the site's corner where the canvas shows nothing of it."""
     x_min, y_min = max(canvas[0], site[0]), max(canvas[1], site[1])
     x_max, y_max = min(canvas[2], site[2]), min(canvas[3], site[3])
     if x_min < x_max and y_min < y_max:

@@ -398,7 +398,7 @@ def _placed(
                     closed=about.traffic.closed,
                     level=about.traffic.level,
                 )
-        layer.note(roads.ids[k], notes, reading)
+        layer.add_warnings(roads.ids[k], notes, reading)
 
 
 def read_areas(
@@ -469,7 +469,7 @@ def _polygons(
         if any(not shape.closed for shape in shapes):
             notes.append(tr("has a line, which is no area; it is left out"))
         label = layer.label(feature, notes)
-        layer.note(feature.id(), notes, reading)
+        layer.add_warnings(feature.id(), notes, reading)
         for rings in polygons_of(shapes):
             yield tuple(layer.placing.to_site(ring) for ring in rings), label
 
@@ -508,7 +508,7 @@ class _GroundLayer:
     ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
         """Yield each feature that counts with its geometry in metres; warn of those that have none."""
         for row in self.rows(reading, feedback):
-            self.note(row.feature.id(), row.notes, reading)
+            self.add_warnings(row.feature.id(), row.notes, reading)
             if row.geometry is not None:
                 yield row.feature, row.geometry
 
@@ -517,7 +517,7 @@ class _GroundLayer:
         value = self.rules.value("semantics", self.label_rule, notes)
         return self._otherwise if value is None else str(value)
 
-    def note(self, id: int, notes: Sequence[str], reading: GroundReading) -> None:
+    def add_warnings(self, id: int, notes: Sequence[str], reading: GroundReading) -> None:
         """Warn of the feature with this id."""
         for note in notes:
             reading.notes.add(self.source.name, id, note)

@@ -163,8 +163,9 @@ class DensityGrid:
         self._levels: list[tuple[Cells, npt.NDArray[np.intp]]] = []
         """Each twice as coarse as the one before."""
         if len(placed):
-            corners = (self._x.min(), self._y.min(), self._x.max(), self._y.max())
-            base = Cells.over(tuple(float(value) for value in corners), BASE_CELLS)  # type: ignore[arg-type]
+            x_min, x_max = float(self._x.min()), float(self._x.max())
+            y_min, y_max = float(self._y.min()), float(self._y.max())
+            base = Cells.over((x_min, y_min, x_max, y_max), BASE_CELLS)
             self._levels.append((base, self._counted(base)))
         self._made: dict[Cells, Density] = {}
 

@@ -9,8 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
-from fleet_supervisor.plugin.settings.connections import GatewayConnection
-from fleet_supervisor.plugin.settings.fleet_gateways import GROUP, KnownGateways
+from fleet_supervisor.plugin.settings.connections import GATEWAYS, GatewayConnection, KnownGateways
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from fleet_supervisor.robot_bridge.core.gateway_addresses import FleetGateways
 from qgis.core import QgsSettings
@@ -222,7 +221,7 @@ def test_the_window_keeps_what_gateways_told_and_connects_by_it(plugin, pair, wa
     "kept", ["", "{", "[]", '{"database": 1, "gateways": []}', '{"database": "x", "gateways": ["http://y"]}']
 )
 def test_what_is_kept_and_makes_no_sense_is_passed_over(iface, kept):
-    QgsSettings().setValue(f"{GROUP}/ws%3A%2F%2Fa", kept)
+    QgsSettings().setValue(f"{GATEWAYS}/ws%3A%2F%2Fa", kept)
     assert KnownGateways().of("ws://a") is None
 
 

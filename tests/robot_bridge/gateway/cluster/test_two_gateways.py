@@ -64,6 +64,7 @@ def stop_between_transactions(bridge):
     )
     for _ in range(20):
         bridge.gateway.send_signal(signal.SIGSTOP)
+        # As long as a transaction has to be open to be taken for one that was stopped.
         time.sleep(0.3)
         if bridge.sql(open_for_long) == [(0,)]:
             return
