@@ -365,15 +365,20 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         fleet = Fleet(maps, database, planner=planner, stops=journal, note=gate.journal.note, cluster=cluster)
         await fleet.start()
         plans = PlanService(
-            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+            fleet.queue_context,
+            fleet.queues,
+            fleet.roads.closures,
+            fleet.emergency,
+            fleet.listeners,
+            fleet.events,
+            None if cluster is None else cluster.membership,
         )
-        if cluster is None:
-            await plans.restore()
+        await plans.restore()
         stack.push_async_callback(_save_last, fleet, plans, gate)
         links = LinkProcesses(site.settings.links, folder)
         watch = SiteWatch(folder, stamp, maps, fleet, signals.reload, settings.site.resolve().name)
         handlers = request_handlers(fleet, plans, database, watch, gate.journal)
-        relays = None if cluster is None else _relays(settings, cluster, fleet, handlers, watch)
+        relays = None if cluster is None else _relays(settings, cluster, fleet, handlers, watch, plans)
         answering = handlers if relays is None else relays.requests
         queries = SiteQueries(maps, handlers)
         gateway = Gateway(fleet, gate, links, answering, FieldPage(maps), queries, tls)
@@ -395,7 +400,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         started(address)
         works = {**gateway.works(address), "site": watch.run, **holding}
         if relays is None:
-            works["plans"] = lambda: every(PLANS_INTERVAL, plans.watch, "plans", fleet.tally)
+            works["plans"] = lambda: every(PLANS_INTERVAL, plans.follow, "plans", fleet.tally)
         else:
             works = relays.works(works, fleet.tally)
         if (copy := settings.site_copy) is not None:
@@ -428,12 +433,17 @@ async def _hold_database(
 
 
 def _relays(
-    settings: GatewaySettings, cluster: Cluster, fleet: Fleet, handlers: RequestHandlers, sites: SiteWatch
+    settings: GatewaySettings,
+    cluster: Cluster,
+    fleet: Fleet,
+    handlers: RequestHandlers,
+    sites: SiteWatch,
+    plans: PlanService,
 ) -> ClusterRelays:
     assert settings.cluster is not None
     stops_when_cut_off = settings.cluster.stops_when_cut_off
     return ClusterRelays(
-        cluster, fleet, handlers, cluster.lease, sites, stops_when_cut_off=stops_when_cut_off
+        cluster, fleet, handlers, cluster.lease, sites, plans, stops_when_cut_off=stops_when_cut_off
     )
 
 

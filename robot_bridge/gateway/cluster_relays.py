@@ -7,13 +7,13 @@ from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
 from .cluster.detail_relay import DetailRelay
-from .cluster.feeds import Followed, Follower, ObservationRelay, QueueFeed, StepFeed
+from .cluster.feeds import Followed, Follower, ObservationRelay, PlacementRelay, QueueFeed, StepFeed
 from .cluster.messages import Wake
 from .cluster.position_relay import PositionRelay
 from .cluster.request_relay import RequestRelay
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
-from .model.events import SiteChosen
+from .model.events import PlanChanged, SiteChosen
 from .model.request_handlers import Answering
 from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
@@ -38,6 +38,7 @@ class ClusterRelays:
         handlers: Answering,
         lease: Database,
         sites: Followed,
+        plans: Followed,
         *,
         stops_when_cut_off: bool,
     ) -> None:
@@ -52,12 +53,17 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
-        self._queues = QueueFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
+        self._queues = QueueFeed(
+            fleet.robots, fleet.queue_context.book, fleet.listeners, fleet.events, exchange, database
+        )
+        self._placements = PlacementRelay(fleet.listeners, fleet.events, exchange, database)
         self._observations = ObservationRelay(
             fleet.observations, fleet.listeners, fleet.events, exchange, database
         )
         self._sites = Follower("site", sites, exchange)
         fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
+        self._plans = Follower("plans", plans, exchange)
+        fleet.events.subscribe(PlanChanged, lambda _: self._plans.note_change())
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
 
@@ -81,6 +87,8 @@ class ClusterRelays:
             "details of others": self._details.run,
             "queues of others": self._queues.run,
             "observations of others": self._observations.run,
+            "placements of others": self._placements.run,
+            "plans": self._plans.run,
             "site of others": self._sites.run,
             "closures of others": lambda: every(
                 CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally

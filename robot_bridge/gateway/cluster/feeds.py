@@ -1,4 +1,4 @@
-"""Feeds of what is stored at other gateways: steps of commands, observations, queues.
+"""Feeds of what is stored at other gateways: steps of commands, observations, placed cones, queues.
 
 Each is looked up once a second, and at once when another gateway has changed it.
 """
@@ -6,23 +6,30 @@ Each is looked up once a second, and at once when another gateway has changed it
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterable
-from typing import Protocol
+from collections.abc import Iterable, Mapping
+from typing import Generic, Protocol, TypeVar
 
 import msgspec
 
 from ...core.errors import StoreError
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
-from ...core.messages.records import ObservationReport, ObservationState
-from ..model.events import CommandChanged, EventBus, Listeners, ObservationChanged, QueueReported
+from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
+from ..model.events import (
+    CommandChanged,
+    EventBus,
+    Listeners,
+    ObservationChanged,
+    PlacementChanged,
+    QueueEditedElsewhere,
+    QueueReported,
+)
 from ..model.robots import Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
 from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, queues, records
-from ..storage.repositories.records import ObservationChanges
-from .bus import EVERYBODY
+from .bus import EVERYBODY, own_subject
 from .exchange import Exchange
 from .messages import MOST_NAMED, QueuesChanged, Wake, WakeTopic
 
@@ -131,10 +138,73 @@ class StepFeed:
             self._follower.note_change()
 
 
-# --- Observations: drawn onto the maps of this gateway, and told to its operators ---
+# --- Records, of which the newest are told: those alone that have not been told here ---
 
 NEWEST = 200
-"""observations whose changes operators are told: of older ones those alone that are on the maps."""
+"""records whose changes operators are told: of older observations those alone that are on the maps."""
+Told = TypeVar("Told", ObservationReport, PlacementReport)
+
+
+class TellingOfRecords(Generic[Told]):
+    """Tells operators of those records that have changed by ``method``, unless they have heard of it."""
+
+    def __init__(self, method: str, listeners: Listeners) -> None:
+        self._method = method
+        self._listeners = listeners
+        self._versions: Mapping[int, str] | None = None
+        self._told: dict[int, Told] = {}
+        """what the operators of this gateway heard of the newest."""
+
+    def note(self, id: int, report: Told) -> None:
+        """Note that operators have been told of a record."""
+        self._told[id] = report
+
+    def changed(self, versions: Mapping[int, str]) -> list[int]:
+        """Return which records have changed since the last look, none of them at the first."""
+        before = self._versions
+        return [] if before is None else [id for id, is_now in versions.items() if before.get(id) != is_now]
+
+    def tell(self, reports: Mapping[int, Told], versions: Mapping[int, str]) -> None:
+        """Tell of what has changed, by id, and know the newest by their ``versions`` from then on."""
+        for id, report in reports.items():
+            if self._told.get(id) != report:
+                self._told[id] = report
+                self._listeners.announce(self._method, str(id), to_json(report))
+        self._told = {id: report for id, report in self._told.items() if id in versions}
+        self._versions = versions
+
+
+# --- Placed cones, told to the operators of this gateway ---
+
+
+class PlacementRelay:
+    """Follows which cones robots of other gateways put down and collect, and wakes others."""
+
+    def __init__(
+        self, listeners: Listeners, events: EventBus, exchange: Exchange, database: Database
+    ) -> None:
+        self._database = database
+        self._telling = TellingOfRecords[PlacementReport]("placement", listeners)
+        self._follower = Follower("placements", self, exchange)
+        events.subscribe(PlacementChanged, self._note)
+
+    async def run(self) -> None:
+        """Follow until cancelled; raises StoreError."""
+        await self._follower.run()
+
+    async def follow(self) -> None:
+        """Tell operators of the cones since the last look; raises StoreError."""
+        versions = await self._database.read(records.placement_changes, NEWEST)
+        changed = self._telling.changed(versions)
+        found = await self._database.read(records.find_placements, changed) if changed else []
+        self._telling.tell({report.placement: report for report in found}, versions)
+
+    def _note(self, changed: PlacementChanged) -> None:
+        self._telling.note(changed.report.placement, changed.report)
+        self._follower.note_change()
+
+
+# --- Observations: drawn onto the maps of this gateway, and told to its operators ---
 
 
 class ObservedMaps(Protocol):
@@ -156,11 +226,9 @@ class ObservationRelay:
         database: Database,
     ) -> None:
         self._maps = maps
-        self._listeners = listeners
         self._database = database
-        self._known: ObservationChanges | None = None
-        self._told: dict[int, ObservationReport] = {}
-        """what the operators of this gateway heard of the newest."""
+        self._on_map: tuple[int, int] | None = None
+        self._telling = TellingOfRecords[ObservationReport]("observation", listeners)
         self._reviewed_here = False
         """whether the maps may show what was reviewed here since the last look, and is otherwise by now."""
         self._follower = Follower("observations", self, exchange)
@@ -173,28 +241,20 @@ class ObservationRelay:
     async def follow(self) -> None:
         """Draw and tell what has changed since the last look; raises StoreError."""
         found = await self._database.read(records.changes, NEWEST)
-        before = self._known
-        if before is None or self._reviewed_here or found.on_map != before.on_map:
+        if self._reviewed_here or found.on_map != self._on_map:
             self._reviewed_here = False
             try:
                 await self._maps.redraw()
             except StoreError:
                 self._reviewed_here = True
                 raise
-        if before is not None:
-            changed = [id for id, version in found.newest.items() if before.newest.get(id) != version]
-            for report in await self._database.read(records.find_each, changed) if changed else []:
-                self._tell(report)
-        self._told = {id: report for id, report in self._told.items() if id in found.newest}
-        self._known = found
-
-    def _tell(self, report: ObservationReport) -> None:
-        if self._told.get(report.observation) != report:
-            self._told[report.observation] = report
-            self._listeners.announce("observation", str(report.observation), to_json(report))
+        self._on_map = found.on_map
+        changed = self._telling.changed(found.newest)
+        reports = await self._database.read(records.find_each, changed) if changed else []
+        self._telling.tell({report.observation: report for report in reports}, found.newest)
 
     def _note(self, changed: ObservationChanged) -> None:
-        self._told[changed.report.observation] = changed.report
+        self._telling.note(changed.report.observation, changed.report)
         self._reviewed_here |= changed.report.state is not ObservationState.PENDING
         self._follower.note_change()
 
@@ -205,16 +265,34 @@ TELL_S = 0.05
 """seconds for which changes wait for one another before others are told of them, and before they are read."""
 
 
+class OwnQueues(Protocol):
+    """The queues that this gateway works on."""
+
+    def get(self, robot: str) -> Queue:
+        """Return a robot's queue as it was stored last."""
+
+    def doubt(self, robot: str) -> None:
+        """Read a robot's queue from the database before it is used again."""
+
+
 class QueueFeed:
     """Tells other gateways which queues have changed here, and operators here of those that changed there.
 
-    The robots are named over the bus, and their queues read: a queue may be larger than a message.
+    The robots are named over the bus, and their queues read: a queue may be larger than a message. Queues of
+    this gateway that another one has edited are read before they are used again.
     """
 
     def __init__(
-        self, robots: Robots, listeners: Listeners, events: EventBus, exchange: Exchange, database: Database
+        self,
+        robots: Robots,
+        own: OwnQueues,
+        listeners: Listeners,
+        events: EventBus,
+        exchange: Exchange,
+        database: Database,
     ) -> None:
         self._robots = robots
+        self._own = own
         self._listeners = listeners
         self._exchange = exchange
         self._database = database
@@ -226,6 +304,7 @@ class QueueFeed:
         self._told: dict[str, tuple[int, str]] = {}
         """a hash of what operators were told of each queue, and the state of its robot in that."""
         events.subscribe(QueueReported, self._note)
+        events.subscribe(QueueEditedElsewhere, self._call_owner)
         exchange.subscribe(QueuesChanged, self._hear)
 
     async def run(self) -> None:
@@ -246,6 +325,10 @@ class QueueFeed:
 
     async def find_changes(self) -> None:
         """Find the queues that have changed since the last look, whoever told of that; raises StoreError."""
+        mine = await self._database.read(queues.revisions_of, self._exchange.gateway)
+        for robot, revision in mine.items():
+            if self._is_here(robot) and self._own.get(robot).revision != revision:
+                self._own.doubt(robot)
         found = await self._database.read(queues.versions_elsewhere, self._exchange.gateway)
         before, self._versions = self._versions, found
         if before is not None:
@@ -281,11 +364,27 @@ class QueueFeed:
             self._told[queue.robot] = told
             self._listeners.announce("queue", queue.robot, report)
 
+    def _is_here(self, robot: str) -> bool:
+        return robot in self._robots and not self._is_elsewhere(robot)
+
     def _is_elsewhere(self, robot: str) -> bool:
         return self._robots.gateway_of(robot) is not None
 
     def _hear(self, changed: QueuesChanged) -> None:
-        self._named.update(changed.robots)
+        for robot in changed.robots:
+            if self._is_here(robot):
+                self._own.doubt(robot)
+            else:
+                self._named.add(robot)
+        self._is_named.set()
+
+    def _call_owner(self, edited: QueueEditedElsewhere) -> None:
+        gateway = self._robots.gateway_of(edited.robot)
+        if gateway is not None:
+            self._exchange.send(own_subject(gateway), QueuesChanged(self._exchange.gateway, [edited.robot]))
+            # An Abort may have been asked with it.
+            self._exchange.wake("requests", gateway)
+        self._named.add(edited.robot)
         self._is_named.set()
 
     def _note(self, reported: QueueReported) -> None:

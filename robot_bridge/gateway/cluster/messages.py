@@ -61,7 +61,9 @@ class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
-WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site", "observations"]
+WakeTopic = Literal[
+    "requests", "answers", "owners", "steps", "stops", "site", "observations", "placements", "plans"
+]
 """What another gateway had better look at."""
 
 
@@ -137,7 +139,7 @@ class DetailBatch(BusMessage, frozen=True, tag="details"):
 
 
 class QueuesChanged(BusMessage, frozen=True, tag="queues"):
-    """Queues of robots of the gateway have changed; that is stored."""
+    """Queues of robots have changed at the gateway, which has them or edited them; that is stored."""
 
     robots: Names
 

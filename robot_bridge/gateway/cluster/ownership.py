@@ -7,14 +7,15 @@ import logging
 import math
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from sqlalchemy import Connection
 
 from ...core.errors import StoreError, listed_names
+from ...core.messages.operator_requests import DeskRequest
 from ..storage.database import Database, to_its_end
 from ..storage.owner_fence import FencedError
-from ..storage.repositories import gateways
+from ..storage.repositories import gateways, relayed
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories.gateways import Claimed, Owner
 from .leases import OwnedRobots
@@ -86,6 +87,13 @@ class Ownership:
         if gateways.present(connection, self._membership.me) == len(stored):
             return set()
         return set(stored).difference(stored_robots.names(connection))
+
+    def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:
+        """Have the gateway that has a robot do a request once this transaction is committed.
+
+        Whoever has it by then: the one that had it may have died. Nobody collects the answer.
+        """
+        relayed.add(connection, [relayed.NewRequest.of(robot, request)], operator, self._membership.name)
 
     # --- claims -----------------------------------------------------------------------------------------
 

@@ -40,7 +40,6 @@ from ...core.messages.commands import (
 )
 from ...core.messages.json_values import to_json
 from ...core.messages.operator_requests import DeskRequest
-from ...core.messages.plans import SubmitPlan
 from ...core.messages.queues import (
     AddTasks,
     GetQueue,
@@ -51,6 +50,7 @@ from ...core.messages.queues import (
     RemoveTask,
     ResumeQueue,
     SetQueue,
+    TakeOver,
 )
 from ...core.messages.robots import Abort
 from ...core.messages.validation import MessageError
@@ -214,11 +214,8 @@ class RequestRelay:
 
     def _refuse_others(self, request: DeskRequest[Any]) -> None:
         """Raise RefusedError for what is not done across gateways yet."""
-        if isinstance(request, SubmitPlan):
-            raise RefusedError(
-                "submit_plan: a plan is driven where one gateway serves the fleet; with several it is not "
-                "yet: give the robots tasks of their queues"
-            )
+        if isinstance(request, TakeOver):
+            return
         robots = [getattr(request, name, None) for name in ("robot", "other")]
         owners = {
             r: g for r in robots if isinstance(r, str) and (g := self._robots.gateway_of(r)) is not None
@@ -258,10 +255,7 @@ class RequestRelay:
         return self._exchange.send(STOP, AbortCall(self._exchange.gateway, robot, call_id))
 
     async def _ask(self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str) -> list[str]:
-        rows = [
-            NewRequest(robot, request.method, msgspec.json.encode(to_json(request)).decode())
-            for robot, request in requests
-        ]
+        rows = [NewRequest.of(robot, request) for robot, request in requests]
         ids = await self._database.run(relayed.add, rows, operator, self._membership.name)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)

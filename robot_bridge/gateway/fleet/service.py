@@ -108,7 +108,7 @@ class Fleet:
         self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()
         self.queue_context = QueueContext(
-            site, self.robots, self._book, self._queue_book, database, clock, waiting, planner
+            site, self.robots, self._book, self._queue_book, database, clock, waiting, planner, fence
         )
         self.queues = QueueEditor(self.queue_context)
         self.driving = QueueRunner(self.queue_context)
@@ -197,6 +197,7 @@ class Fleet:
         subscribe(events.QueueChanged, lambda event: self.driving.schedule(event.robot))
         subscribe(events.RobotReturned, lambda event: self.driving.note_return(event.robot, event.away_s))
         subscribe(events.ObservationChanged, self._announce_observation)
+        subscribe(events.PlacementChanged, self._announce_placement)
 
     def _assign(self, event: events.CommandChanged) -> None:
         robot = event.report.robot
@@ -208,6 +209,9 @@ class Fleet:
 
     def _announce_observation(self, event: events.ObservationChanged) -> None:
         self.listeners.announce("observation", str(event.report.observation), to_json(event.report))
+
+    def _announce_placement(self, event: events.PlacementChanged) -> None:
+        self.listeners.announce("placement", str(event.report.placement), to_json(event.report))
 
     @property
     def database(self) -> Database:

@@ -9,7 +9,7 @@ from typing import Any, Protocol, TypeVar
 
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport
-from ...core.messages.records import ObservationReport
+from ...core.messages.records import ObservationReport, PlacementReport
 
 log = logging.getLogger(__name__)
 
@@ -47,6 +47,26 @@ class ObservationChanged:
 
 
 @dataclass(frozen=True)
+class PlacementChanged:
+    """A cone was put down or collected; that is stored."""
+
+    report: PlacementReport
+
+    def __str__(self) -> str:
+        return f"placed cone {self.report.placement}"
+
+
+@dataclass(frozen=True)
+class PlanChanged:
+    """A plan was submitted, or is at another revision; that is stored."""
+
+    plan: str
+
+    def __str__(self) -> str:
+        return f"plan {self.plan}"
+
+
+@dataclass(frozen=True)
 class QueueChanged:
     """A robot's queue may have something to send."""
 
@@ -64,6 +84,16 @@ class QueueReported:
 
     def __str__(self) -> str:
         return f"the report of the queue of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
+class QueueEditedElsewhere:
+    """The queue of a robot that another gateway has was edited here; that is stored."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the queue of robot {self.robot!r} at another gateway"
 
 
 @dataclass(frozen=True)

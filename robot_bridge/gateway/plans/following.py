@@ -1,23 +1,25 @@
 """Plans that are followed: what queues, robots, roads and the database say of each; changes are stored first.
 
 What became of a plan's tasks is seen from the queues and from what is stored, never from what was heard: a
-gateway that was killed goes on with every plan where it stopped.
+gateway that was killed, or another one, goes on with every plan where it stopped.
 """
 
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections.abc import Iterable
 from typing import Any
 
 from ...core.assignment.plan import ConePlan
 from ...core.assignment.progress import ClosedWay, SentStop, committed_stops, problem_of
-from ...core.errors import OutdatedError, RefusedError
+from ...core.errors import OutdatedError, RefusedError, StoreError
+from ...core.logs import log_and_continue
 from ...core.messages.json_values import to_json
 from ...core.messages.plans import PlanReport, PlanState
 from ...core.messages.queues import QueueState, TaskState
 from ...core.messages.records import GetPlacements
-from ..model.events import Listeners
+from ..model.events import EventBus, Listeners, PlanChanged
 from ..model.robots import AWAY
 from ..model.task_queue import ENDS as TASK_ENDS
 from ..model.task_queue import Queue, queue_report, task_report
@@ -26,21 +28,32 @@ from ..storage.repositories import queues, records
 from ..traffic.closures import ClosureService
 from ..traffic.road_planning import RoadPlanner
 from .model import ENDS, DrivenPlan, FollowedPlan, progress_from, ways_along_closed_roads
-from .persistence import find_plan, load_stops, newest_ended_plans, save_plan
+from .persistence import find_plan, load_stops, newest_ended_plans, open_revisions, save_plan
+
+log = logging.getLogger(__name__)
 
 MOST_PLACED = 5000
 
 
 class FollowedPlans:
-    """The plans that robots drive, by name; whoever changes one holds :attr:`lock`."""
+    """The plans that robots drive, by name; whoever changes one holds :attr:`lock`.
 
-    def __init__(self, context: QueueContext, closures: ClosureService, listeners: Listeners) -> None:
+    Other gateways may change them, too: :meth:`take_up` learns of that, and what is stored of one that was
+    changed since is refused with PlanMovedError. PlanChanged is published for what is stored here.
+    """
+
+    def __init__(
+        self, context: QueueContext, closures: ClosureService, listeners: Listeners, events: EventBus
+    ) -> None:
         self.lock = asyncio.Lock()
         self.planner = context.planner if isinstance(context.planner, RoadPlanner) else None
         self._context = context
         self._closures = closures
         self._listeners = listeners
+        self._events = events
         self._plans: dict[str, FollowedPlan] = {}
+        self._revisions: dict[str, int] = {}
+        """the revision of each plan that is driven as it was read or stored last."""
 
     def __len__(self) -> int:
         return len(self._plans)
@@ -50,15 +63,36 @@ class FollowedPlans:
 
     def all(self) -> list[FollowedPlan]:
         """Return the plans that are driven, oldest first."""
-        return list(self._plans.values())
+        return sorted(self._plans.values(), key=lambda one: one.plan.submitted_at)
 
-    async def restore(self, plan: DrivenPlan) -> FollowedPlan:
-        """Follow a plan that an earlier gateway left."""
-        return await self.add(plan, await self._context.database.run(load_stops, plan.name))
+    async def take_up(self) -> None:
+        """Take in what an earlier gateway, or others, submitted, changed and ended; raises StoreError."""
+        stored = await self._context.database.read(open_revisions)
+        for name in [*stored, *(self._plans.keys() - stored.keys())]:
+            if self._revisions.get(name) != stored.get(name):
+                with log_and_continue(log, f"plan {name}", except_for=StoreError):
+                    await self._read(name)
+        self._revisions = stored
+
+    async def _read(self, name: str) -> None:
+        plan = await self._context.database.read(find_plan, name)
+        before = self._plans.pop(name, None)
+        if plan is None:
+            return
+        if plan.state in ENDS:
+            if before is not None:
+                self.announce(await self._recalled(plan))
+            return
+        one = await self.add(plan, await self._context.database.read(load_stops, name))
+        if before is not None:
+            is_anew = plan.state is PlanState.REPLANNING is not before.plan.state
+            one.seen_to = one.problem if is_anew else before.seen_to
+        self.announce(one)
 
     async def add(self, plan: DrivenPlan, stops: Iterable[SentStop]) -> FollowedPlan:
         """Follow a plan whose ``stops`` are in queues."""
         one = self._plans[plan.name] = FollowedPlan(plan, progress_from(plan, stops))
+        self._revisions[plan.name] = plan.revision
         await self.follow(one)
         return one
 
@@ -72,11 +106,14 @@ class FollowedPlans:
         """Return a plan as :meth:`get`; raises OutdatedError where it is at another revision."""
         one = self.get(name)
         if revision != one.plan.revision:
-            raise OutdatedError(
-                f"plan {name!r} is at revision {one.plan.revision}, not {revision}; look at it again",
-                to_json(one.report()),
+            raise self.outdated(
+                name, f"plan {name!r} is at revision {one.plan.revision}, not {revision}; look at it again"
             )
         return one
+
+    def outdated(self, name: str, text: str) -> OutdatedError:
+        """Return the refusal of a change, with the plan as it is."""
+        return OutdatedError(text, to_json(self.get(name).report()))
 
     async def find(self, name: str) -> FollowedPlan | None:
         """Return a plan that is driven or has ended, None where there was none."""
@@ -96,9 +133,17 @@ class FollowedPlans:
         """Store a plan in another state, and tell it; raises StoreError."""
         after = one.plan.changed(state, by, self._context.clock.time(), reason, **more)
         await self._context.database.run(save_plan, after)
+        return self.accept(one, after)
+
+    def accept(self, one: FollowedPlan, after: DrivenPlan) -> PlanReport:
+        """Take over a plan that is stored as ``after``, and tell it."""
         one.plan = after
-        if state in ENDS:
+        if after.state in ENDS:
             self._plans.pop(after.name, None)
+            self._revisions.pop(after.name, None)
+        else:
+            self._revisions[after.name] = after.revision
+        self._events.publish(PlanChanged(after.name))
         return self.announce(one)
 
     def announce(self, one: FollowedPlan) -> PlanReport:
@@ -111,6 +156,7 @@ class FollowedPlans:
 
     async def follow(self, one: FollowedPlan) -> bool:
         """Take in how the plan's queues, robots and roads are; false when nothing has changed."""
+        await self._context.book.look_elsewhere(one.plan.staying)
         closed = None if self.planner is None else self.planner.closed
         present = [robot for robot in one.plan.staying if robot in self._context.robots]
         seen = [(robot, self.queue(robot), self._context.robots.get(robot).state) for robot in present]

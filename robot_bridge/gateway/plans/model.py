@@ -90,7 +90,12 @@ def plan_in(request: SubmitPlan) -> ConePlan:
 
 @dataclass(frozen=True)
 class DrivenPlan:
-    """A plan as it is stored. ``held`` robots wait for a plan of what is left, paused since that time (s)."""
+    """A plan as it is stored. ``held`` robots wait for a plan of what is left, paused since that time (s).
+
+    That one is made so that cones that failed are tried by somebody again, if ``try_again``. By a
+    ``proposal`` robots come too near to one another ``meetings`` times, and ``closed`` ways of it lead along
+    closed roads.
+    """
 
     name: str
     document: ConePlan
@@ -106,6 +111,9 @@ class DrivenPlan:
     by: str | None = None
     at: float | None = None
     ended_at: float | None = None
+    try_again: bool = False
+    meetings: int | None = None
+    closed: int | None = None
 
     @property
     def staying(self) -> list[str]:
@@ -188,13 +196,7 @@ def problem_in_words(problem: PlanProblem) -> str:
 
 
 def plan_report(
-    plan: DrivenPlan,
-    progress: PlanProgress,
-    problem: PlanProblem,
-    *,
-    meetings: int | None = None,
-    closed: int | None = None,
-    documents: bool = False,
+    plan: DrivenPlan, progress: PlanProgress, problem: PlanProblem, *, documents: bool = False
 ) -> PlanReport:
     """Return the report of a plan for operators."""
     shown = plan.document
@@ -217,8 +219,8 @@ def plan_report(
         by=plan.by,
         at=plan.at,
         ended_at=plan.ended_at,
-        meetings=meetings,
-        closed=closed,
+        meetings=None if proposal is None else plan.meetings,
+        closed=None if proposal is None else plan.closed,
         document=document_of(shown) if documents else None,
         proposal=document_of(proposal) if documents and proposal is not None else None,
     )
@@ -257,22 +259,10 @@ class FollowedPlan:
     seen: Any = None
     ended: set[str] = field(default_factory=set)
     """the tasks that are known to be at their ends, from the database."""
-    meetings: int | None = None
-    """how often robots come too near to one another by the proposal."""
-    closed: int | None = None
-    """the ways of the proposal that lead along closed roads."""
 
     def report(self, *, documents: bool = False) -> PlanReport:
         """Return the report for operators, with the plan itself and its proposal if ``documents``."""
-        proposed = self.plan.proposal is not None
-        return plan_report(
-            self.plan,
-            self.progress,
-            self.problem,
-            meetings=self.meetings if proposed else None,
-            closed=self.closed if proposed else None,
-            documents=documents,
-        )
+        return plan_report(self.plan, self.progress, self.problem, documents=documents)
 
 
 def ways_along_closed_roads(

@@ -11,7 +11,7 @@ from sqlalchemy import Connection, delete, insert, select, update
 
 from ...core.assignment.plan import ConePlan, plan_from_json, plan_to_json, stop_document, stop_of_document
 from ...core.assignment.progress import ConeFacts, SentStop
-from ...core.errors import PlanFileError
+from ...core.errors import PlanFileError, RefusedError
 from ...core.json_decoder import DOCUMENT, decode_json
 from ...core.messages.plans import PlanState
 from ..storage.rows import readable
@@ -21,10 +21,15 @@ from .model import ENDS, DrivenPlan, PlanTerms
 _ENDED = [state.value for state in ENDS]
 
 
-def load_open(connection: Connection) -> list[DrivenPlan]:
-    """Return the plans that are driven, oldest first."""
-    query = select(plans).where(plans.c.state.not_in(_ENDED)).order_by(plans.c.submitted_at)
-    return _read(connection, query)
+class PlanMovedError(RefusedError):
+    """A plan is not stored as it was taken for: another gateway has changed it. Nothing is written."""
+
+
+def open_revisions(connection: Connection) -> dict[str, int]:
+    """Return at which revision each plan is that is driven, the oldest plan first."""
+    c = plans.c
+    query = select(c.name, c.revision).where(c.state.not_in(_ENDED)).order_by(c.submitted_at)
+    return dict(connection.execute(query).all())
 
 
 def find_plan(connection: Connection, name: str) -> DrivenPlan | None:
@@ -51,8 +56,13 @@ def save_plan(
     gone: Sequence[str] = (),
     place: int = 0,
 ) -> None:
-    """Write a plan, its ``new`` stops from ``place`` on, and delete those of the tasks that are ``gone``."""
-    found = connection.scalar(select(plans.c.name).where(plans.c.name == plan.name))
+    """Write a plan, its ``new`` stops from ``place`` on, and delete those of the tasks that are ``gone``.
+
+    :raises PlanMovedError: when what is stored is not the revision before: nothing may be written then.
+    """
+    found = connection.scalar(select(plans.c.revision).where(plans.c.name == plan.name).with_for_update())
+    if found != (plan.revision - 1 or None):
+        raise PlanMovedError(f"plan {plan.name!r} was changed meanwhile; look at it again")
     if found is None:
         connection.execute(insert(plans).values(name=plan.name, **_row(plan)))
     else:
@@ -94,6 +104,9 @@ def _row(plan: DrivenPlan) -> dict[str, Any]:
         "by": plan.by,
         "at": plan.at,
         "ended_at": plan.ended_at,
+        "try_again": int(plan.try_again),
+        "meetings": plan.meetings,
+        "closed": plan.closed,
     }
 
 
@@ -123,6 +136,9 @@ def _plan(row: Any) -> DrivenPlan:
         by=row["by"],
         at=row["at"],
         ended_at=row["ended_at"],
+        try_again=bool(row["try_again"]),
+        meetings=row["meetings"],
+        closed=row["closed"],
     )
 
 

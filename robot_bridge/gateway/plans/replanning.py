@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
 import threading
 import time
@@ -19,13 +20,19 @@ from ...core.assignment.plan import ConePlan, PlanSituation
 from ...core.assignment.plan_changes import replan
 from ...core.assignment.progress import current_stops, situation_of, standing_cones, tasks_of
 from ...core.assignment.solver import Objective
-from ...core.errors import AssignmentCancelledError, AssignmentError, RefusedError, RoadsError, StoreError
+from ...core.errors import (
+    AssignmentCancelledError,
+    AssignmentError,
+    OutdatedError,
+    RefusedError,
+    RoadsError,
+    StoreError,
+)
 from ...core.logs import log_unforeseen
 from ...core.messages.plans import MOST_CONES, PlanReport, PlanState
-from ...core.messages.queues import PauseQueue
 from ...core.messages.validation import MessageError
 from ..commands.active_command import GATEWAY
-from ..queues.registry import QueueContext
+from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.road_planning import RoadPlanner
 from . import model
@@ -114,6 +121,13 @@ class Stops(Protocol):
         """Whether it is."""
 
 
+class _Making(NamedTuple):
+    """What is being planned of what is left of a plan, as that was at ``revision``."""
+
+    planning: Replanning
+    revision: int
+
+
 class _Proposal(NamedTuple):
     """A plan of what is left, where its robots come too near to one another, and its ways on closed roads."""
 
@@ -132,14 +146,21 @@ class Replanner:
         self._editor = editor
         self._plans = plans
         self._stops = stops
-        self._making: dict[str, Replanning] = {}
+        self._making: dict[str, _Making] = {}
         self._tasks: set[asyncio.Task[None]] = set()
 
     async def hold(self, one: model.FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
-        """Hold the robots of a plan and begin to plan what is left.
+        """Hold the robots of a plan, to have what is left planned by the gateway that leads.
 
         :raises RefusedError: when that is under way, or no robot is left; StoreError.
         """
+        for _ in range(TRIES - 1):
+            with contextlib.suppress(OutdatedError):
+                return await self._hold(one, operator, try_again=try_again)
+        return await self._hold(one, operator, try_again=try_again)
+
+    async def _hold(self, one: model.FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
+        await self._plans.follow(one)
         plan = one.plan
         if plan.state is PlanState.REPLANNING:
             raise RefusedError(f"plan {plan.name!r} is being planned again already")
@@ -149,52 +170,72 @@ class Replanner:
                 f"no robot of plan {plan.name!r} is left to take over; connect one, and plan anew"
             )
         why = "plan of what is left" + (f": {model.problem_in_words(one.problem)}" if one.problem else "")
+        now = self._context.clock.time()
         held = {robot: at for robot, at in plan.held.items() if robot in self._plans.still_held(plan)}
-        for robot in staying:
-            if self._plans.queue(robot).running or self._plans.has_failed(robot):
-                report = await self._editor.pause(
-                    PauseQueue(robot, why[: model.LONGEST_PAUSE_REASON]), operator
-                )
-                held[robot] = report.at
-        # Up to its pause a robot may have begun a cone: it is to be counted as that robot's.
-        await self._plans.follow(one)
+        seen = {
+            robot: queue
+            for robot in staying
+            if (queue := self._plans.queue(robot)).running or self._plans.has_failed(robot)
+        }
+        held |= {robot: now if queue.running else queue.at for robot, queue in seen.items()}
+        after = plan.changed(
+            PlanState.REPLANNING, operator, now, why, proposal=None, held=held, try_again=try_again
+        )
+        entries = QueueEntries(
+            dict.fromkeys(seen),
+            seen=seen,
+            paused=list(seen),
+            reason=why[: model.LONGEST_PAUSE_REASON],
+            at=now,
+        )
+        await self._editor.enter(entries, operator, partial(save_plan, plan=after))
         one.seen_to = one.problem
-        begun = await self._plans.change(one, PlanState.REPLANNING, operator, why, proposal=None, held=held)
-        self.begin(one, try_again=try_again)
-        return begun
+        self._plans.accept(one, after)
+        await self._plans.follow(one)
+        return self._plans.announce(one)
 
-    def begin(self, one: model.FollowedPlan, *, try_again: bool) -> None:
-        """Begin to plan what is left of a plan that is stored as being planned again."""
+    def begin(self, one: model.FollowedPlan) -> None:
+        """Begin to plan what is left of a plan that is stored as being planned again, unless it has begun."""
         plan, robots = one.plan, self._context.robots
+        if plan.name in self._making:
+            if self._making[plan.name].revision == plan.revision:
+                return
+            self.cancel(plan.name)
         places = {
             name: (pose.x, pose.y)
-            for name in robots.commanded()
+            for name in [*robots.commanded(), *robots.commanded_elsewhere()]
             if (pose := robots.get(name).pose) is not None
         }
         drive = set(plan.staying) - set(one.problem.away)
         standing = {name: place for name, place in places.items() if name not in drive}
         now = self._context.clock.time()
-        situation = situation_of(plan.document, one.progress, places, one.problem, now, try_again=try_again)
+        situation = situation_of(
+            plan.document, one.progress, places, one.problem, now, try_again=plan.try_again
+        )
         ground = ReplanGround(plan.terms, standing_cones(one.progress), standing, self._plans.planner)
-        making = self._making[plan.name] = Replanning(plan.document, ground, situation)
-        task = asyncio.create_task(self._make(one, making, ground))
+        making = _Making(Replanning(plan.document, ground, situation), plan.revision)
+        self._making[plan.name] = making
+        task = asyncio.create_task(self._make(plan.name, making, ground))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
     def cancel(self, plan: str) -> None:
-        """Have the planning of what is left of a plan end soon."""
-        if plan in self._making:
-            self._making[plan].cancel()
-
-    def forget(self, plan: str) -> None:
-        """Let nothing come of the plan of what is left that is in the making."""
-        self._making.pop(plan, None)
+        """Let nothing come of what is being planned of what is left of a plan, and have that end soon."""
+        if (making := self._making.pop(plan, None)) is not None:
+            making.planning.cancel()
 
     async def confirm(self, one: model.FollowedPlan, operator: str, override: str | None) -> PlanReport:
         """Enter the tasks of the proposed plan in place of what is left.
 
         :raises RefusedError: where there is no proposal, or its tasks cannot be entered; StoreError.
         """
+        for _ in range(TRIES - 1):
+            with contextlib.suppress(OutdatedError):
+                return await self._confirm(one, operator, override)
+        return await self._confirm(one, operator, override)
+
+    async def _confirm(self, one: model.FollowedPlan, operator: str, override: str | None) -> PlanReport:
+        await self._plans.follow(one)
         plan, progress = one.plan, one.progress
         proposal = model.check_proposal(plan, progress)
         tasks = tasks_of(proposal, plan.name, plan.terms.cones, under_way=current_stops(progress))
@@ -209,12 +250,14 @@ class Replanner:
             proposal=None,
             held={},
         )
+        away = [robot for robot in away if robot in self._context.robots]
         entries = QueueEntries(
             tasks,
+            # What a robot has begun or done since is not given to another one.
+            seen={robot: self._plans.queue(robot) for robot in (*tasks, *away)},
             resumed=self._plans.still_held(plan),
-            away=[robot for robot in away if robot in self._context.robots],
+            away=away,
             withdrawn={task for task in gone if progress.stops[task].robot in away},
-            not_begun={task for task in gone if progress.stops[task].robot not in away},
             reason="its robot is lost",
             override=override,
         )
@@ -223,59 +266,64 @@ class Replanner:
         await self._editor.enter(entries, operator, also)
         progress.forget(gone)
         progress.sent(stops)
-        one.plan, one.seen = after, None
+        one.seen = None
+        self._plans.accept(one, after)
         await self._plans.follow(one)
         return self._plans.announce(one)
 
     async def finish(self) -> None:
         """Wait for what is being planned, after it was cancelled: the gateway ends."""
-        for making in self._making.values():
-            making.cancel()
         # It stays stored as being planned again: the next gateway begins that again.
-        self._making.clear()
+        for plan in list(self._making):
+            self.cancel(plan)
         await asyncio.gather(*self._tasks, return_exceptions=True)
 
-    async def _make(self, one: model.FollowedPlan, making: Replanning, ground: ReplanGround) -> None:
+    async def _make(self, plan: str, making: _Making, ground: ReplanGround) -> None:
         try:
-            document = await asyncio.to_thread(making.run)
+            document = await asyncio.to_thread(making.planning.run)
             meetings = await asyncio.to_thread(count_meetings, document, ground)
             closed = len(await self._plans.closed_ways(document))
         except (AssignmentError, RoadsError, RefusedError) as error:
-            await self._made(one, making, None, str(error))
+            await self._made(plan, making, None, str(error))
         except Exception:
             # Else the robots would stay held, and nobody would hear why.
-            log_unforeseen(log, f"plan of what is left of {one.plan.name}")
-            await self._made(one, making, None, "it could not be planned; see the gateway's log")
+            log_unforeseen(log, f"plan of what is left of {plan}")
+            await self._made(plan, making, None, "it could not be planned; see the gateway's log")
         else:
-            await self._made(one, making, _Proposal(document, meetings, closed), None)
+            await self._made(plan, making, _Proposal(document, meetings, closed), None)
 
-    async def _made(
-        self, one: model.FollowedPlan, making: Replanning, proposal: _Proposal | None, why: str | None
-    ) -> None:
+    async def _made(self, plan: str, making: _Making, proposal: _Proposal | None, why: str | None) -> None:
         try:
             async with self._plans.lock:
-                if self._making.get(one.plan.name) is not making:
+                if self._making.get(plan) is not making:
                     return
-                self.forget(one.plan.name)
-                if one.plan.state is not PlanState.REPLANNING:
+                await self._plans.take_up()
+                del self._making[plan]
+                one = self._plans.get(plan)
+                if one.plan.revision != making.revision:
                     return
                 if proposal is None:
                     reason = f"what is left could not be planned: {why}"
                     await self._plans.change(one, PlanState.PAUSED, GATEWAY, reason, held={})
                     return
                 await self._propose(one, proposal)
-        except StoreError as error:
-            # It is stored as being planned again: it is, when the gateway starts next, or somebody asks.
-            log.error("plan %s: %s", one.plan.name, error)
+        except (RefusedError, StoreError) as error:
+            # It is stored as being planned again, and is by whoever leads; or somebody has ended that.
+            self._making.pop(plan, None)
+            log.error("plan %s: %s", plan, error)
 
     async def _propose(self, one: model.FollowedPlan, proposal: _Proposal) -> None:
         """Store a proposal, and confirm it where that was chosen and nothing speaks against it."""
-        one.meetings, one.closed = proposal.meetings, proposal.closed
         await self._plans.change(
-            one, PlanState.PROPOSED, GATEWAY, one.plan.reason, proposal=proposal.document
+            one,
+            PlanState.PROPOSED,
+            GATEWAY,
+            one.plan.reason,
+            proposal=proposal.document,
+            meetings=proposal.meetings,
+            closed=proposal.closed,
         )
-        if one.plan.by_itself and not one.meetings and not one.closed and not self._stops.in_force:
-            await self._plans.follow(one)
+        if one.plan.by_itself and not proposal.meetings and not proposal.closed and not self._stops.in_force:
             try:
                 await self.confirm(one, GATEWAY, None)
             except (RefusedError, MessageError) as error:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import logging
-from collections.abc import Sequence
+from collections.abc import AsyncIterator, Sequence
 from functools import partial
+from typing import Protocol
 
 from ...core.assignment.plan import ConePlan
 from ...core.assignment.progress import tasks_of
-from ...core.errors import RefusedError, StoreError
+from ...core.errors import OutdatedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.plans import (
     ClearPlan,
@@ -26,14 +28,14 @@ from ...core.messages.plans import (
 )
 from ...core.messages.queues import PauseQueue
 from ..commands.active_command import GATEWAY
-from ..model.events import Listeners
+from ..model.events import EventBus, Listeners
 from ..model.request_handlers import handles
-from ..queues.registry import QueueContext
+from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.closures import ClosureService
 from .following import FollowedPlans, unknown_plan
 from .model import LONGEST_PAUSE_REASON, DrivenPlan, FollowedPlan, PlanTerms, plan_in, stops_of
-from .persistence import load_open, save_plan
+from .persistence import PlanMovedError, save_plan
 from .replanning import Replanner, Stops
 
 log = logging.getLogger(__name__)
@@ -42,8 +44,26 @@ MOST_PLANS = 50
 """plans that are driven at the same time."""
 
 
+class Leadership(Protocol):
+    """What knows whether this gateway does what is to be done once per database."""
+
+    @property
+    def leads(self) -> bool:
+        """Whether it does."""
+
+
+class SoleLeadership:
+    """That of a gateway that has its database alone."""
+
+    leads = True
+
+
 class PlanService:
-    """The plans that robots drive. Each method returns when what it changed is stored."""
+    """The plans that robots drive. Each method returns when what it changed is stored.
+
+    Operators may ask any gateway of the fleet. What plans do by themselves the one does that leads; whatever
+    it leaves when it dies another one finds stored, and goes on.
+    """
 
     def __init__(
         self,
@@ -52,21 +72,23 @@ class PlanService:
         closures: ClosureService,
         stops: Stops,
         listeners: Listeners,
+        events: EventBus,
+        leadership: Leadership | None = None,
     ) -> None:
         self._context = context
         self._editor = editor
         self._stops = stops
-        self._plans = FollowedPlans(context, closures, listeners)
+        self._leadership = leadership or SoleLeadership()
+        self._plans = FollowedPlans(context, closures, listeners, events)
         self._replanner = Replanner(context, editor, self._plans, stops)
         self._began = context.clock.steady()
 
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
-        for plan in await self._context.database.run(load_open):
-            with log_and_continue(log, f"plan {plan.name}", except_for=StoreError):
-                one = await self._plans.restore(plan)
-                if plan.state is PlanState.REPLANNING:
-                    self._replanner.begin(one, try_again=False)
+        async with self._plans.lock:
+            await self._plans.take_up()
+            for one in self._plans.all():
+                self._keep_planning(one)
 
     @handles(SubmitPlan)
     async def submit(self, request: SubmitPlan, operator: str) -> PlanReport:
@@ -77,6 +99,7 @@ class PlanService:
         """
         document = await asyncio.to_thread(plan_in, request)
         async with self._plans.lock:
+            await self._plans.take_up()
             if (known := await self._plans.find(request.plan)) is not None:
                 return known.report()
             self._check_no_emergency()
@@ -91,15 +114,24 @@ class PlanService:
             entries = QueueEntries(
                 {robot: theirs for robot, theirs in tasks.items() if theirs},
                 {robot: seen for robot, seen in request.revisions.items() if tasks.get(robot)},
-                [robot for robot, theirs in tasks.items() if theirs],
+                resumed=[robot for robot, theirs in tasks.items() if theirs],
                 override=request.override,
             )
-            await self._editor.enter(entries, operator, partial(save_plan, plan=plan, new=stops))
-            return self._plans.announce(await self._plans.add(plan, stops))
+            try:
+                await self._editor.enter(entries, operator, partial(save_plan, plan=plan, new=stops))
+            except (OutdatedError, PlanMovedError, StoreError):
+                # Asked at two gateways at once, one of them has entered it.
+                await self._plans.take_up()
+                if request.plan not in self._plans:
+                    raise
+                return self._plans.get(request.plan).report()
+            return self._plans.accept(await self._plans.add(plan, stops), plan)
 
     @handles(GetPlans)
     async def read(self, request: GetPlans) -> Plans:
         """Return plans as they are; raises RefusedError for one that is not known."""
+        async with self._plans.lock:
+            await self._plans.take_up()
         if request.plan is not None:
             one = await self._plans.find(request.plan)
             if one is None:
@@ -113,13 +145,22 @@ class PlanService:
     @handles(PausePlan)
     async def pause(self, request: PausePlan, operator: str) -> PlanReport:
         """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
+        if request.plan not in self._plans:
+            async with self._plans.lock:
+                await self._plans.take_up()
         one = self._plans.get(request.plan)
         why = f"plan {request.plan}" + (f": {request.reason}" if request.reason else "")
         for robot in one.plan.staying:
             if robot in self._context.robots:
                 await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
-        async with self._plans.lock:
-            one = self._plans.get(request.plan)
+        # To hold is never refused, whatever another gateway has made of the plan meanwhile.
+        for _ in range(TRIES - 1):
+            with contextlib.suppress(OutdatedError):
+                return await self._note_pause(request, operator)
+        return await self._note_pause(request, operator)
+
+    async def _note_pause(self, request: PausePlan, operator: str) -> PlanReport:
+        async with self._changing(request.plan) as one:
             self._replanner.cancel(request.plan)
             return await self._plans.change(
                 one, PlanState.PAUSED, operator, request.reason, proposal=None, held={}
@@ -128,8 +169,7 @@ class PlanService:
     @handles(ResumePlan)
     async def resume(self, request: ResumePlan, operator: str) -> PlanReport:
         """Let the robots go on that are paused."""
-        async with self._plans.lock:
-            one = self._plans.of_revision(request.plan, request.revision)
+        async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             if one.plan.state not in (PlanState.PAUSED, PlanState.DRIVEN):
                 raise RefusedError(
@@ -145,25 +185,23 @@ class PlanService:
     @handles(Replan)
     async def replan(self, request: Replan, operator: str) -> PlanReport:
         """Hold the robots and begin to plan what is left."""
-        async with self._plans.lock:
-            one = self._plans.of_revision(request.plan, request.revision)
+        async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
-            return await self._replanner.hold(one, operator, try_again=request.try_again)
+            report = await self._replanner.hold(one, operator, try_again=request.try_again)
+            self._keep_planning(one)
+            return report
 
     @handles(ConfirmReplan)
     async def confirm(self, request: ConfirmReplan, operator: str) -> PlanReport:
         """Enter the tasks of the proposed plan in place of what is left."""
-        async with self._plans.lock:
-            one = self._plans.of_revision(request.plan, request.revision)
+        async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
-            await self._plans.follow(one)
             return await self._replanner.confirm(one, operator, request.override)
 
     @handles(DiscardReplan)
     async def discard(self, request: DiscardReplan, operator: str) -> PlanReport:
         """Give up the plan of what is left; robots held for it go on."""
-        async with self._plans.lock:
-            one = self._plans.of_revision(request.plan, request.revision)
+        async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             if one.plan.state not in (PlanState.REPLANNING, PlanState.PROPOSED):
                 raise RefusedError(
@@ -176,21 +214,24 @@ class PlanService:
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
         """Follow a plan no more; its tasks stay in the queues."""
         async with self._plans.lock:
+            await self._plans.take_up()
             if request.plan not in self._plans and (known := await self._plans.find(request.plan)):
                 return known.report()
-            one = self._plans.get(request.plan)
+        async with self._changing(request.plan) as one:
             self._replanner.cancel(request.plan)
             await self._plans.follow(one)
             return await self._plans.change(one, PlanState.CLEARED, operator, None, proposal=None, held={})
 
-    async def watch(self) -> None:
+    async def follow(self) -> None:
         """Follow all plans; called twice a second. Raises StoreError."""
+        async with self._plans.lock:
+            await self._plans.take_up()
         for one in self._plans.all():
             # What nobody foresaw of one plan must not keep the others from being followed.
             with log_and_continue(log, f"plan {one.plan.name}", except_for=StoreError):
                 async with self._plans.lock:
                     if one.plan.name in self._plans:
-                        await self._look(one)
+                        await self._look(self._plans.get(one.plan.name))
 
     async def finish(self) -> None:
         """End what is being planned: the gateway ends."""
@@ -199,6 +240,16 @@ class PlanService:
     # --- following ------------------------------------------------------------------------------------
 
     async def _look(self, one: FollowedPlan) -> None:
+        if not self._leadership.leads:
+            self._replanner.cancel(one.plan.name)
+            if await self._plans.follow(one):
+                self._plans.announce(one)
+            return
+        with contextlib.suppress(PlanMovedError):
+            await self._carry_on(one)
+
+    async def _carry_on(self, one: FollowedPlan) -> None:
+        self._keep_planning(one)
         if self._stops.in_force and (one.plan.by_itself or one.plan.state is PlanState.DRIVEN):
             # Nothing goes on by itself after an emergency stop: somebody has to resume.
             state = PlanState.PAUSED if one.plan.state is PlanState.DRIVEN else one.plan.state
@@ -212,11 +263,22 @@ class PlanService:
             self._plans.announce(one)
         new = bool(one.problem) and one.problem != one.seen_to
         if plan.by_itself and plan.state is PlanState.DRIVEN and new and not self._is_settling():
-            one.seen_to = one.problem
+            before, one.seen_to = one.seen_to, one.problem
             try:
                 await self._replanner.hold(one, GATEWAY, try_again=False)
+                self._keep_planning(one)
+            except (OutdatedError, PlanMovedError):
+                # Its queues move all the time, or another gateway was first: it is looked at again.
+                one.seen_to = before
             except RefusedError as error:
                 await self._plans.change(one, PlanState.DRIVEN, GATEWAY, str(error))
+
+    def _keep_planning(self, one: FollowedPlan) -> None:
+        """Have what is left of a plan planned while it is stored as being planned, and only then."""
+        if self._leadership.leads and one.plan.state is PlanState.REPLANNING:
+            self._replanner.begin(one)
+        else:
+            self._replanner.cancel(one.plan.name)
 
     def _is_settling(self) -> bool:
         """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
@@ -224,14 +286,30 @@ class PlanService:
 
     # --- small parts ----------------------------------------------------------------------------------
 
+    @contextlib.asynccontextmanager
+    async def _changing(self, name: str, revision: int | None = None) -> AsyncIterator[FollowedPlan]:
+        """Hold a plan as it is stored, at a ``revision`` if one is given.
+
+        :raises OutdatedError: where it is at another one, or is changed at another gateway meanwhile;
+            RefusedError where it is not driven, and StoreError.
+        """
+        async with self._plans.lock:
+            await self._plans.take_up()
+            one = self._plans.get(name) if revision is None else self._plans.of_revision(name, revision)
+            await self._context.book.look_elsewhere(one.plan.staying)
+            try:
+                yield one
+            except PlanMovedError as error:
+                await self._plans.take_up()
+                raise self._plans.outdated(name, str(error)) from None
+
     async def _let_go_on(self, one: FollowedPlan, robots: Sequence[str], operator: str) -> PlanReport:
         now = self._context.clock.time()
         after = one.plan.changed(PlanState.DRIVEN, operator, now, None, proposal=None, held={})
         entries = QueueEntries(dict.fromkeys(robots), resumed=robots)
         await self._editor.enter(entries, operator, partial(save_plan, plan=after))
-        one.plan = after
-        self._replanner.forget(after.name)
-        return self._plans.announce(one)
+        self._replanner.cancel(after.name)
+        return self._plans.accept(one, after)
 
     def _check_no_emergency(self) -> None:
         if self._stops.in_force:

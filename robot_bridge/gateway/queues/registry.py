@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from collections.abc import AsyncIterator, Awaitable, Iterable, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine, Iterable, Sequence
 from dataclasses import dataclass, field
-from typing import TypeVar
+from functools import partial
+from typing import Any, TypeVar
+
+from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import OutdatedError
@@ -16,7 +19,14 @@ from ...core.messages.records import PlacementReport
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Planner, StraightPlanner
-from ..model.events import EventBus, Listeners, QueueChanged, QueueReported
+from ..model.events import (
+    EventBus,
+    Listeners,
+    PlacementChanged,
+    QueueChanged,
+    QueueEditedElsewhere,
+    QueueReported,
+)
 from ..model.robots import Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
 from ..site.places import ServedSite
@@ -28,12 +38,29 @@ from ..storage.repositories.queues import ChangedError
 # --- The queues of the fleet as they are stored; each change is stored before it is told ---
 
 T = TypeVar("T")
+TRIES, AGAIN_S = 5, 0.05
+"""how often what changes queues is begun, and seconds until it is begun again."""
+
+
+class QueueMovedError(OutdatedError):
+    """A queue was changed between the look at it and the change; nothing is stored."""
+
+
+async def again_if_moved(work: Callable[[], Coroutine[Any, Any, T]]) -> T:
+    """Return what ``work`` returns, begun again where a queue moved meanwhile; raises as that does."""
+    for _ in range(TRIES - 1):
+        with contextlib.suppress(QueueMovedError):
+            return await work()
+        await asyncio.sleep(AGAIN_S)
+    return await work()
 
 
 class QueueRegistry:
     """Holds every queue as it is stored; whoever changes one holds its lock.
 
-    QueueChanged is published for each robot whose queue may have something to send.
+    QueueChanged is published for each robot whose queue may have something to send. Queues whose robots other
+    gateways have are read when they are held, and change only if they are stored as they were read;
+    QueueEditedElsewhere is published then, for the gateway that works on them to read them again.
     """
 
     def __init__(
@@ -53,6 +80,9 @@ class QueueRegistry:
         self._ended: dict[str, list[QueuedTask]] = {}
         self._locks: dict[str, asyncio.Lock] = {}
         self._doubtful: set[str] = set()
+        self._elsewhere: dict[str, Queue] = {}
+        self._versions: dict[str, str] = {}
+        """what changes with a queue elsewhere, from before that was read last."""
 
     async def restore(self) -> None:
         """Take up the queues that an earlier gateway left."""
@@ -76,14 +106,44 @@ class QueueRegistry:
             self._queues.pop(robot, None)
             self._ended.pop(robot, None)
             self._doubtful.discard(robot)
+            self._elsewhere.pop(robot, None)
+            self._versions.pop(robot, None)
 
     def get(self, robot: str) -> Queue:
-        """Return a robot's queue as it was stored last; an empty one where there is none."""
-        return self._queues.get(robot) or Queue(robot)
+        """Return a robot's queue as it was stored last; an empty one where there is none.
+
+        One of another gateway is as it was when it was held here, or looked at by :meth:`look_elsewhere`.
+        """
+        known = self._elsewhere if self._is_elsewhere(robot) else self._queues
+        return known.get(robot) or Queue(robot)
 
     def names(self) -> list[str]:
         """Return the names of the robots that have a queue."""
         return sorted(name for name in self._queues if name in self._robots)
+
+    async def everywhere(self) -> list[Queue]:
+        """Return the queues of all robots, also of those that other gateways have; raises StoreError."""
+        own = [self.get(robot) for robot in self.names() if not self._is_elsewhere(robot)]
+        others = self._robots.commanded_elsewhere()
+        return [*own, *(await self._database.read(queues.load, others)).values()] if others else own
+
+    async def look_elsewhere(self, robots: Iterable[str]) -> None:
+        """Read the queues of those of some robots that other gateways have, where they have changed.
+
+        :raises StoreError: when that cannot be done.
+        """
+        names = sorted(robot for robot in robots if self._is_elsewhere(robot))
+        if not names:
+            return
+        versions = await self._database.read(queues.versions, names)
+        changed = [
+            robot
+            for robot in names
+            if robot not in self._elsewhere or versions.get(robot, "") != self._versions.get(robot)
+        ]
+        if changed:
+            await self._read_elsewhere(changed)
+            self._versions.update({robot: versions.get(robot, "") for robot in changed})
 
     def is_doubtful(self, robot: str) -> bool:
         """Tell whether a robot's queue may be stored otherwise than it is known here."""
@@ -102,17 +162,33 @@ class QueueRegistry:
                 await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
                 if robot in self._doubtful:
                     await self._read_again(robot)
+            others = [robot for robot in robots if self._is_elsewhere(robot)]
+            if others:
+                await self._read_elsewhere(others)
             yield
 
     async def save(self, before: Queue, after: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
         """Store what has changed in a queue, and tell it; raises as :meth:`stored`."""
-        await self.stored([after.robot], self._database.run(queues.save, before, after, ended))
+        writing = self._database.run(self.fenced([before], queues.save), before, after, ended)
+        await self.stored([after.robot], writing)
         return self.accept(after, ended)
+
+    def fenced(self, before: Sequence[Queue], write: Callable[..., T]) -> Callable[..., T]:
+        """Return ``write``, refused where queues are not as they are taken for ``before`` it.
+
+        Those of this gateway it has to have still, those of others have to be stored task by task as they
+        were read.
+        """
+        if self._fence is SOLE_FENCE:
+            return write
+        own = [queue.robot for queue in before if not self._is_elsewhere(queue.robot)]
+        others = [queue for queue in before if self._is_elsewhere(queue.robot)]
+        return partial(_fenced, self._fence, own, others, write)
 
     async def stored(self, robots: Sequence[str], writing: Awaitable[T]) -> T:
         """Await ``writing``; after a failure the queues are read again before they are used.
 
-        :raises OutdatedError: when one of the queues is not as it was taken for; nothing is written then.
+        :raises QueueMovedError: when one of the queues is not as it was taken for; nothing is written then.
         """
         try:
             return await writing
@@ -120,17 +196,21 @@ class QueueRegistry:
             self._doubtful.update(robots)
             for robot in robots:
                 await self._read_again(robot)
-            raise self.outdated(robots[0], str(error)) from None
+            raise QueueMovedError(str(error), self._newest(robots[0])) from None
         except BaseException:
             self._doubtful.update(robots)
             raise
 
     def outdated(self, robot: str, text: str) -> OutdatedError:
         """Return the refusal of a change, with the queue as it is."""
-        return OutdatedError(text, to_json(queue_report(self.get(robot), self._robots.get(robot).state)))
+        return OutdatedError(text, self._newest(robot))
 
     def accept(self, queue: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
-        """Take over a queue that is stored, and tell operators of it."""
+        """Take over a queue that is stored, and tell operators of it, or the gateway that has its robot."""
+        if self._is_elsewhere(queue.robot):
+            self._elsewhere[queue.robot] = queue
+            self._events.publish(QueueEditedElsewhere(queue.robot))
+            return queue_report(queue, self._robots.get(queue.robot).state, ended)
         self._queues[queue.robot] = queue
         ended_tasks = self._ended.setdefault(queue.robot, [])
         ended_tasks[:0] = reversed(ended)
@@ -146,16 +226,43 @@ class QueueRegistry:
         return report
 
     def announce_placement(self, report: PlacementReport) -> None:
-        """Tell operators of a cone that was put down or collected."""
-        self._listeners.announce("placement", str(report.placement), to_json(report))
+        """Tell of a cone that was put down or collected."""
+        self._events.publish(PlacementChanged(report))
+
+    def _is_elsewhere(self, robot: str) -> bool:
+        return self._robots.gateway_of(robot) is not None
+
+    def _newest(self, robot: str) -> dict[str, Any]:
+        return to_json(queue_report(self.get(robot), self._robots.get(robot).state))
+
+    async def _read_elsewhere(self, robots: Sequence[str]) -> None:
+        found = await self._database.read(queues.load, robots)
+        self._elsewhere.update({robot: found.get(robot, Queue(robot)) for robot in robots})
 
     async def _read_again(self, robot: str) -> None:
+        if self._is_elsewhere(robot):
+            # It is read whenever it is held.
+            self._doubtful.discard(robot)
+            return
         found = await self._database.run(queues.load, [robot])
         self._doubtful.discard(robot)
         if robot in found and found[robot] != self._queues.get(robot):
             self._queues[robot] = found[robot]
             self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
             self.announce(robot)
+
+
+def _fenced(
+    fence: OwnerFence,
+    own: Sequence[str],
+    others: Sequence[Queue],
+    write: Callable[..., T],
+    connection: Connection,
+    *arguments: Any,
+) -> T:
+    fence.check(connection, own)
+    queues.check_unchanged(connection, others)
+    return write(connection, *arguments)
 
 
 # --- What everything works with that works on queues ---
@@ -165,7 +272,8 @@ class QueueRegistry:
 class QueueContext:
     """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s).
 
-    ``planner`` finds the ways to tasks without a path; ``waiting`` robots let another pass first.
+    ``planner`` finds the ways to tasks without a path; ``waiting`` robots let another pass first; ``fence``
+    tells which robots this gateway has.
     """
 
     site: ServedSite
@@ -176,3 +284,4 @@ class QueueContext:
     clock: Clock
     waiting: WaitingRobots
     planner: Planner = field(default_factory=StraightPlanner)
+    fence: OwnerFence = SOLE_FENCE

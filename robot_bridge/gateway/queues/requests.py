@@ -10,7 +10,8 @@ from functools import partial
 
 from sqlalchemy import Connection
 
-from ...core.errors import OutdatedError, RefusedError
+from ...core.errors import RefusedError
+from ...core.messages.commands import AbortTask, CommandState
 from ...core.messages.queues import (
     AddTasks,
     GetQueue,
@@ -42,9 +43,10 @@ from ..model import task_queue
 from ..model.request_handlers import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
-from ..storage.repositories import queues, records
+from ..storage.owner_fence import OwnerFence
+from ..storage.repositories import commands, queues, records
 from . import task_life
-from .registry import QueueContext
+from .registry import QueueContext, again_if_moved
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
 
 # --- A robot that is to stand and go on later, whatever it is doing and whoever ordered it ---
@@ -135,24 +137,49 @@ QueueChange = tuple[Queue, Queue, list[QueuedTask]]
 class QueueEntries:
     """``tasks`` in place of what the robots have not begun; None leaves a queue as it is.
 
-    A queue at another revision than in ``revisions`` is refused. Queues of ``resumed`` robots go on. Robots
+    A queue at another revision than in ``revisions``, or otherwise than it was ``seen``, is refused. Queues
+    of ``resumed`` robots go on, those of ``paused`` ones pause for ``reason`` at the time ``at`` (s). Robots
     that are ``away`` are paused and lose the tasks ``withdrawn``, for ``reason``; one of them that is being
     done is aborted. ``override`` as with SetQueue.
     """
 
     tasks: Mapping[str, Sequence[QueueTask] | None]
     revisions: Mapping[str, int] = field(default_factory=dict)
+    seen: Mapping[str, Queue] = field(default_factory=dict)
     resumed: Collection[str] = ()
+    paused: Collection[str] = ()
     away: Sequence[str] = ()
     withdrawn: Collection[str] = ()
-    not_begun: Collection[str] = ()
     reason: str | None = None
     override: str | None = None
+    at: float | None = None
 
 
 def _write_entries(changes: Sequence[QueueChange], also: Also, connection: Connection) -> None:
     queues.save_each(connection, changes)
     also(connection)
+
+
+def _write_taking(
+    write: Also,
+    fence: OwnerFence,
+    aborts: Sequence[CommandOrder],
+    elsewhere: Sequence[CommandOrder],
+    connection: Connection,
+) -> None:
+    """Write queues from which the tasks were taken whose commands ``aborts`` are of.
+
+    Those of robots ``elsewhere`` are asked of their gateways.
+    """
+    stored = commands.find_all(connection, [abort.aborts for abort in aborts if abort.aborts is not None])
+    for one in stored.values():
+        if one.report.state is CommandState.REACHED:
+            # Its robot has done it, and its queue is about to say so.
+            raise queues.ChangedError(f"robot {one.report.robot!r} has come to its end; look at it again")
+    write(connection)
+    for abort in elsewhere:
+        request = AbortTask(abort.command, aborts=abort.aborts, reason=abort.reason)
+        fence.ask(connection, abort.robot, request, abort.operator)
 
 
 def _removed(tasks: Sequence[QueuedTask], reason: str, operator: str, at: float) -> list[QueuedTask]:
@@ -174,6 +201,7 @@ class QueueEditor:
         self._book = context.book
         self._database = context.database
         self._clock = context.clock
+        self._fence = context.fence
 
     @handles(SetQueue)
     async def set(self, request: SetQueue, operator: str) -> QueueReport:
@@ -220,13 +248,8 @@ class QueueEditor:
     async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
         """Send a robot nothing more by itself."""
         reason = because(f"paused by {operator}", request.reason)
-        async with self._book.holding([request.robot]):
-            self._robots.check_known(request.robot)
-            try:
-                return await self._pause(request.robot, reason, operator)
-            except OutdatedError:
-                # An order beside the queue came in between, and the queue has been read again.
-                return await self._pause(request.robot, reason, operator)
+        # An order beside the queue may come in between.
+        return await again_if_moved(partial(self._pause, request.robot, reason, operator))
 
     @handles(ResumeQueue)
     async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
@@ -240,6 +263,9 @@ class QueueEditor:
     @handles(TakeOver)
     async def take_over(self, request: TakeOver, operator: str) -> Queues:
         """Let other robots do what waits in one robot's queue, all of it or nothing."""
+        return await again_if_moved(partial(self._take_over, request, operator))
+
+    async def _take_over(self, request: TakeOver, operator: str) -> Queues:
         names = [request.robot, *(share.robot for share in request.shares)]
         revisions = {request.robot: request.revision}
         revisions.update({share.robot: share.revision for share in request.shares})
@@ -257,45 +283,66 @@ class QueueEditor:
                     await check_keepouts(self._site, [SetPath(path) for path in paths])
             write = partial(queues.save_many, changes=[(before[name], after[name]) for name in names])
             taken = task_life.transferred_current_task(before[request.robot], request)
-            if taken is not None and taken.command is not None and self._commands.is_open(taken.command):
-                abort = CommandOrder(
-                    task_life.abort_id(taken),
-                    request.robot,
-                    Abort(),
-                    operator,
-                    f"task {taken.id} is taken over by another robot",
-                    task=taken.id,
-                )
-                await self._book.stored(names, self._commands.issue([abort], write))
-            else:
-                await self._book.stored(names, self._database.run(write))
+            ended = [] if taken is None else [(request.robot, taken)]
+            await self._stored(list(before.values()), write, ended, operator)
             return Queues([self._book.accept(after[name]) for name in names])
 
     async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
-        """Give several robots their tasks in one transaction, in which ``also`` is written; see there."""
+        """Give several robots their tasks in one transaction, in which ``also`` is written; see there.
+
+        Their robots may be at any gateways. Raises OutdatedError where a queue is not as it was seen.
+        """
+        return await again_if_moved(partial(self._enter, entries, operator, also))
+
+    async def _enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
         names = [*entries.tasks, *(name for name in entries.away if name not in entries.tasks)]
         async with self._book.holding(names):
             for name in names:
                 self._robots.check_known(name)
                 self._check_revision(name, entries.revisions.get(name, self._book.get(name).revision))
-                self._check_not_begun(name, entries.not_begun)
+                self._check_seen(name, entries.seen)
             leaving = {task.id for name in entries.tasks for task in self._book.get(name).waiting}
             leaving |= set(entries.withdrawn)
             changes = [await self._entered(name, entries, leaving, operator) for name in entries.tasks]
             changes += [self._withdrawn(name, entries, operator) for name in entries.away]
-            aborts = [
-                CommandOrder(
-                    task_life.abort_id(task), before.robot, Abort(), operator,
-                    f"task {task.id} is taken over by another robot", task=task.id,
-                )
+            taken = [
+                (before.robot, task)
                 for before, after, _ in changes
                 if (task := before.current) is not None and after.current is None
-                and task.command is not None and self._commands.is_open(task.command)
-            ]  # fmt: skip
+            ]
             write = partial(_write_entries, changes, also)
-            writing = self._commands.issue(aborts, write) if aborts else self._database.run(write)
-            await self._book.stored(names, writing)
+            await self._stored([before for before, _, _ in changes], write, taken, operator)
             return [self._book.accept(after, ended) for _, after, ended in changes]
+
+    async def _stored(
+        self, before: Sequence[Queue], write: Also, taken: Sequence[tuple[str, QueuedTask]], operator: str
+    ) -> None:
+        """Write queues, and have robots abort the current tasks that were ``taken`` from them.
+
+        The Abort of a robot of another gateway is asked of that one in the same transaction.
+        """
+        orders = [
+            CommandOrder(
+                task_life.abort_id(task),
+                robot,
+                Abort(),
+                operator,
+                f"task {task.id} is taken over by another robot",
+                aborts=task.command,
+                task=task.id,
+            )
+            for robot, task in taken
+            if task.command is not None
+        ]
+        others = [order for order in orders if self._robots.gateway_of(order.robot) is not None]
+        own = [
+            replace(order, aborts=None)
+            for order in orders
+            if order not in others and order.aborts is not None and self._commands.is_open(order.aborts)
+        ]
+        write = self._book.fenced(before, partial(_write_taking, write, self._fence, orders, others))
+        writing = self._commands.issue(own, write) if own else self._database.run(write)
+        await self._book.stored([queue.robot for queue in before], writing)
 
     async def _entered(
         self, name: str, entries: QueueEntries, leaving: Collection[str], operator: str
@@ -306,6 +353,9 @@ class QueueEditor:
             request = SetQueue(name, before.revision, list(tasks), entries.override)
             known = await self._checked(request, before, leaving)
             after = task_queue.replace_tasks(before, tasks, known, operator, now)
+        if name in entries.paused:
+            why = because(f"paused by {operator}", entries.reason)
+            after = after.paused(why, operator, now if entries.at is None else entries.at)
         if name in entries.resumed and not after.running:
             after, current = task_queue.resume_queue(after, operator, now), after.current
             if current is not None and self._is_being_aborted(name, current):
@@ -356,7 +406,7 @@ class QueueEditor:
     async def collecting(self, request: CollectLayout) -> CollectingTasks:
         """Return a task for each cone that stands and is in no queue yet."""
         found = await self._database.read(records.standing, request.layout)
-        queued = {task.task.placement for name in self._book.names() for task in self._book.get(name).tasks}
+        queued = {task.task.placement for queue in await self._book.everywhere() for task in queue.tasks}
         turns = self._site.settings.cones.offset != (0.0, 0.0)
         tasks = [_collecting(cone, turns) for cone in found if cone.placement not in queued]
         return CollectingTasks(tasks, len(found) - len(tasks))
@@ -365,8 +415,10 @@ class QueueEditor:
         return task.command is not None and self._commands.is_being_aborted(robot, task.command)
 
     async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
-        queue = self._book.get(robot)
-        return await self._edit(queue, queue.paused(reason, operator, self._clock.time()), operator)
+        async with self._book.holding([robot]):
+            self._robots.check_known(robot)
+            queue = self._book.get(robot)
+            return await self._edit(queue, queue.paused(reason, operator, self._clock.time()), operator)
 
     @contextlib.asynccontextmanager
     async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
@@ -395,11 +447,11 @@ class QueueEditor:
                 robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
             )
 
-    def _check_not_begun(self, robot: str, tasks: Collection[str]) -> None:
-        current = self._book.get(robot).current
-        if current is not None and current.id in tasks:
-            name = f"cone {current.task.cone}" if current.task.cone else f"task {current.id}"
-            raise RefusedError(f"begun since that was looked at: {name} of robot {robot!r}; replan")
+    def _check_seen(self, robot: str, seen: Mapping[str, Queue]) -> None:
+        if robot in seen and self._book.get(robot) != seen[robot]:
+            raise self._book.outdated(
+                robot, f"the queue of robot {robot!r} has changed since it was looked at; look again"
+            )
 
     async def _checked(
         self, request: SetQueue | AddTasks, queue: Queue, leaving: Collection[str] = ()
@@ -417,14 +469,14 @@ class QueueEditor:
             new = [leg for task in tasks if waiting.get(task.task) != task for leg in driven[task.task]]
             await check_keepouts(self._site, new)
         tasks_by_placement = {task.placement: task.task for task in tasks if task.placement is not None}
-        for name, queue in ((n, self._book.get(n)) for n in self._book.names()):
-            for queued in queue.tasks:
+        for other in await self._book.everywhere() if tasks_by_placement else ():
+            for queued in other.tasks:
                 if queued.id in leaving or queued.task.placement not in tasks_by_placement:
                     continue
                 if tasks_by_placement[queued.task.placement] != queued.id:
                     raise RefusedError(
                         f"placed cone {queued.task.placement} is collected by task {queued.id} of robot "
-                        f"{name!r} already; leave it out"
+                        f"{other.robot!r} already; leave it out"
                     )
         standing = await self._database.read(records.standing_ids, sorted(tasks_by_placement))
         gone = sorted(tasks_by_placement.keys() - standing)

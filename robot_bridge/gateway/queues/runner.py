@@ -19,7 +19,7 @@ from ...core.messages.safety import RobotState
 from ..commands.active_command import CommandOrder
 from ..commands.persistence import Also, AlsoOf
 from ..model.robots import AWAY
-from ..model.task_queue import Queue, QueuedTask, Whereabouts
+from ..model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..site.places import crossing
 from ..storage.database import Database
 from ..storage.repositories import commands as stored_commands
@@ -90,10 +90,9 @@ class QueueOutcomes:
                 task, at = ended.task, report.steps[-1].at
                 collected = CollectedCone(before.robot, at, task.placement, task.cone, task.layout)
         gone = [] if ended is None else [ended]
-        written = await self._book.stored(
-            [before.robot],
-            self._database.run(write_outcome, before, outcome.queue, gone, placed, collected),
-        )
+        write = self._book.fenced([before], write_outcome)
+        writing = self._database.run(write, before, outcome.queue, gone, placed, collected)
+        written = await self._book.stored([before.robot], writing)
         self._book.accept(outcome.queue, gone)
         if written is not None:
             self._book.announce_placement(written)
@@ -203,6 +202,9 @@ def _queued(robot: str, task: QueuedTask, *, mine: bool) -> str:
 def _gone(id: str, found: Whereabouts | None) -> str:
     if found is None:
         return f"task {id}, which no robot has been given"
+    if found.state not in ENDS:
+        # It is in the queue of a robot of another gateway.
+        return f"task {id} of {found.robot}"
     return f"task {id}, which was {found.state.value} at {found.robot}: give this task anew without it"
 
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from collections.abc import Set as AbstractSet
-from typing import Protocol
+from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
 from ...core.errors import StoreError
+from ...core.messages.operator_requests import DeskRequest
 from .repositories import robots as stored_robots
 
 CHECK_VALID_S = 2.0
@@ -37,6 +38,9 @@ class OwnerFence(Protocol):
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
         """Return those of its robots ``stored`` that somebody has removed from the database."""
 
+    def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:
+        """Have the gateway that has a robot do a request once this transaction is committed."""
+
 
 class SoleFence:
     """The fence of a gateway that has its database alone: all robots are its own, and nothing is asked."""
@@ -59,6 +63,9 @@ class SoleFence:
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
         """Return those that are not stored any more."""
         return stored_robots.missing(connection, stored)
+
+    def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:
+        """Do nothing: there is no other gateway."""
 
 
 SOLE_FENCE = SoleFence()

@@ -15,7 +15,7 @@ from .schema import metadata
 if TYPE_CHECKING:
     from alembic.config import Config
 
-NEEDED = "0013"
+NEEDED = "0014"
 """The revision that this program works with."""
 FIRST = "0001"
 """Version 0.1.0, which did not write down its revision."""

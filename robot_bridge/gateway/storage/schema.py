@@ -192,7 +192,8 @@ queue_tasks = Table(
 )
 
 # Cone plans; ``content`` is what they were submitted with beside the plan, ``document`` the plan itself,
-# ``proposal`` that of what is left, ``held`` the robots that wait for it, all JSON.
+# ``proposal`` that of what is left, ``held`` the robots that wait for it, all JSON. ``meetings`` and
+# ``closed`` count what speaks against the proposal, ``try_again`` says whether failed cones are in it.
 plans = Table(
     "plans",
     metadata,
@@ -210,6 +211,9 @@ plans = Table(
     Column("by", String(128), nullable=True),
     Column("at", Double, nullable=True),
     Column("ended_at", Double, nullable=True, index=True),
+    Column("try_again", SmallInteger, nullable=False, server_default="0"),
+    Column("meetings", Integer, nullable=True),
+    Column("closed", Integer, nullable=True),
 )
 
 # The stops of a plan that are tasks of a queue; ``place`` orders them, ``content`` is the stop, JSON.

@@ -36,7 +36,8 @@ _OPEN = [state.value for state in TaskState if state not in ENDS]
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _OF_ROBOT = queues.c.robot == bindparam("of")
 _IS_STORED = select(queues.c.robot).where(_OF_ROBOT)
-_REVISION = select(queues.c.revision, queues.c.state).where(_OF_ROBOT)
+# Locked: what one gateway changes in a queue and what another one does comes one after the other.
+_REVISION = select(queues.c.revision, queues.c.state).where(_OF_ROBOT).with_for_update()
 _QUEUE_COLUMNS = ("revision", "state", "reason", "by", "at")
 _SAVE_QUEUE = (
     update(queues).where(_OF_ROBOT).values({name: bindparam(f"new_{name}") for name in _QUEUE_COLUMNS})
@@ -44,15 +45,24 @@ _SAVE_QUEUE = (
 
 
 # Whatever changes a row gives it another xmin.
-_VERSIONS_ELSEWHERE = text(
-    """
-    select q.robot, concat_ws(' ', max(cast(q.xmin as text)), count(t.id),
-        sum(cast(cast(t.xmin as text) as numeric) * (t.place + 1)))
-    from queues q join robot_owners o on o.robot = q.robot and o.gw <> :gw
-    left join queue_tasks t on t.robot = q.robot and t.state = any(:open)
-    group by q.robot
-    """
+_VERSION = (
+    "concat_ws(' ', max(cast(q.xmin as text)), count(t.id), "
+    "sum(cast(cast(t.xmin as text) as numeric) * (t.place + 1)))"
 )
+_OPEN_TASKS = "left join queue_tasks t on t.robot = q.robot and t.state = any(:open)"
+_VERSIONS_ELSEWHERE = text(
+    f"select q.robot, {_VERSION} from queues q "  # nosec B608 # names of ours
+    f"join robot_owners o on o.robot = q.robot and o.gw <> :gw {_OPEN_TASKS} group by q.robot"
+)
+_VERSIONS = text(
+    f"select q.robot, {_VERSION} from queues q {_OPEN_TASKS} "  # nosec B608 # names of ours
+    "where q.robot = any(:robots) group by q.robot"
+)
+_REVISIONS_OF = text(
+    "select q.robot, q.revision from queues q join robot_owners o on o.robot = q.robot and o.gw = :gw"
+)
+IDLE_S = 2
+"""seconds that a transaction may stand still that changes queues whose robots other gateways have."""
 
 
 class ChangedError(RefusedError):
@@ -96,6 +106,38 @@ def versions_elsewhere(connection: Connection, gateway: str) -> dict[str, str]:
     """Return of each queue whose robot another gateway has what changes with it; PostgreSQL alone."""
     values = {"gw": gateway, "open": _OPEN}
     return dict(connection.execute(_VERSIONS_ELSEWHERE, values).all())
+
+
+def versions(connection: Connection, robots: Sequence[str]) -> dict[str, str]:
+    """Return of the queues of some robots what changes with them; PostgreSQL alone."""
+    return dict(connection.execute(_VERSIONS, {"robots": list(robots), "open": _OPEN}).all())
+
+
+def revisions_of(connection: Connection, gateway: str) -> dict[str, int]:
+    """Return the revisions of the queues whose robots a gateway has; PostgreSQL alone."""
+    return dict(connection.execute(_REVISIONS_OF, {"gw": gateway}).all())
+
+
+def check_unchanged(connection: Connection, taken_for: Sequence[Queue]) -> None:
+    """Raise ChangedError unless queues are stored as they are taken for, task by task.
+
+    They stay so until the transaction ends. Nobody is waited for, and whoever does this and stands still
+    keeps others waiting for :data:`IDLE_S` at most. PostgreSQL alone.
+    """
+    if not taken_for:
+        return
+    connection.execute(text(f"set local idle_in_transaction_session_timeout = '{IDLE_S}s'"))
+    known = {queue.robot: queue for queue in taken_for}
+    rows = select(queues.c.robot).where(queues.c.robot.in_(known)).order_by(queues.c.robot)
+    locked = set(connection.scalars(rows.with_for_update(skip_locked=True)))
+    stored = load(connection, sorted(known))
+    for robot, queue in known.items():
+        if (robot in stored) != (robot in locked) or stored.get(robot, Queue(robot)) != queue:
+            raise _changed(robot)
+
+
+def _changed(robot: str) -> ChangedError:
+    return ChangedError(f"the queue of robot {robot!r} was changed meanwhile; look at it again")
 
 
 def _queue(row: Any, tasks: Mapping[str, Sequence[QueuedTask]]) -> Queue:
@@ -215,7 +257,7 @@ def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
     # Asked for, since MariaDB does not count a row that it was told nothing new about.
     found = connection.execute(_REVISION, of).first()
     if found is None or (found.revision, found.state) != (before.revision, before.state.value):
-        raise ChangedError(f"the queue of robot {after.robot!r} was changed meanwhile; look at it again")
+        raise _changed(after.robot)
     if (before.revision, before.state) != (after.revision, after.state):
         connection.execute(_SAVE_QUEUE, {**of, **{f"new_{name}": value for name, value in row.items()}})
 

@@ -221,6 +221,16 @@ def _observation_report(row: Mapping[Any, Any]) -> ObservationReport:
 # --- Cones that robots put down: planned and as placed, and when they were collected again ---
 
 
+_NEWEST_CONES = text(
+    """
+    (select id, cast(xmin as text) from placements order by id desc limit :newest)
+    union
+    (select id, cast(xmin as text) from placements where collected_at is not null
+        order by collected_at desc limit :newest)
+    """
+)
+
+
 class NewPlacement(NamedTuple):
     """A cone that was put down; as :class:`~....core.messages.PlacementReport`, before it has an id."""
 
@@ -279,6 +289,18 @@ def newest_placed_cones(connection: Connection, request: GetPlacements) -> list[
     """Return placed cones, newest first."""
     query = select(placements).where(*_conditions(request)).order_by(placements.c.id.desc())
     return [_placed_cones_report(row) for row in connection.execute(query.limit(request.limit)).mappings()]
+
+
+def placement_changes(connection: Connection, newest: int) -> dict[int, str]:
+    """Return of the newest placed and the newest collected cones what changes with each; PostgreSQL alone."""
+    rows = connection.execute(_NEWEST_CONES, {"newest": newest}).all()
+    return {int(id): str(version) for id, version in rows}
+
+
+def find_placements(connection: Connection, ids: Sequence[int]) -> list[PlacementReport]:
+    """Return those of some placed cones that are stored, oldest first."""
+    query = select(placements).where(placements.c.id.in_(ids)).order_by(placements.c.id)
+    return [_placed_cones_report(row) for row in connection.execute(query).mappings()]
 
 
 def has_any(connection: Connection, kind: str, name: str) -> bool:

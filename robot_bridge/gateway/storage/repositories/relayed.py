@@ -6,10 +6,13 @@ PostgreSQL alone; times are seconds by the database's clock.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+import msgspec
 from sqlalchemy import Connection, text
 
+from ....core.messages.json_values import to_json
+from ....core.messages.operator_requests import DeskRequest
 from .gateways import Member
 
 _NOW = "extract(epoch from clock_timestamp())::double precision"
@@ -46,6 +49,11 @@ class NewRequest(NamedTuple):
     robot: str
     method: str
     params: str
+
+    @classmethod
+    def of(cls, robot: str, request: DeskRequest[Any]) -> NewRequest:
+        """Return a request as it is stored."""
+        return cls(robot, request.method, msgspec.json.encode(to_json(request)).decode())
 
 
 class TakenRequest(NamedTuple):

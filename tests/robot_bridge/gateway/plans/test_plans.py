@@ -61,7 +61,12 @@ class Drive:
         fleet = self.yard.fleet
         fleet.listeners.add(self)
         self.plans = PlanService(
-            fleet.queue_context, fleet.queues, fleet.roads.closures, fleet.emergency, fleet.listeners
+            fleet.queue_context,
+            fleet.queues,
+            fleet.roads.closures,
+            fleet.emergency,
+            fleet.listeners,
+            fleet.events,
         )
 
     async def restart(self):
@@ -88,7 +93,7 @@ class Drive:
     async def go(self, *, robots=("r1", "r2"), times=1):
         """Let each robot drive what it was sent to its end, so many times, and the gateway look."""
         await self.drive_on(robots=robots, times=times)
-        await self.plans.watch()
+        await self.plans.follow()
 
     async def drive_on(self, *, robots=("r1", "r2"), times=1):
         """Let each robot drive what it was sent to its end, so many times; the plan is not looked at."""
@@ -112,7 +117,7 @@ class Drive:
         await self.yard.at(x, y, robot=other)
         self.yard.fleet.age()
         await self.line.advance()
-        await self.plans.watch()
+        await self.plans.follow()
 
     def cones(self):
         return sorted(self.yard.sql("select cone from placements"))
@@ -322,12 +327,12 @@ async def test_after_a_restart_robots_have_time_to_come_back_before_it_is_planne
     drive.yard.now += 60.0
     await drive.restart()
     drive.yard.fleet.age()
-    await drive.plans.watch()
+    await drive.plans.follow()
     report = await drive.seen()
     assert report.state is PlanState.DRIVEN and len(report.problems) == 2
     await drive.yard.ready("r1")
     await drive.yard.at(pose.x, pose.y)
-    await drive.plans.watch()
+    await drive.plans.follow()
     assert (await drive.seen()).state is PlanState.DRIVEN
     await drive.lose()
     assert (await drive.seen()).state is PlanState.REPLANNING
@@ -375,7 +380,7 @@ async def test_after_an_emergency_stop_it_waits_for_somebody(drive):
     await drive.go()
     await drive.yard.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
     await drive.line.advance()
-    await drive.plans.watch()
+    await drive.plans.follow()
     report = await drive.seen()
     assert (report.state, report.by_itself) == (PlanState.PAUSED, False)
     with pytest.raises(RefusedError, match="emergency stop"):
