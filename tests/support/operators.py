@@ -29,6 +29,8 @@ class Desk(Wire):
         self.commands: dict[str, dict[str, Any]] = {}
         self.queues: dict[str, dict[str, Any]] = {}
         self.observations: dict[int, dict[str, Any]] = {}
+        self.plans: dict[str, dict[str, Any]] = {}
+        self.placements: dict[int, dict[str, Any]] = {}
         self.snapshots: list[dict[str, Any]] = []
         self.geofence: dict[str, Any] = {}
         self.nearness: dict[str, Any] = {}
@@ -54,7 +56,8 @@ class Desk(Wire):
         return self.commands[command]
 
     def state(self) -> str:
-        return json.dumps({"robots": self.robots, "commands": self.commands, "queues": self.queues}, indent=1)
+        known = {"plans": self.plans, "robots": self.robots, "commands": self.commands}
+        return json.dumps({**known, "queues": self.queues}, indent=1)
 
     def _hear(self, frame: dict[str, Any]) -> None:
         method, params = frame["method"], frame.get("params")
@@ -63,6 +66,10 @@ class Desk(Wire):
             self.robots.update({robot["robot"]: robot for robot in params["robots"]})
         elif method == "observation":
             self.observations[params["observation"]] = params
+        elif method == "plan":
+            self.plans[params["plan"]] = params
+        elif method == "placement":
+            self.placements[params["placement"]] = params
         elif method == "queue":
             self.queues[params["robot"]] = params
         elif method == "command":

@@ -101,7 +101,7 @@ def _task(
     # A collected cone is approached as it was placed, a placed one in its own heading.
     theta = known.theta if stop.kind == COLLECT else stop.theta
     return QueueTask(
-        task, stop.x, stop.y, theta, _KINDS[stop.kind], path, known.cone, stop.id, known.layout, name,
+        task, stop.x, stop.y, theta, _KINDS[stop.kind], path, known.cone, stop.id, known.layout or None, name,
         known.placement, after,
     )  # fmt: skip
 

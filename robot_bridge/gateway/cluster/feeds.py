@@ -17,12 +17,14 @@ from ...core.messages.json_values import to_json
 from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
 from ..model.events import (
     CommandChanged,
+    CommandChangedElsewhere,
     EventBus,
     Listeners,
     ObservationChanged,
     PlacementChanged,
     QueueEditedElsewhere,
     QueueReported,
+    RobotLeft,
 )
 from ..model.robots import Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
@@ -95,11 +97,15 @@ class StepFeed:
     ) -> None:
         self._robots = robots
         self._listeners = listeners
+        self._events = events
         self._database = database
         self._newest: int | None = None
         self._seen: set[int] = set()
+        self._left: set[str] = set()
+        """robots that were here: of what they are doing no step may come for long."""
         self._follower = Follower("steps", self, exchange)
         events.subscribe(CommandChanged, self._note)
+        events.subscribe(RobotLeft, lambda left: self._left.add(left.robot))
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
@@ -110,7 +116,10 @@ class StepFeed:
         if self._newest is None:
             self._newest = await self._database.read(commands.newest_step)
             self._seen = {id for id, _ in await self._database.read(commands.steps_after, self._margin())}
+            self._left.update(self._robots.commanded_elsewhere())
+            await self._learn_open()
             return
+        await self._learn_open()
         found = await self._database.read(commands.steps_after, self._margin())
         new = list(dict.fromkeys(command for id, command in found if id not in self._seen))
         reports = await self._database.read(commands.find_all, new) if new else {}
@@ -119,6 +128,13 @@ class StepFeed:
                 self._tell(reports[command].report)
         self._newest = max([self._newest, *(id for id, _ in found)])
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
+
+    async def _learn_open(self) -> None:
+        """Tell what robots are doing that came to be another gateway's; raises StoreError."""
+        robots, self._left = self._left, set()
+        for found in await self._database.read(commands.still_open, sorted(robots)) if robots else []:
+            if self._robots.gateway_of(found.report.robot) is not None:
+                self._events.publish(CommandChangedElsewhere(found.report))
 
     def _margin(self) -> int:
         return (self._newest or 0) - commands.STEP_MARGIN
@@ -131,6 +147,7 @@ class StepFeed:
             self._robots.assign(report.robot, report.command)
         elif doing == report.command:
             self._robots.assign(report.robot, None)
+        self._events.publish(CommandChangedElsewhere(report))
         self._listeners.announce("command", report.command, to_json(report))
 
     def _note(self, changed: CommandChanged) -> None:

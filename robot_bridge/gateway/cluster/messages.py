@@ -62,9 +62,18 @@ class Beat(BusMessage, frozen=True, tag="beat"):
 
 
 WakeTopic = Literal[
-    "requests", "answers", "owners", "steps", "stops", "site", "observations", "placements", "plans"
+    "requests",
+    "answers",
+    "owners",
+    "steps",
+    "stops",
+    "site",
+    "observations",
+    "placements",
+    "plans",
+    "positions",
 ]
-"""What another gateway had better look at."""
+"""What another gateway had better look at; ``positions`` asks it for all of its robots."""
 
 
 class Wake(BusMessage, frozen=True, tag="wake"):

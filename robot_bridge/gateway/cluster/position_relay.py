@@ -15,7 +15,7 @@ from ..model.robots import ReportedElsewhere, Robot, Robots
 from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .exchange import Exchange
 from .membership import Membership
-from .messages import COLUMNS, MOST_ROBOTS, PositionBatch
+from .messages import COLUMNS, MOST_ROBOTS, PositionBatch, Wake
 
 log = logging.getLogger(__name__)
 
@@ -42,9 +42,10 @@ class PositionRelay:
         self._exchange = exchange
         self._most = LARGEST_NOTIFICATION // (4 * COLUMNS + 1 + NAME_BYTES) if small else MOST_ROBOTS
         self._revision = -1
-        self._told_all_at = -math.inf
+        self._told_all_at, self._was_cut_off = -math.inf, True
         self._newest: dict[str, float] = {}
         exchange.subscribe(PositionBatch, self._take)
+        exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
         """Tell until cancelled."""
@@ -56,8 +57,12 @@ class PositionRelay:
         """Tell what changed since the last time, and everything once in a while."""
         if not self._exchange.connected:
             # Nobody heard of what was told last: once the bus is back, all is told at once.
-            self._told_all_at = -math.inf
+            self._told_all_at, self._was_cut_off = -math.inf, True
             return
+        if self._was_cut_off:
+            # Others that were back earlier told theirs before this one could hear it.
+            self._was_cut_off = False
+            self._exchange.wake("positions")
         now = self._membership.database_time()
         everything = now - self._told_all_at >= IDLE_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
@@ -77,6 +82,10 @@ class PositionRelay:
             _numbers(robots, wall).tobytes(),
             bytes(_flags(robots)),
         )
+
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "positions":
+            self._told_all_at = -math.inf
 
     def _take(self, batch: PositionBatch) -> None:
         now = self._membership.database_time()

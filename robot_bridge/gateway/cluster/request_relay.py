@@ -50,8 +50,8 @@ from ...core.messages.queues import (
     RemoveTask,
     ResumeQueue,
     SetQueue,
-    TakeOver,
 )
+from ...core.messages.roads import ResolveConflict
 from ...core.messages.robots import Abort
 from ...core.messages.validation import MessageError
 from ...protocol.codec import decode_desk_request
@@ -82,6 +82,7 @@ RELAYED = (
     PauseRobot,
     ResumeQueue,
     GetQueue,
+    ResolveConflict,
 )
 """Requests that concern one robot, and are done by the gateway that has it."""
 LOOK_S = 1.0
@@ -149,8 +150,6 @@ class RequestRelay:
             return await self._abort_all(request, operator)
         elif isinstance(request, SetPositions):
             return await self._set_positions(request, operator)
-        else:
-            self._refuse_others(request)
         return await self._handlers.answer(request, operator)
 
     async def _answer_of(self, robot: str, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
@@ -211,21 +210,6 @@ class RequestRelay:
             return_exceptions=True,
         )
         return _joined(request, list(zip(parts.values(), results, strict=True)))
-
-    def _refuse_others(self, request: DeskRequest[Any]) -> None:
-        """Raise RefusedError for what is not done across gateways yet."""
-        if isinstance(request, TakeOver):
-            return
-        robots = [getattr(request, name, None) for name in ("robot", "other")]
-        owners = {
-            r: g for r in robots if isinstance(r, str) and (g := self._robots.gateway_of(r)) is not None
-        }
-        if owners and not request.method.startswith("get_"):
-            names = listed_names(sorted(owners))
-            raise RefusedError(
-                f"{request.method}: {names} is connected to gateway {next(iter(owners.values()))}; this is "
-                "done at a desk of that gateway only, so far"
-            )
 
     async def _relay(
         self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str

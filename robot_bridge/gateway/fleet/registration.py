@@ -18,7 +18,7 @@ from ..cluster.exchange import Exchange
 from ..cluster.name_claims import NameClaims
 from ..cluster.ownership import Ownership
 from ..commands.service import CommandService
-from ..model.events import EventBus, RobotLeft
+from ..model.events import EventBus, RobotLeft, RobotsTakenUp
 from ..model.request_handlers import handles
 from ..model.robots import AWAY, Robot, Robots
 from ..queues.registry import QueueRegistry
@@ -132,6 +132,7 @@ class Takeover:
         self._saving.begin([robot.name for robot in known])
         await self._queues.take_up(some)
         self._emergency.take_over([robot.name for robot in known if robot.abilities != ""])
+        self._events.publish(RobotsTakenUp(tuple(some)))
 
     def _drop(self, robot: str, gateway: str | None) -> None:
         log.warning("robot %s has connected to gateway %s", robot, gateway or "none")

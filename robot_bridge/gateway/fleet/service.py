@@ -195,6 +195,8 @@ class Fleet:
         subscribe(events.CommandChanged, lambda event: self.roads.note_step(event.report))
         subscribe(events.CommandChanged, self._announce_command)
         subscribe(events.QueueChanged, lambda event: self.driving.schedule(event.robot))
+        subscribe(events.CommandChangedElsewhere, lambda event: self.roads.ways.note_elsewhere(event.report))
+        subscribe(events.RobotsTakenUp, lambda event: self.roads.waiting.doubt())
         subscribe(events.RobotReturned, lambda event: self.driving.note_return(event.robot, event.away_s))
         subscribe(events.ObservationChanged, self._announce_observation)
         subscribe(events.PlacementChanged, self._announce_placement)

@@ -27,6 +27,16 @@ class CommandChanged:
 
 
 @dataclass(frozen=True)
+class CommandChangedElsewhere:
+    """A command of a robot that another gateway has is, or has come, as far as this."""
+
+    report: CommandReport
+
+    def __str__(self) -> str:
+        return f"command {self.report.command} at another gateway"
+
+
+@dataclass(frozen=True)
 class OutboxChanged:
     """There is something new to be delivered to a robot, or nothing of what was."""
 
@@ -105,6 +115,16 @@ class RobotReturned:
 
     def __str__(self) -> str:
         return f"the return of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
+class RobotsTakenUp:
+    """This gateway has robots that another one had."""
+
+    robots: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"{len(self.robots)} robots that were another gateway's"
 
 
 @dataclass(frozen=True)

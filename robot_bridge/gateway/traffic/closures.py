@@ -112,7 +112,7 @@ class Detours:
         """
         if self._roads is None:
             return []
-        underway = [one for one in self._ways.all() if only is None or one.robot in only]
+        underway = [one for one in self._ways.own() if only is None or one.robot in only]
         self._later.update(one.robot for one in underway if not self._ways.is_placed(one.robot))
         concerned = await asyncio.to_thread(self._concerned, self._roads, closure, underway)
         why = because("a road was closed", reason)

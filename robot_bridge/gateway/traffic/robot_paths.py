@@ -10,9 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.geometry import Polyline
+from ...core.messages.commands import CommandReport
 from ...core.messages.roads import ConflictReport, HoldReport
 from ...core.messages.robots import SetPath, SetPosEnd
 from ...core.sites.settings_tables import RouteSettings
+from ...protocol.codec import decode_command
 from ..commands.service import CommandService
 from ..model.arrival import Floats, Point, remaining_line
 from ..model.robots import Robots
@@ -83,6 +85,14 @@ class DrivenTask(NamedTuple):
         return np.array([self.place, (self.task.x, self.task.y)])
 
 
+class TaskElsewhere(NamedTuple):
+    """What a robot of another gateway is doing: to ``end``, along a ``way`` where it was told one."""
+
+    command: str
+    end: SetPosEnd
+    way: ReportedPath | None
+
+
 class RobotPaths:
     """Remembers what GetPath was answered with, and knows what was commanded."""
 
@@ -90,6 +100,7 @@ class RobotPaths:
         self._robots = robots
         self._book = book
         self._reported: dict[str, tuple[SetPosEnd, ReportedPath]] = {}
+        self._elsewhere: dict[str, TaskElsewhere] = {}
 
     def is_placed(self, robot: str) -> bool:
         """Tell whether it is known where a robot is now, so that its way can be changed from there."""
@@ -100,8 +111,26 @@ class RobotPaths:
         if isinstance(task, SetPosEnd):
             self._reported[robot] = task, ReportedPath(way)
 
+    def note_elsewhere(self, report: CommandReport) -> None:
+        """Note how far a command of a robot is that another gateway has."""
+        known = self._elsewhere.get(report.robot)
+        if not report.state.is_open:
+            if known is not None and known.command == report.command:
+                del self._elsewhere[report.robot]
+            return
+        if known is not None and known.command == report.command:
+            return
+        message = decode_command(report.op, report.params)
+        if isinstance(message, SetPosEnd):
+            self._elsewhere[report.robot] = TaskElsewhere(report.command, message, None)
+        elif isinstance(message, SetPath):
+            end = SetPosEnd(*message.points[-1], message.theta)
+            self._elsewhere[report.robot] = TaskElsewhere(report.command, end, ReportedPath(message))
+
     def of(self, robot: str) -> DrivenTask | None:
         """Return what a robot is doing, None for one that has no task or has not said where it is."""
+        if self._robots.gateway_of(robot) is not None:
+            return self._of_elsewhere(robot)
         given, command = self._book.task(robot), self._book.busy_with(robot)
         pose = self._robots.get(robot).pose if robot in self._robots else None
         if given is None or command is None or pose is None:
@@ -116,10 +145,20 @@ class RobotPaths:
         """Return the names of all robots."""
         return self._robots.names()
 
+    def own(self) -> list[DrivenTask]:
+        """Return what the robots of this gateway are doing that have a task."""
+        return [one for one in self.all() if self._robots.gateway_of(one.robot) is None]
+
     def all(self) -> list[DrivenTask]:
-        """Return what all robots are doing that have a task."""
+        """Return what all robots are doing that have a task, also those that other gateways have."""
         underway = (self.of(robot) for robot in self._robots.names())
         return [one for one in underway if one is not None]
+
+    def _of_elsewhere(self, robot: str) -> DrivenTask | None:
+        task, pose = self._elsewhere.get(robot), self._robots.pose(robot)
+        if task is None or pose is None or self._robots.get(robot).command != task.command:
+            return None
+        return DrivenTask(robot, task.command, task.end, (pose.x, pose.y), 0.0, task.way)
 
 
 # --- All robots at one moment, as movements: what conflicts are looked for in; no I/O ---

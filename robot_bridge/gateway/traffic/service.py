@@ -140,7 +140,8 @@ class TrafficControl:
         Of what is only seen nobody knows the way: :mod:`...nearness` tells of that.
         """
         settings, places = self._site.settings.routes, {}
-        for name in self._robots.commanded() if names is None else names:
+        everybody = [*self._robots.commanded(), *self._robots.commanded_elsewhere()]
+        for name in everybody if names is None else names:
             pose = self._robots.get(name).pose
             if pose is not None:
                 usual = abs(pose.v) >= SLOWEST * settings.speed_ms
@@ -324,7 +325,7 @@ class RoadTraffic:
         self.ways = RobotPaths(robots, commands)
         detours = Detours(self.ways, planner, orders, queues, commands, site)
         self.closures = ClosureService(database, clock, planner, detours, listeners)
-        self.waiting = YieldManager(database, commands, detours, waiting)
+        self.waiting = YieldManager(database, robots, commands, detours, waiting)
         self.traffic = TrafficControl(
             clock,
             robots,

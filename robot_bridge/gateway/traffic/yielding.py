@@ -27,6 +27,7 @@ from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Floats, Point
 from ..model.clocks import ClockStep
+from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import closures as stored
 from ..storage.repositories.closures import HoldRow
@@ -242,9 +243,15 @@ class YieldManager:
     """Every robot that waits. What it drives afterwards is stored, so that it is sent on after a restart."""
 
     def __init__(
-        self, database: Database, book: CommandService, detours: Detours, waiting: WaitingRobots
+        self,
+        database: Database,
+        robots: Robots,
+        book: CommandService,
+        detours: Detours,
+        waiting: WaitingRobots,
     ) -> None:
         self._database = database
+        self._robots = robots
         self._book = book
         self._detours = detours
         self._rows = waiting
@@ -266,7 +273,12 @@ class YieldManager:
         """Take up the robots that wait since an earlier gateway."""
         rows = await self._database.run(stored.held)
         self._rows.clear()
-        self._rows.update({row.robot: row for row in rows})
+        # Those of other gateways are sent on by these.
+        self._rows.update({row.robot: row for row in rows if self._robots.gateway_of(row.robot) is None})
+
+    def doubt(self) -> None:
+        """Look soon who waits: robots may have come that another gateway had."""
+        self._doubtful = True
 
     def clock_was_set(self, step: ClockStep) -> None:
         """Keep the times that robots wait for: one would wait for years, or no more."""

@@ -1,4 +1,4 @@
-"""Two gateways of one fleet, each a process of its own."""
+"""Two gateways of one fleet, or three, each a process of its own."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from tests.support.robots.robot_wires import RobotWire
 
 
 class GatewayPair:
-    """Gateways a and b of one fleet; ``site`` is the folder of both, or that of each."""
+    """Gateways a and b of one fleet, and c if there are to be ``three``; ``site`` is the folder of all, or
+    that of each.
+    """
 
     def __init__(
         self,
@@ -21,6 +23,7 @@ class GatewayPair:
         url: str,
         folder: Path,
         *options: str,
+        three: bool = False,
     ):
         def start(name: str) -> Bridge:
             state = folder / name
@@ -29,6 +32,8 @@ class GatewayPair:
             return start_bridge(served, url, ["--gateway-name", name, "--state", state, *options])
 
         self.a, self.b = start("a"), start("b")
+        if three:
+            self.c = start("c")
 
     def robot(
         self, bridge: Bridge, name: str, magic: int = 1, at: tuple[float, float] = (20.0, 8.0)
