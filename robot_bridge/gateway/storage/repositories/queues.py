@@ -21,6 +21,7 @@ from sqlalchemy import (
     text,
     update,
 )
+from sqlalchemy.dialects import postgresql
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
@@ -252,7 +253,12 @@ def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
     values = after.revision, after.state.value, after.reason, after.by, after.at
     row, of = dict(zip(_QUEUE_COLUMNS, values, strict=True)), {"of": after.robot}
     if before.revision == 0 and connection.execute(_IS_STORED, of).first() is None:
-        connection.execute(insert(queues), {"robot": after.robot, **row})
+        adding = insert(queues)
+        if connection.dialect.name == "postgresql":
+            # Two gateways may begin it at once.
+            adding = postgresql.insert(queues).on_conflict_do_nothing()
+        if connection.execute(adding, {"robot": after.robot, **row}).rowcount == 0:
+            raise _changed(after.robot)
         return
     # Asked for, since MariaDB does not count a row that it was told nothing new about.
     found = connection.execute(_REVISION, of).first()

@@ -165,7 +165,7 @@ def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name):
     # One that has seen an older plan is refused, with the newer one.
     with pytest.raises(RefusedError, match="at revision 2, not 1") as refused:
         ada.ask("resume_plan", {"plan": name, "revision": 1})
-    assert refused.value.data["newer"]["state"] == "paused"
+    assert refused.value.data["state"] == "paused"
     going_on = ada.ask("resume_plan", {"plan": name, "revision": paused["revision"]})
     cleo.until(lambda: is_in(cleo, name, "driven"))
     cleo.until(lambda: {state_of(cleo, robot) for robot in robots} == {"running"})
@@ -210,17 +210,23 @@ def test_tasks_are_taken_over_by_a_robot_of_another_gateway(trio, name):
     """The task that is being done, too: its robot is aborted by its own gateway."""
     giver, taker = robots = wires(trio, name)
     cleo = desks_of(trio, robots)[2]
-    tasks = [{"task": f"{name}-t{k}", "x": 30.0 + k, "y": 40.0} for k in range(2)]
+    tasks = [
+        {"task": f"{name}-t{k}", "x": 30.0 + k, "y": 40.0, "path": [[20.0, 40.0], [30.0 + k, 40.0]]}
+        for k in range(2)
+    ]
     queue = cleo.ask("set_queue", {"robot": giver, "revision": 0, "tasks": tasks})
-    robots[giver].hear("SetPosEnd")
-    shares = [{"robot": taker, "revision": 0, "tasks": [{"task": one["task"]} for one in tasks]}]
+    robots[giver].hear("SetPath")
+    paths = [[[20.0, 46.0], [30.0 + k, 40.0]] for k in range(2)]
+    shared = [{"task": one["task"], "path": path} for one, path in zip(tasks, paths, strict=True)]
+    shares = [{"robot": taker, "revision": 0, "tasks": shared}]
     given = {"robot": giver, "revision": queue["revision"], "shares": shares}
     found = cleo.ask("take_over", given)["queues"]
     assert {one["robot"]: len(one["tasks"]) for one in found} == {giver: 0, taker: 2}
     robots[giver].hear("Abort")
-    assert robots[taker].hear("SetPosEnd")["x"] == 30.0
-    cleo.until(lambda: [one["state"] for one in cleo.queues[taker]["tasks"]] == ["current", "waiting"])
-    assert state_of(cleo, giver) == "paused"
+    assert robots[taker].hear("SetPath")["points"] == paths[0]
+    cleo.until(lambda: len(cleo.queues.get(taker, {}).get("tasks", ())) == 2)
+    cleo.until(lambda: cleo.queues[taker]["tasks"][0]["state"] == "current")
+    cleo.until(lambda: state_of(cleo, giver) == "paused")
 
 
 def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
@@ -242,16 +248,21 @@ def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
     ways = cleo.ask("get_ways_out", {"robot": first, "other": second})["ways"]
     assert any(way["possible"] and way["robot"] == first for way in ways)
     done = cleo.ask("resolve_conflict", {"robot": first, "other": second, "by": "waiting"})
-    assert done["how"] == "waits"
+    assert done["became"] == "waits"
     waits_at = one.hear("SetPath")["points"][-1]
     for share in (0.5, 1.0):
         x, y = (16.0 + share * (waits_at[0] - 16.0), 8.0 + share * (waits_at[1] - 8.0))
         one.tell("SendPos", {"x": x, "y": y, "theta": 0.5, "v": 1.0 - share})
-    # The other one has passed, and is out of the way.
-    two.tell("SendPos", {"x": 56.0, "y": 38.0, "theta": 1.5, "v": 1.0})
+    # Its gateway dies. The one that has it then sends it on once it need not wait any more.
+    assert trio.c.sql("select other from holds where robot = ?", first) == [(second,)]
+    trio.a.kill_gateway()
+    trio.c.sql("update holds set until = 0 where robot = ?", first)
+    two.tell("SendPos", {"x": 56.0, "y": 22.0, "theta": 1.5, "v": 1.0})
     two.tell("SendPos", {"x": 56.0, "y": 40.0, "theta": 1.5, "v": 0.0})
-    trio.a.sql("select 1")
-    one.tell("SendPos", {"x": waits_at[0], "y": waits_at[1], "theta": 0.5, "v": 0.0})
+    cleo.wait_for_step(f"c-{second}", "reached")
+    one = trio.robot(trio.c, first, at=tuple(waits_at))
+    assert one.hear("SetPath")["points"][-1] == [90.0, 22.0]
+    trio.a.start_gateway()
 
 
 def leading(trio):
