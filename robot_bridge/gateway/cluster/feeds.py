@@ -15,6 +15,7 @@ from ...core.errors import StoreError
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
 from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
+from ...core.messages.robots import SetPath, SetPosEnd
 from ..model.events import (
     CommandChanged,
     CommandChangedElsewhere,
@@ -88,6 +89,9 @@ class Follower:
 
 # --- Steps of commands, told to the operators of this gateway ---
 
+MOVING = (SetPosEnd.__name__, SetPath.__name__)
+"""The commands that robots are busy with."""
+
 
 class StepFeed:
     """Follows the steps of commands of others' robots, and wakes others when robots here take one."""
@@ -133,8 +137,7 @@ class StepFeed:
         """Tell what robots are doing that came to be another gateway's; raises StoreError."""
         robots, self._left = self._left, set()
         for found in await self._database.read(commands.still_open, sorted(robots)) if robots else []:
-            if self._robots.gateway_of(found.report.robot) is not None:
-                self._events.publish(CommandChangedElsewhere(found.report))
+            self._note_doing(found.report)
 
     def _margin(self) -> int:
         return (self._newest or 0) - commands.STEP_MARGIN
@@ -142,13 +145,17 @@ class StepFeed:
     def _tell(self, report: CommandReport) -> None:
         if self._robots.gateway_of(report.robot) is None:
             return
-        doing = self._robots.get(report.robot).command
+        self._note_doing(report)
+        self._listeners.announce("command", report.command, to_json(report))
+
+    def _note_doing(self, report: CommandReport) -> None:
+        if self._robots.gateway_of(report.robot) is None or report.op not in MOVING:
+            return
         if report.state.is_open:
             self._robots.assign(report.robot, report.command)
-        elif doing == report.command:
+        elif self._robots.get(report.robot).command == report.command:
             self._robots.assign(report.robot, None)
         self._events.publish(CommandChangedElsewhere(report))
-        self._listeners.announce("command", report.command, to_json(report))
 
     def _note(self, changed: CommandChanged) -> None:
         if self._robots.gateway_of(changed.report.robot) is None:

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from ...core.assignment.plan import ConePlan
 from ...core.assignment.progress import tasks_of
-from ...core.errors import OutdatedError, RefusedError, StoreError
+from ...core.errors import BridgeError, OutdatedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.plans import (
     ClearPlan,
@@ -150,9 +150,16 @@ class PlanService:
                 await self._plans.take_up()
         one = self._plans.get(request.plan)
         why = f"plan {request.plan}" + (f": {request.reason}" if request.reason else "")
+        failed: list[BridgeError] = []
         for robot in one.plan.staying:
             if robot in self._context.robots:
-                await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
+                try:
+                    await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
+                except BridgeError as error:
+                    # The others are to stand all the same.
+                    failed.append(error)
+        if failed:
+            raise failed[0]
         # To hold is never refused, whatever another gateway has made of the plan meanwhile.
         for _ in range(TRIES - 1):
             with contextlib.suppress(OutdatedError):

@@ -260,7 +260,8 @@ def _fenced(
     connection: Connection,
     *arguments: Any,
 ) -> T:
-    fence.check(connection, own)
+    if own:
+        fence.check(connection, own)
     queues.check_unchanged(connection, others)
     return write(connection, *arguments)
 
