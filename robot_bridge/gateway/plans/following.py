@@ -61,6 +61,10 @@ class FollowedPlans:
     def __contains__(self, name: str) -> bool:
         return name in self._plans
 
+    def names(self) -> set[str]:
+        """Return the names of the plans that are driven."""
+        return set(self._plans)
+
     def all(self) -> list[FollowedPlan]:
         """Return the plans that are driven, oldest first."""
         return sorted(self._plans.values(), key=lambda one: one.plan.submitted_at)

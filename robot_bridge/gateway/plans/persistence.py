@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from typing import Any
 
 from sqlalchemy import Connection, delete, insert, select, update
@@ -47,6 +47,19 @@ def load_stops(connection: Connection, name: str) -> list[SentStop]:
     """Return the stops of a plan in the order in which they were sent."""
     query = select(plan_stops).where(plan_stops.c.plan == name).order_by(plan_stops.c.place)
     return list(readable(connection.execute(query).mappings(), _stop, lambda row: f"stop {row['task']}"))
+
+
+def add_plan(
+    connection: Connection, plan: DrivenPlan, stops: Sequence[SentStop], beside: Collection[str]
+) -> None:
+    """Write a new plan with its stops.
+
+    :raises PlanMovedError: when others are driven by now than those ``beside`` it, or it is stored already:
+        nothing may be written then.
+    """
+    if not open_revisions(connection).keys() <= {*beside}:
+        raise PlanMovedError("another plan was submitted meanwhile; look at the plans again")
+    save_plan(connection, plan, stops)
 
 
 def save_plan(

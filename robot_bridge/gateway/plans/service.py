@@ -35,7 +35,7 @@ from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.closures import ClosureService
 from .following import FollowedPlans, unknown_plan
 from .model import LONGEST_PAUSE_REASON, DrivenPlan, FollowedPlan, PlanTerms, plan_in, stops_of
-from .persistence import PlanMovedError, save_plan
+from .persistence import PlanMovedError, add_plan, save_plan
 from .replanning import Replanner, Stops
 
 log = logging.getLogger(__name__)
@@ -99,33 +99,41 @@ class PlanService:
         """
         document = await asyncio.to_thread(plan_in, request)
         async with self._plans.lock:
+            for _ in range(TRIES - 1):
+                # Another gateway may have entered a plan since that was looked at.
+                with contextlib.suppress(PlanMovedError):
+                    return await self._enter(request, document, operator)
+            return await self._enter(request, document, operator)
+
+    async def _enter(self, request: SubmitPlan, document: ConePlan, operator: str) -> PlanReport:
+        await self._plans.take_up()
+        if (known := await self._plans.find(request.plan)) is not None:
+            return known.report()
+        self._check_no_emergency()
+        self._check_free(document)
+        now = self._context.clock.time()
+        terms = PlanTerms.of(request)
+        plan = DrivenPlan(
+            request.plan, document, terms, operator, now, request.by_itself, by=operator, at=now
+        )
+        tasks = tasks_of(document, plan.name, terms.cones)
+        stops = stops_of(document, tasks)
+        entries = QueueEntries(
+            {robot: theirs for robot, theirs in tasks.items() if theirs},
+            {robot: seen for robot, seen in request.revisions.items() if tasks.get(robot)},
+            resumed=[robot for robot, theirs in tasks.items() if theirs],
+            override=request.override,
+        )
+        also = partial(add_plan, plan=plan, stops=stops, beside=self._plans.names())
+        try:
+            await self._editor.enter(entries, operator, also)
+        except (OutdatedError, StoreError):
+            # Asked at two gateways at once, one of them has entered it.
             await self._plans.take_up()
-            if (known := await self._plans.find(request.plan)) is not None:
-                return known.report()
-            self._check_no_emergency()
-            self._check_free(document)
-            now = self._context.clock.time()
-            terms = PlanTerms.of(request)
-            plan = DrivenPlan(
-                request.plan, document, terms, operator, now, request.by_itself, by=operator, at=now
-            )
-            tasks = tasks_of(document, plan.name, terms.cones)
-            stops = stops_of(document, tasks)
-            entries = QueueEntries(
-                {robot: theirs for robot, theirs in tasks.items() if theirs},
-                {robot: seen for robot, seen in request.revisions.items() if tasks.get(robot)},
-                resumed=[robot for robot, theirs in tasks.items() if theirs],
-                override=request.override,
-            )
-            try:
-                await self._editor.enter(entries, operator, partial(save_plan, plan=plan, new=stops))
-            except (OutdatedError, PlanMovedError, StoreError):
-                # Asked at two gateways at once, one of them has entered it.
-                await self._plans.take_up()
-                if request.plan not in self._plans:
-                    raise
-                return self._plans.get(request.plan).report()
-            return self._plans.accept(await self._plans.add(plan, stops), plan)
+            if request.plan not in self._plans:
+                raise
+            return self._plans.get(request.plan).report()
+        return self._plans.accept(await self._plans.add(plan, stops), plan)
 
     @handles(GetPlans)
     async def read(self, request: GetPlans) -> Plans:
