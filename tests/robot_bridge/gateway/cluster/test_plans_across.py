@@ -15,20 +15,13 @@ from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
-LOST_S = 4.0
-LIVENESS = "stale_after_s = 3.0\nlost_after_s = 10.0"
 
 
 @pytest.fixture(scope="module")
-def trio(start_bridge, limited_site, fleet_url, nats, tmp_path_factory):
+def trio(start_bridge, sample_site, fleet_url, nats, tmp_path_factory):
     """Three gateways, of which a began first: it carries on what plans do by themselves."""
-    site = limited_site("")
-    settings = (site / "site.toml").read_text(encoding="utf-8")
-    assert LIVENESS in settings
-    shorter = settings.replace(LIVENESS, f"stale_after_s = 2.0\nlost_after_s = {LOST_S}")
-    (site / "site.toml").write_text(shorter, encoding="utf-8")
     folder = tmp_path_factory.mktemp("state")
-    return GatewayPair(start_bridge, site, fleet_url, folder, "--bus", nats.url, three=True)
+    return GatewayPair(start_bridge, sample_site, fleet_url, folder, "--bus", nats.url, three=True)
 
 
 @pytest.fixture
@@ -147,6 +140,12 @@ def wires(trio, name):
     }
 
 
+def say_where(wire, x, y, v=0.0):
+    """Have a robot say where it is: one that is not heard for long is not sent anywhere."""
+    wire.tell("SendPos", {"x": x, "y": y, "theta": 0.5, "v": v})
+    wire.listen(0.1)
+
+
 def state_of(desk, robot):
     return desk.queues.get(robot, {}).get("state")
 
@@ -166,6 +165,8 @@ def test_every_desk_sees_pauses_replans_and_ends_a_plan(trio, name):
     with pytest.raises(RefusedError, match="at revision 2, not 1") as refused:
         ada.ask("resume_plan", {"plan": name, "revision": 1})
     assert refused.value.data["state"] == "paused"
+    for wire, y in zip(robots.values(), (40.0, 46.0), strict=True):
+        say_where(wire, 20.0, y)
     going_on = ada.ask("resume_plan", {"plan": name, "revision": paused["revision"]})
     cleo.until(lambda: is_in(cleo, name, "driven"))
     cleo.until(lambda: {state_of(cleo, robot) for robot in robots} == {"running"})
@@ -248,21 +249,33 @@ def test_a_robot_gives_way_to_one_of_another_gateway(trio, name):
         wait_until(lambda desk=desk: meet(desk))
     ways = cleo.ask("get_ways_out", {"robot": first, "other": second})["ways"]
     assert any(way["possible"] and way["robot"] == first for way in ways)
-    done = cleo.ask("resolve_conflict", {"robot": first, "other": second, "by": "waiting"})
-    assert done["became"] == "waits"
+    asked = {"robot": first, "other": second, "by": "waiting"}
+
+    def resolved():
+        say_where(one, 16.0, 8.0)
+        with contextlib.suppress(RefusedError):
+            return cleo.ask("resolve_conflict", asked)
+
+    assert wait_until(resolved)["became"] == "waits"
     waits_at = one.hear("SetPath")["points"][-1]
     for share in (0.5, 1.0):
         x, y = (16.0 + share * (waits_at[0] - 16.0), 8.0 + share * (waits_at[1] - 8.0))
-        one.tell("SendPos", {"x": x, "y": y, "theta": 0.5, "v": 1.0 - share})
+        say_where(one, x, y, 1.0 - share)
     # Its gateway dies. The one that has it then sends it on once it need not wait any more.
     assert trio.c.sql("select other from holds where robot = ?", first) == [(second,)]
     trio.a.kill_gateway()
     trio.c.sql("update holds set until = 0 where robot = ?", first)
-    two.tell("SendPos", {"x": 56.0, "y": 22.0, "theta": 1.5, "v": 1.0})
-    two.tell("SendPos", {"x": 56.0, "y": 40.0, "theta": 1.5, "v": 0.0})
+    say_where(two, 56.0, 22.0, 1.0)
+    say_where(two, 56.0, 40.0)
     cleo.wait_for_step(f"c-{second}", "reached")
     one = trio.robot(trio.c, first, at=tuple(waits_at))
-    assert one.hear("SetPath")["points"][-1] == [90.0, 22.0]
+
+    def sent_on():
+        say_where(one, *waits_at)
+        return [call for call in one.calls if call["method"] == "SetPath"]
+
+    (call,) = wait_until(sent_on, 20.0)
+    assert call["params"]["points"][-1] == [90.0, 22.0]
     trio.a.start_gateway()
 
 
