@@ -21,7 +21,7 @@ from benchmarks.cluster_crowd import JITTER_S, Plan
 from benchmarks.page import Part, goal
 from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
 from benchmarks.trial import size
-from robot_bridge.gateway.cluster.position_relay import TICK_S
+from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.database_server import DatabaseServer
@@ -211,7 +211,7 @@ def _measured(database: DatabaseServer, *, several: bool) -> Run:
 
 def report(one: Run, several: Run) -> Part:
     """Return the part of the page."""
-    desk_tick, tick = 1000 / DESK_RATE, TICK_S * 1000
+    desk_tick, tick = 1000 / DESK_RATE, POSITION_TICK_S * 1000
     latest = desk_tick + tick + ACROSS_MS
     share = one.microseconds / several.microseconds
     across = _percentile(several.watched["elsewhere"], 99)
