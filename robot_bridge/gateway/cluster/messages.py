@@ -72,8 +72,8 @@ class Beat(BusMessage, frozen=True, tag="beat"):
     """The gateway is there."""
 
 
-WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site", "observations"]
-"""What another gateway had better look at."""
+WakeTopic = Literal["requests", "answers", "owners", "steps", "stops", "site", "observations", "positions"]
+"""What another gateway had better look at; ``positions`` asks it for all of its robots."""
 
 
 class Wake(BusMessage, frozen=True, tag="wake"):

@@ -27,6 +27,7 @@ from .messages import (
     Exchange,
     PositionBatch,
     RobotDetails,
+    Wake,
     in_batches,
 )
 
@@ -55,9 +56,10 @@ class PositionRelay:
         self._exchange = exchange
         self._most = LARGEST_NOTIFICATION // (4 * COLUMNS + 1 + NAME_BYTES) if small else MOST_ROBOTS
         self._revision = -1
-        self._told_all_at = -math.inf
+        self._told_all_at, self._was_cut_off = -math.inf, True
         self._newest: dict[str, float] = {}
         exchange.subscribe(PositionBatch, self._take)
+        exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
         """Tell until cancelled."""
@@ -69,8 +71,12 @@ class PositionRelay:
         """Tell what changed since the last time, and everything once in a while."""
         if not self._exchange.connected:
             # Nobody heard of what was told last: once the bus is back, all is told at once.
-            self._told_all_at = -math.inf
+            self._told_all_at, self._was_cut_off = -math.inf, True
             return
+        if self._was_cut_off:
+            # Others that were back earlier told theirs before this one could hear it.
+            self._was_cut_off = False
+            self._exchange.wake("positions")
         now = self._membership.database_time()
         everything = now - self._told_all_at >= POSITION_ALL_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
@@ -90,6 +96,10 @@ class PositionRelay:
             _numbers(robots, wall).tobytes(),
             bytes(_flags(robots)),
         )
+
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "positions":
+            self._told_all_at = -math.inf
 
     def _take(self, batch: PositionBatch) -> None:
         now = self._membership.database_time()
