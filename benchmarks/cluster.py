@@ -21,7 +21,7 @@ from benchmarks.cluster_crowd import JITTER_S, Plan
 from benchmarks.page import Part, goal
 from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
 from benchmarks.trial import size
-from robot_bridge.gateway.cluster.position_relay import TICK_S
+from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.database_server import DatabaseServer
@@ -44,7 +44,7 @@ STANDING = size(1.0, 0.2)
 OTHERS = range(1, GATEWAYS)
 ACROSS_MS, MORE_MS, IN_FORCE_MS, LAST_MS, SHARE, DIED_S, BACK_S = 50, 20, 50, 500, 0.9, 5, 1
 """What is to be kept to: see :func:`report`."""
-LATEST_MS = 1000 / DESK_RATE + TICK_S * 1000 + ACROSS_MS
+LATEST_MS = 1000 / DESK_RATE + POSITION_TICK_S * 1000 + ACROSS_MS
 """milliseconds in which a position is to be at a desk elsewhere."""
 FRESH_S = 1 / ROBOT_RATE + LATEST_MS / 1000
 """seconds that what a desk elsewhere knows of a robot may be old while all is well."""
@@ -232,7 +232,7 @@ def _measured(database: DatabaseServer, *, several: bool) -> Run:
 
 def report(one: Run, several: Run) -> Part:
     """Return the part of the page."""
-    desk_tick, tick = 1000 / DESK_RATE, TICK_S * 1000
+    desk_tick, tick = 1000 / DESK_RATE, POSITION_TICK_S * 1000
     share = one.microseconds / several.microseconds
     across = _percentile(several.watched["elsewhere"], 99)
     more = _percentile(several.commands, 50) - _percentile(one.commands, 50)

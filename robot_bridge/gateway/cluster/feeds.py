@@ -33,8 +33,7 @@ from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, queues, records
 from .bus import EVERYBODY, own_subject
-from .exchange import Exchange
-from .messages import MOST_NAMED, QueuesChanged, Wake, WakeTopic
+from .messages import MOST_NAMED, Exchange, QueuesChanged, Wake, WakeTopic
 
 LOOK_S = 1.0
 """seconds between two looks when nobody tells of a change."""

@@ -11,8 +11,7 @@ from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop, StoppedGateways
 from robot_bridge.gateway.cluster import stop_relay
 from robot_bridge.gateway.cluster.bus import STOP
-from robot_bridge.gateway.cluster.exchange import Exchange
-from robot_bridge.gateway.cluster.messages import Beat, Codec, StopCall, StopSeen, Wake
+from robot_bridge.gateway.cluster.messages import Beat, Codec, Exchange, StopCall, StopSeen, Wake
 from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.storage.repositories import emergency_stops

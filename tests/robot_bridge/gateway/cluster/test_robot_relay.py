@@ -8,9 +8,8 @@ import pytest
 
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.cluster.bus import EVERYBODY
-from robot_bridge.gateway.cluster.exchange import Exchange
-from robot_bridge.gateway.cluster.messages import Codec, PositionBatch, Wake
-from robot_bridge.gateway.cluster.position_relay import PositionRelay
+from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
+from robot_bridge.gateway.cluster.robot_relay import PositionRelay
 from robot_bridge.gateway.model.robots import Robots
 
 CODEC = Codec(b"k" * 32)

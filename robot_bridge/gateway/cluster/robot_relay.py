@@ -1,29 +1,43 @@
-"""Positions across gateways: what changed goes out in columns, newest only; what is old is dropped."""
+"""Robots across gateways: where they are, and the details of them that change seldom.
+
+Positions that changed go out in columns, newest only; what is old is dropped. Details go out when they have
+changed.
+"""
 
 from __future__ import annotations
 
 import asyncio
-import logging
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from ...core.messages.robots import SendPos
-from ..model.robots import ReportedElsewhere, Robot, Robots
+from ...core.messages.validation import LONGEST_STATUS, one_line
+from ..model.robots import DescribedElsewhere, ReportedElsewhere, Robot, Robots
 from .bus import LARGEST_NOTIFICATION, POSITIONS
-from .exchange import Exchange
 from .membership import Membership
-from .messages import COLUMNS, MOST_ROBOTS, PositionBatch, Wake
+from .messages import (
+    COLUMNS,
+    LARGEST,
+    MOST_ROBOTS,
+    DetailBatch,
+    Exchange,
+    PositionBatch,
+    RobotDetails,
+    Wake,
+    in_batches,
+)
 
-log = logging.getLogger(__name__)
+# --- Where robots are: what changed goes out in columns ---
 
-TICK_S = 0.2
+POSITION_TICK_S = 0.2
 """seconds between two messages: of each robot only the newest position of a tick goes out."""
-OLD_S = 1.0
+POSITION_OLD_S = 1.0
 """seconds after which a message is dropped: it has waited somewhere, and newer ones follow it."""
-IDLE_S = 1.0
+POSITION_ALL_S = 1.0
 """seconds after which robots that say nothing new are told again: another gateway may have come."""
 ENDED, LOCATED, ONLY_SEEN = 1, 2, 4
 NAME_BYTES = 24
@@ -50,7 +64,7 @@ class PositionRelay:
     async def run(self) -> None:
         """Tell until cancelled."""
         while True:
-            await asyncio.sleep(TICK_S)
+            await asyncio.sleep(POSITION_TICK_S)
             self.send_changes()
 
     def send_changes(self) -> None:
@@ -64,7 +78,7 @@ class PositionRelay:
             self._was_cut_off = False
             self._exchange.wake("positions")
         now = self._membership.database_time()
-        everything = now - self._told_all_at >= IDLE_S
+        everything = now - self._told_all_at >= POSITION_ALL_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
             self._told_all_at = now
@@ -90,7 +104,7 @@ class PositionRelay:
     def _take(self, batch: PositionBatch) -> None:
         now = self._membership.database_time()
         age = now - batch.t
-        if abs(age) > OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
+        if abs(age) > POSITION_OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
             return
         self._newest[batch.gw] = batch.t
         wall = batch.t - self._membership.clock_offset
@@ -129,3 +143,101 @@ def _flags(robots: Iterable[Robot]) -> list[int]:
         ENDED * robot.ended_in_order | LOCATED * robot.located | ONLY_SEEN * (robot.abilities == "")
         for robot in robots
     ]
+
+
+# --- What changes seldom: battery, status, latency and what robots declared; told when it has changed ---
+
+DETAIL_TICK_S = 1.0
+"""seconds between two messages."""
+DETAIL_ALL_S = 5.0
+"""seconds after which all is told again: another gateway may have come, or a message been lost."""
+DETAIL_OLD_S = 5.0
+"""seconds after which a message is dropped: all has been told again since."""
+
+PIECE = 500
+"""robots that are looked at before others have their turn: less than a millisecond."""
+
+_Facts = tuple[Any, ...]
+
+
+class DetailRelay:
+    """Tells other gateways the details of the robots of this one, and takes in those of theirs.
+
+    A robot is known by its position first, which goes out more often and in the same order.
+    """
+
+    def __init__(
+        self, robots: Robots, membership: Membership, exchange: Exchange, *, small: bool = False
+    ) -> None:
+        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        self._robots = robots
+        self._membership = membership
+        self._exchange = exchange
+        self._largest = LARGEST_NOTIFICATION if small else LARGEST
+        self._told: dict[str, _Facts] = {}
+        self._told_all_at = -math.inf
+        self._newest: dict[str, float] = {}
+        exchange.subscribe(DetailBatch, self._take)
+
+    async def run(self) -> None:
+        """Tell until cancelled."""
+        while True:
+            await asyncio.sleep(DETAIL_TICK_S)
+            await self.send_changes()
+
+    async def send_changes(self) -> None:
+        """Tell what changed since the last time, everything once in a while; others have turns meanwhile."""
+        now = self._membership.database_time()
+        if not self._exchange.connected or now - self._told_all_at >= DETAIL_ALL_S:
+            self._told.clear()
+            self._told_all_at = now
+        told, self._told = self._told, {}
+        robots = self._robots.changed(-1)
+        for begin in range(0, len(robots), PIECE):
+            self._send_changed(robots[begin : begin + PIECE], told, now)
+            await asyncio.sleep(0)
+
+    def _send_changed(self, robots: Iterable[Robot], told: Mapping[str, _Facts], now: float) -> None:
+        changed = []
+        for robot in robots:
+            if robot.gateway is None:
+                name, facts = robot.name, _facts(robot)
+                if told.get(name) != facts:
+                    changed.append(_details(name, facts))
+                self._told[name] = facts
+        for some in in_batches(changed, self._largest):
+            self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
+
+    def _take(self, batch: DetailBatch) -> None:
+        age = self._membership.database_time() - batch.t
+        if abs(age) > DETAIL_OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
+            return
+        self._newest[batch.gw] = batch.t
+        for one in batch.robots:
+            described = DescribedElsewhere(
+                one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities, one.magic
+            )
+            self._robots.describe_elsewhere(one.name, batch.gw, described)
+
+
+def _facts(robot: Robot) -> _Facts:
+    """Return what is told of a robot, in the order of its :class:`RobotDetails`."""
+    pose, latency = robot.pose, robot.latency
+    battery, status = (None, None) if pose is None else (pose.battery, pose.status)
+    return (
+        # Not told again for less than an operator sees.
+        None if battery is None else round(battery, 2),
+        status,
+        robot.doubt,
+        None if latency is None else round(latency, 3),
+        robot.paths,
+        robot.abilities,
+        robot.magic,
+    )
+
+
+def _details(name: str, facts: _Facts) -> RobotDetails:
+    battery, status, doubt, *more = facts
+    return RobotDetails(
+        name, battery, status, None if doubt is None else one_line(doubt, LONGEST_STATUS), *more
+    )
