@@ -168,7 +168,7 @@ NEWEST = 200
 Told = TypeVar("Told", ObservationReport, PlacementReport)
 
 
-class TellingOfRecords(Generic[Told]):
+class RecordAnnouncer(Generic[Told]):
     """Tells operators of those records that have changed by ``method``, unless they have heard of it."""
 
     def __init__(self, method: str, listeners: Listeners) -> None:
@@ -187,8 +187,8 @@ class TellingOfRecords(Generic[Told]):
         before = self._versions
         return [] if before is None else [id for id, is_now in versions.items() if before.get(id) != is_now]
 
-    def tell(self, reports: Mapping[int, Told], versions: Mapping[int, str]) -> None:
-        """Tell of what has changed, by id, and know the newest by their ``versions`` from then on."""
+    def announce(self, reports: Mapping[int, Told], versions: Mapping[int, str]) -> None:
+        """Announce what has changed, by id, and know the newest by their ``versions`` from then on."""
         for id, report in reports.items():
             if self._told.get(id) != report:
                 self._told[id] = report
@@ -207,7 +207,7 @@ class PlacementRelay:
         self, listeners: Listeners, events: EventBus, exchange: Exchange, database: Database
     ) -> None:
         self._database = database
-        self._telling = TellingOfRecords[PlacementReport]("placement", listeners)
+        self._announcer = RecordAnnouncer[PlacementReport]("placement", listeners)
         self._follower = Follower("placements", self, exchange)
         events.subscribe(PlacementChanged, self._note)
 
@@ -218,12 +218,12 @@ class PlacementRelay:
     async def follow(self) -> None:
         """Tell operators of the cones since the last look; raises StoreError."""
         versions = await self._database.read(records.placement_changes, NEWEST)
-        changed = self._telling.changed(versions)
+        changed = self._announcer.changed(versions)
         found = await self._database.read(records.find_placements, changed) if changed else []
-        self._telling.tell({report.placement: report for report in found}, versions)
+        self._announcer.announce({report.placement: report for report in found}, versions)
 
     def _note(self, changed: PlacementChanged) -> None:
-        self._telling.note(changed.report.placement, changed.report)
+        self._announcer.note(changed.report.placement, changed.report)
         self._follower.note_change()
 
 
@@ -251,7 +251,7 @@ class ObservationRelay:
         self._maps = maps
         self._database = database
         self._on_map: tuple[int, int] | None = None
-        self._telling = TellingOfRecords[ObservationReport]("observation", listeners)
+        self._announcer = RecordAnnouncer[ObservationReport]("observation", listeners)
         self._reviewed_here = False
         """whether the maps may show what was reviewed here since the last look, and is otherwise by now."""
         self._follower = Follower("observations", self, exchange)
@@ -272,12 +272,12 @@ class ObservationRelay:
                 self._reviewed_here = True
                 raise
         self._on_map = found.on_map
-        changed = self._telling.changed(found.newest)
+        changed = self._announcer.changed(found.newest)
         reports = await self._database.read(records.find_each, changed) if changed else []
-        self._telling.tell({report.observation: report for report in reports}, found.newest)
+        self._announcer.announce({report.observation: report for report in reports}, found.newest)
 
     def _note(self, changed: ObservationChanged) -> None:
-        self._telling.note(changed.report.observation, changed.report)
+        self._announcer.note(changed.report.observation, changed.report)
         self._reviewed_here |= changed.report.state is not ObservationState.PENDING
         self._follower.note_change()
 
