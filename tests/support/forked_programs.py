@@ -66,6 +66,7 @@ BRIDGE = Program(
         "pyogrio",
         "pyproj",
         "robot_bridge.links.rosbridge.adapter",
+        "robot_bridge.links.vda5050.adapter",
         "scipy.sparse.csgraph",
         "shapely",
         "sqlalchemy.dialects.mysql.pymysql",
