@@ -104,6 +104,16 @@ def start_bridge(tmp_path_factory, new_database):
             assert "Traceback" not in bridge.output(), bridge.output()
 
 
+@pytest.fixture(scope="session")
+def forking_command(tmp_path_factory) -> Path:
+    """``robot-bridge`` as a command of its own, for pipes and shells, that loads no modules."""
+    from tests.support.forked_programs import write_shell_command
+
+    file = tmp_path_factory.mktemp("command") / "robot-bridge"
+    write_shell_command(file)
+    return file
+
+
 @pytest.fixture
 def postgresql_url(postgresql_server) -> str:
     """A new, empty PostgreSQL database: the URL of the account that owns it, which is no superuser."""

@@ -31,7 +31,8 @@ def chromium() -> Iterator[Any]:
     if program is None:
         raise StageError("no Chromium is installed: apt-get install chromium")
     with sync_playwright() as started:
-        # In a container of root's there is no sandbox.
-        browser = started.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        # In a container of root's there is no sandbox; to do in software what a GPU would takes longer.
+        args = ["--no-sandbox", "--disable-gpu"]
+        browser = started.chromium.launch(executable_path=program, args=args)
         yield browser
         browser.close()

@@ -4,7 +4,6 @@ import json
 import os
 import sqlite3
 import subprocess
-import sys
 from contextlib import closing
 
 import pytest
@@ -141,10 +140,12 @@ def test_a_disk_that_hangs_holds_no_stop_up(start_bridge, sample_site):
     bridge.end()
 
 
-def test_a_gateway_that_could_not_note_a_stop_does_not_start(sample_site, new_database, tmp_path):
+def test_a_gateway_that_could_not_note_a_stop_does_not_start(
+    sample_site, new_database, tmp_path, forking_command
+):
     url = new_database("postgresql")
     missing = tmp_path / "missing"
-    command = [sys.executable, "-m", "robot_bridge", "serve", "--site", sample_site, "--port", "0"]
+    command = [forking_command, "serve", "--site", sample_site, "--port", "0"]
     command += ["--database", url, "--state", missing]
     done = subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
     assert done.returncode == 1

@@ -197,20 +197,11 @@ def test_sighup_reads_the_site_at_once(bridge, site):
 # --- how it begins ----------------------------------------------------------------------------------------
 
 
-def serve(*options, seconds=20, **environment):
-    return subprocess.run(
-        [sys.executable, "-m", "robot_bridge", "serve", *map(str, options)],
-        capture_output=True,
-        text=True,
-        timeout=seconds,
-        check=False,
-        env={**os.environ, **environment},
-    )
-
-
-def test_gateway_and_robot_end_with_whoever_started_them_where_that_is_asked_for(site, tmp_path):
+def test_gateway_and_robot_end_with_whoever_started_them_where_that_is_asked_for(
+    site, tmp_path, forking_command
+):
     def start(*words):
-        command = [sys.executable, "-m", "robot_bridge", *map(str, words), "--until-stdin-closes"]
+        command = [forking_command, *map(str, words), "--until-stdin-closes"]
         return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
 
     gateway = start("serve", "--site", site, "--port", 0, "--database", f"sqlite:///{tmp_path}/fleet.db")
@@ -225,8 +216,9 @@ def test_gateway_and_robot_end_with_whoever_started_them_where_that_is_asked_for
         process.stdout.close()
 
 
-def test_a_second_gateway_on_the_same_database_is_refused(bridge, site):
-    done = serve("--site", site, "--database", bridge.database, "--port", 0)
+def test_a_second_gateway_on_the_same_database_is_refused(bridge, site, forking_command):
+    command = [forking_command, "serve", "--site", site, "--database", bridge.database, "--port", "0"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=BUSY * 20, check=False)
     assert done.returncode == 1 and "Traceback" not in done.stderr
     assert (
         f"another gateway runs on it: process {bridge.gateway.pid} on {socket.gethostname()}" in done.stderr

@@ -19,14 +19,18 @@ from tests.support.robots.robot_wires import RobotWire
 from tests.support.wire import Wire
 
 RUNS = itertools.count(1)
+LONGEST_PAUSE_S = 0.1
+"""before a condition is looked at again."""
 
 
 def wait_until(condition: Callable[[], Any], seconds: float = 10.0, what: str = "") -> Any:
     """Return what ``condition`` returns once that is true; fail after ``seconds`` of an idle machine."""
-    until = time.monotonic() + BUSY * seconds
+    until, pause = time.monotonic() + BUSY * seconds, 0.01
     while not (found := condition()):
         assert time.monotonic() < until, f"not within {BUSY * seconds:g} s: {what or condition}"
-        time.sleep(0.02)
+        time.sleep(pause)
+        # Many conditions ask a database, each time over a new connection.
+        pause = min(1.2 * pause, LONGEST_PAUSE_S)
     return found
 
 

@@ -17,8 +17,8 @@ EVERYTHING = Shaping((0.1, 9.0), 0.5, dissolve=True, chain=True, tolerance=0.05,
 @pytest.fixture
 def street():
     """Houses wall to wall, each with a line beside it."""
-    houses = [box(4 * k, 0, 4 * k + 4, 4, source=f"h:{k}") for k in range(400)]
-    fences = [row([(4 * k, -9 - k % 7), (4 * k + 3, -9 - k % 7)], source=f"f:{k}") for k in range(400)]
+    houses = [box(4 * k, 0, 4 * k + 4, 4, source=f"h:{k}") for k in range(200)]
+    fences = [row([(4 * k, -9 - k % 7), (4 * k + 3, -9 - k % 7)], source=f"f:{k}") for k in range(200)]
     return outlines(*houses, *fences)
 
 

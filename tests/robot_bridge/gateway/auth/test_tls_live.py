@@ -5,7 +5,6 @@ from __future__ import annotations
 import socket
 import ssl
 import subprocess
-import sys
 
 import pytest
 
@@ -142,21 +141,12 @@ def test_the_reference_robot_drives_with_token_and_authority(bridge, files, acco
     desk.wait_for_step("drive-over-tls", "reached")
 
 
-def test_a_robot_that_is_not_let_in_says_why(bridge, files, tmp_path, accounts):
+def test_a_robot_that_is_not_let_in_says_why(bridge, files, tmp_path, accounts, forking_command):
     token = tmp_path / "token"
     token.write_text("fleet_robot_wrong")
     token.chmod(0o600)
     accounts.do("robots", "token", "somebody")
-    command = [
-        sys.executable,
-        "-m",
-        "robot_bridge",
-        "robot",
-        "--name",
-        "r7",
-        "--url",
-        f"{bridge.address}/robot",
-    ]
+    command = [forking_command, "robot", "--name", "r7", "--url", f"{bridge.address}/robot"]
     for options, says in (
         (["--token-file", token, "--ca", files.ca], "HTTP 401): This token is not known"),
         (["--ca", files.ca], "HTTP 401): No token came with the request"),
@@ -172,14 +162,13 @@ def test_a_robot_that_is_not_let_in_says_why(bridge, files, tmp_path, accounts):
 # --- beyond this computer -------------------------------------------------------------------------------
 
 
-def serve(*options):
-    command = [sys.executable, "-m", "robot_bridge", "serve", "--host", "0.0.0.0", "--port", "0"]
-    return subprocess.run(
-        [*command, *map(str, options)], capture_output=True, text=True, timeout=240, check=False
-    )
+def test_a_gateway_does_not_listen_beyond_loopback_without_tls_and_accounts(
+    sample_site, files, tmp_path, forking_command
+):
+    def serve(*options):
+        command = [forking_command, "serve", "--host", "0.0.0.0", "--port", "0", *options]
+        return subprocess.run(command, capture_output=True, text=True, timeout=240, check=False)
 
-
-def test_a_gateway_does_not_listen_beyond_loopback_without_tls_and_accounts(sample_site, files, tmp_path):
     common = ["--site", sample_site, "--database", f"sqlite:///{tmp_path}/f.db"]
     done = serve(*common)
     assert done.returncode == 1

@@ -27,12 +27,21 @@ class Ring:
         self.itself = self
 
 
-@pytest.fixture
-def looks():
-    """The looks that begin in a gateway that has started."""
-    begun, thresholds = [], gc.get_threshold()
+@pytest.fixture(scope="module")
+def frozen():
+    """What has been loaded is frozen, as in a gateway that has started: that takes more than a second."""
+    thresholds = gc.get_threshold()
     gc.unfreeze()  # what tests/conftest.py has spared
     freeze_permanent_objects()
+    yield
+    gc.set_threshold(*thresholds)
+
+
+@pytest.fixture
+def looks(frozen):
+    """The looks that begin in a gateway that has started."""
+    begun = []
+    gc.collect()
 
     def note(phase, info):
         if phase == "start":
@@ -41,7 +50,6 @@ def looks():
     gc.callbacks.append(note)
     yield begun
     gc.callbacks.remove(note)
-    gc.set_threshold(*thresholds)
 
 
 def test_ten_thousand_positions_that_wait_to_be_stored_bring_no_look(looks):

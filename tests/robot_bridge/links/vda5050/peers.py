@@ -67,8 +67,8 @@ class Yard:
 
     def run_adapter(self, file: Path) -> None:
         """Start the adapter with the settings in ``file``."""
-        command = [sys.executable, "-m", "robot_bridge", "link", "vda5050", "--config", file]
-        self._start("adapter", command)
+        unique = self._unique("adapter")
+        self.running["adapter"] = self._processes.start_bridge(unique, ["link", "vda5050", "--config", file])
 
     def start_sdk_vehicle(self, serial: str, x: float, y: float, **options: Any) -> None:
         """Start a vehicle of version 2.1 at (x, y) of its map."""
@@ -110,9 +110,12 @@ class Yard:
         self._processes.wait_for_line(self.names[serial], "vehicle is there", START)
 
     def _start(self, name: str, command: list[Any], **environment: str) -> None:
-        unique = f"{name}-{next(RUNS)}"
+        unique = self._unique(name)
         self.running[name] = self._processes.start(unique, command, env=environment)
-        self.names[name] = unique
+
+    def _unique(self, name: str) -> str:
+        self.names[name] = f"{name}-{next(RUNS)}"
+        return self.names[name]
 
 
 def require_broker() -> None:

@@ -3,8 +3,8 @@
 Moments are the transactions that a scenario takes, or its seconds. One that stops robots is played once for
 each of them while they come to a stand, for every third of those in which they stand and nothing happens, and
 for each in which they go on again; what is driven before and then, and every other scenario, for every
-twelfth, beginning with the next one from scenario to scenario. In a run for a release it is for each of those
-in which they stand, and for every fourth. With EVERY_CRASH=1 in the environment all are played at each,
+twentieth, beginning with the next one from scenario to scenario. In a run for a release it is for each of
+those in which they stand, and for every fourth. With EVERY_CRASH=1 in the environment all are played at each,
 before and after the commit, with all that robots may do meanwhile.
 """
 
@@ -24,7 +24,7 @@ from tests.support.bridge.mortal_database import Death
 
 STOPS = {"paused", "aborted", "aborted_too_late", "halted", "continued_at_once", "stopped"}
 """Scenarios in which operators stop robots."""
-EVERY, EVERY_FOR_RELEASE = 12, 4
+EVERY, EVERY_FOR_RELEASE = 20, 4
 """Of how many moments one is played, where no robot is stopped."""
 STANDING, STANDING_FOR_RELEASE = 3, 1
 """Of how many moments one is played, while robots stand that were stopped."""

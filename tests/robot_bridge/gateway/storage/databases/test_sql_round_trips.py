@@ -47,7 +47,10 @@ def left(connection) -> list[int]:
     return [connection.scalar(select(func.count()).select_from(table)) for table in (rr, sa)]
 
 
-@pytest.mark.parametrize(("rate", "durable"), [(0.0, False), (10.0, True)])
+MEASURED = pytest.param(10.0, True, marks=pytest.mark.again("as fast as they can, in the same test"))
+
+
+@pytest.mark.parametrize(("rate", "durable"), [(0.0, False), MEASURED])
 def test_every_request_is_answered_once_and_nothing_stays(
     start_bridge, sample_site, url, accounts, rate, durable
 ):
