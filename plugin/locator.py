@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 from qgis.core import Qgis, QgsFeedback, QgsLocatorContext, QgsLocatorFilter, QgsLocatorResult, QgsSettings
 from qgis.gui import QgisInterface, QgsLocatorWidget
-from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..robot_bridge.core.messages.safety import RobotState
 from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
 from .gateway_client.robot_states import ROBOT_STATES
-from .gateway_client.robot_table import STATES
-from .ui.glyphs import state_icon
+from .ui.glyphs import StateIcons
 from .ui.language import tr
 
 NAME = "fleet_robots"
@@ -60,7 +57,7 @@ class RobotFilter(QgsLocatorFilter):
     def __init__(
         self,
         fleet: SnapshotHolder,
-        icons: Mapping[str, QIcon],
+        icons: StateIcons,
         viewer: RobotViewer,
         field: LocatorField,
         last: LastSearch | None = None,
@@ -137,8 +134,7 @@ class RobotFilter(QgsLocatorFilter):
             else tr("{state}, heard of {age:.0f} s ago", state=description, age=age)
         )
         result.score = score
-        if state in self._icons:
-            result.icon = self._icons[state]
+        result.icon = self._icons[RobotState(state)]
         return result
 
 
@@ -168,7 +164,7 @@ class RobotLocator:
     """The filter as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface, fleet: SnapshotHolder, viewer: RobotViewer):
-        self._iface, self._filter = iface, RobotFilter(fleet, _icons(), viewer, self)
+        self._iface, self._filter = iface, RobotFilter(fleet, StateIcons(), viewer, self)
         settings = QgsSettings()
         # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
         if not settings.value(PREFIX_KEY, ""):
@@ -187,8 +183,3 @@ class RobotLocator:
         locator = self._iface.mainWindow().findChild(QgsLocatorWidget)
         field = None if locator is None else locator.findChild(QLineEdit)
         return None if field is None else field.text()
-
-
-def _icons() -> dict[str, QIcon]:
-    # Made here: the filter looks in a thread, where pictures cannot be drawn.
-    return {state.value: state_icon(state) for state in STATES}

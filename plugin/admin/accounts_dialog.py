@@ -357,12 +357,11 @@ class AccountsAction(DialogAction):
     """The entry and its window."""
 
     def __init__(self, iface: QgisInterface, menu: str, connections: ConnectionMenu, desk: FleetController):
-        self._accounts = AccountsDialog(desk, iface.mainWindow())
         super().__init__(
             iface,
             menu,
             connections,
-            self._accounts,
+            lambda: AccountsDialog(desk, iface.mainWindow()),
             icon="accounts.svg",
             text=tr("Accounts…"),
             name="fleet_accounts",
@@ -370,5 +369,6 @@ class AccountsAction(DialogAction):
         )
 
     def remove(self) -> None:
-        self._accounts.close_tokens()
+        if self.dialog is not None:
+            self.dialog.close_tokens()
         super().remove()

@@ -180,7 +180,7 @@ class RecordingsAction(DialogAction):
             iface,
             menu,
             connections,
-            RecordingsDialog(desk, iface.mainWindow()),
+            lambda: RecordingsDialog(desk, iface.mainWindow()),
             icon="replay.svg",
             text=tr("Recordings…"),
             name="fleet_recordings",

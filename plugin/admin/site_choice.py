@@ -122,7 +122,7 @@ class SiteChoiceAction(DialogAction):
             iface,
             menu,
             connections,
-            SiteChoiceDialog(desk, iface.mainWindow()),
+            lambda: SiteChoiceDialog(desk, iface.mainWindow()),
             icon="sites.svg",
             text=tr("Site…"),
             name="fleet_site_choice",

@@ -84,21 +84,25 @@ class PendingQueries(QObject):
 
 
 class DialogAction:
-    """An entry of ``menu`` and of ``connections``, and the window. :meth:`remove` undoes the constructor."""
+    """An entry of ``menu`` and of ``connections``, and the window. :meth:`remove` undoes the constructor.
+
+    The window is made by ``make_dialog`` when it is opened for the first time: QGIS starts without it.
+    """
 
     def __init__(
         self,
         iface: QgisInterface,
         menu: str,
         connections: ConnectionMenu,
-        dialog: QDialog,
+        make_dialog: Callable[[], QDialog],
         *,
         icon: str,
         text: str,
         name: str,
         tip: str,
     ):
-        self._iface, self._menu, self._connections, self.dialog = iface, menu, connections, dialog
+        self._iface, self._menu, self._connections = iface, menu, connections
+        self._make_dialog, self.dialog = make_dialog, None
         self.action = QAction(QIcon(str(ICONS / icon)), text, iface.mainWindow())
         self.action.setObjectName(name)
         self.action.setToolTip(tip)
@@ -108,14 +112,17 @@ class DialogAction:
 
     def open(self) -> None:
         """Open the window, or bring it to the front."""
+        if self.dialog is None:
+            self.dialog = self._make_dialog()
         self.dialog.show()
         self.dialog.raise_()
         self.dialog.activateWindow()
 
     def remove(self) -> None:
         """Close the window with all that it opened, and take the entries out."""
-        self.dialog.close()
-        self.dialog.deleteLater()
+        if self.dialog is not None:
+            self.dialog.close()
+            self.dialog.deleteLater()
         self._connections.withdraw(self.action)
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence, Set
+import functools
+from collections.abc import Mapping, Sequence, Set
 from pathlib import Path
 
 from qgis.core import QgsSettings
@@ -428,7 +429,8 @@ def with_letters(texts: Sequence[str]) -> list[str]:
     ]
 
 
-def _places(text: str) -> dict[str, int]:
+@functools.lru_cache(maxsize=256)
+def _places(text: str) -> Mapping[str, int]:
     """Return where each letter of a text stands, first letters of words in front."""
     found = [k for k, letter in enumerate(text) if letter.isalpha()]
     found.sort(key=lambda k: k > 0 and text[k - 1].isalpha())
@@ -438,7 +440,9 @@ def _places(text: str) -> dict[str, int]:
     return places
 
 
-def _give_letter(number: int, places: list[dict[str, int]], taken: dict[str, int], tried: set[str]) -> bool:
+def _give_letter(
+    number: int, places: list[Mapping[str, int]], taken: dict[str, int], tried: set[str]
+) -> bool:
     """Find a letter for a text, if need be by giving others another one (augmenting paths)."""
     for letter in places[number]:
         if letter not in taken:

@@ -40,6 +40,12 @@ def demo(root, tmp_path):
     return run
 
 
+@pytest.mark.again(
+    "on the sample site, or on the real ground one thing at a time: test_proving_ground.py, "
+    "test_linked_robots.py and test_roads.py in tests/plugin/loop, tests/plugin/map/test_way_to_the_map.py, "
+    "tests/plugin/control/test_targets_from_elsewhere.py, tests/robot_bridge/links/ros2/test_ros2_live.py, "
+    "tests/robot_bridge/links/replay/test_replay_live.py"
+)
 def test_the_whole_of_it_happens_on_the_real_proving_ground(demo, data, tmp_path):
     for package in ("cyclonedds", "rosbags"):
         pytest.importorskip(package, reason=f"{package} is not installed; run make setup")

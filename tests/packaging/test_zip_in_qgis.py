@@ -33,18 +33,15 @@ def bare_environment(unpacked, tmp_path) -> dict[str, str]:
     return {"PATH": "/usr/local/bin:/usr/bin:/bin", **kept, **mine}
 
 
-def test_qgis_process_lists_the_algorithm_and_describes_it(bare_environment):
-    listed = subprocess.run(
-        [program("qgis_process"), "list"], env=bare_environment, capture_output=True, text=True, check=True
-    )
-    assert "exportrobotmap" in listed.stdout, listed.stdout[-2000:] + listed.stderr[-2000:]
+def test_qgis_process_knows_the_algorithm_and_describes_it(bare_environment):
     described = subprocess.run(
         [program("qgis_process"), "help", "fleet:exportrobotmap"],
         env=bare_environment,
         capture_output=True,
         text=True,
-        check=True,
+        check=False,
     )
+    assert described.returncode == 0, described.stdout[-2000:] + described.stderr[-2000:]
     assert "OBSTACLES" in described.stdout
 
 

@@ -37,7 +37,7 @@ def run(tmp_path_factory) -> Run:
         pytest.skip("there is no Xvfb; run: make setup")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(endurance, "RASTER_CACHE", RASTER_CACHE)
-        return endure(12.0, 1, ROBOTS, pauses=(1.0, 4.0), folder=tmp_path_factory.mktemp("endurance"))
+        return endure(8.0, 1, ROBOTS, pauses=(1.0, 3.0), folder=tmp_path_factory.mktemp("endurance"))
 
 
 def test_nothing_goes_wrong_and_nothing_is_left(run):

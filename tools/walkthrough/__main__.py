@@ -17,6 +17,7 @@ from pathlib import Path
 from robot_bridge.core.sites.site import read_site
 from tests.support.errors import StageError
 from tests.support.fleet import SITE, account, start_gateway, start_robots
+from tests.support.forked_programs import write_shell_command
 from tests.support.processes import Processes
 from tests.support.program import ended
 from tests.support.qgis import Profile, virtual_screen
@@ -86,8 +87,11 @@ def open_qgis(processes: Processes, display: str, walk: Walk, home: Path) -> Win
     plan = {"journal": str(FOLDER / "journal.jsonl"), "socket": str(FOLDER / "reporter")}
     Path(plan["socket"]).unlink(missing_ok=True)
     profile = Profile(FOLDER / "profile", link=False, greeted=walk.greeted, theme=walk.theme)
-    # The practice fleet of the tour is looked for there.
-    path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
+    # The practice fleet of the tour is looked for there; forked, it loads no modules.
+    programs = FOLDER / "bin"
+    programs.mkdir(exist_ok=True)
+    write_shell_command(programs / "robot-bridge")
+    path = os.pathsep.join((str(programs), os.environ["PATH"]))
     settings = {"HOME": str(home)}
     qgis = start_qgis(processes, profile, "reporter_session.py", plan, display, path=path, settings=settings)
     next(follow(processes, qgis, Path(plan["journal"]), OPENING_S))

@@ -17,7 +17,6 @@ class AccountsDesk:
 
     def __init__(self, plugin, iface, gateway, wait):
         self._plugin, self._iface, self._gateway, self.wait = plugin, iface, gateway, wait
-        self.status = self.window().status
 
     def connect(self) -> None:
         panel = self._plugin.window.dock.connection_panel
@@ -32,6 +31,10 @@ class AccountsDesk:
 
     def open(self) -> None:
         self._iface.findChild(QAction, "fleet_accounts").trigger()
+
+    @property
+    def status(self):
+        return self.window().status
 
     def window(self):
         return self._iface.findChild(QDialog, "fleet_accounts_dialog")

@@ -7,7 +7,7 @@ import time
 import pytest
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import QgsProject
-from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDialog, QDockWidget
 
 from tests.plugin.conftest import let_deleted_go
 from tests.plugin.planning.panel_parts import (
@@ -26,6 +26,12 @@ PANELS = {
     "fleet_replay": "fleet_replay_dock",
 }
 NAMES = list(PANELS.values())
+WINDOWS = {
+    "fleet_accounts": "fleet_accounts_dialog",
+    "fleet_site_choice": "fleet_sites_dialog",
+    "fleet_recordings": "fleet_recordings_dialog",
+}
+"""By the actions that open them."""
 
 
 def dock_of(iface, name):
@@ -41,6 +47,13 @@ def test_at_the_start_and_connected_none_has_its_parts(at_desk, iface):
     # QGIS lists them for its menu of panels all the same.
     titles = [dock_of(iface, name).toggleViewAction().text() for name in NAMES]
     assert titles == ["Cone plan", "Observations", "Replay"]
+
+
+def test_at_the_start_and_connected_no_window_of_supervisors_is_made(at_desk, iface):
+    for action, window in WINDOWS.items():
+        assert iface.findChild(QDialog, window) is None
+        iface.findChild(QAction, action).trigger()
+        assert iface.findChild(QDialog, window).isVisible()
 
 
 @pytest.mark.parametrize(("action", "name"), PANELS.items())

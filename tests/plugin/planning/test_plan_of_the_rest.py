@@ -148,21 +148,21 @@ def test_no_click_is_lost_between_two_and_a_pause_waits_for_no_answer(under_way,
 
 
 @pytest.mark.parametrize(
-    ("state", "button"),
-    [("driven", "rest"), ("driven", "clear"), ("driven", "pause"), ("paused", "resume"),
-     ("proposed", "confirm"), ("proposed", "discard")],
-)  # fmt: skip
-def test_every_refusal_is_told_with_its_reason(under_way, plans, gateway, wait, iface, state, button):
+    ("state", "buttons"),
+    [("driven", ("rest", "clear", "pause")), ("paused", ("resume",)), ("proposed", ("confirm", "discard"))],
+)
+def test_every_refusal_is_told_with_its_reason(under_way, plans, gateway, wait, iface, state, buttons):
     if state == "proposed":
         offered(under_way, plans, wait)
     else:
         plans.tell(state=state)
     wait(lambda: state_of(under_way) == state, 5)
-    for method in STEERING:
-        gateway.refuse[method] = f"{method}: anna is viewer, and that takes operator"
-    press(under_way, f"fleet_plan_{button}")
-    wait(lambda: hung(iface, "anna is viewer, and that takes operator"), 5)
-    assert state_of(under_way) == state and not under_way.driven.asking
+    for button in buttons:
+        why = f"{button}: anna is viewer, and that takes operator"
+        gateway.refuse.update(dict.fromkeys(STEERING, why))
+        press(under_way, f"fleet_plan_{button}")
+        wait(lambda why=why: hung(iface, why), 5)
+        assert state_of(under_way) == state and not under_way.driven.asking
 
 
 def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
