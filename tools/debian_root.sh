@@ -1,7 +1,7 @@
 # A Debian in a root folder of its own, built once and kept; sourced by programs that set before
 #
 #   NAME      what their lines begin with
-#   SUITE     the Debian, MIRROR where its packages come from
+#   SUITE     the Debian, MIRROR where its packages come from, ARCH for which computers where not for this one
 #   PLACE     the folder, PLACE.log beside it; PACKAGES what it has installed
 #   OURS      a file in it that says that this program made the folder, and may empty it
 #   AGAIN     the command to be run again, for advice
@@ -53,7 +53,7 @@ build_base() {
     : >"$PLACE.log"
     script=/usr/share/debootstrap/scripts/$SUITE
     [ -e "$script" ] || script=/usr/share/debootstrap/scripts/sid
-    quietly debootstrap debootstrap --variant=minbase "$SUITE" "$PLACE" "$MIRROR" "$script"
+    quietly debootstrap debootstrap ${ARCH:+--arch="$ARCH"} --variant=minbase "$SUITE" "$PLACE" "$MIRROR" "$script"
     touch "$PLACE/.base"
 }
 

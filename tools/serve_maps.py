@@ -16,16 +16,22 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
+import urllib.error
+import urllib.request
 from pathlib import Path
 
 from qgis.core import (
     Qgis,
     QgsApplication,
+    QgsCoordinateReferenceSystem,
+    QgsCoordinateTransform,
     QgsDataSourceUri,
     QgsMapLayerType,
     QgsMarkerSymbol,
     QgsProject,
     QgsProperty,
+    QgsRectangle,
     QgsSingleSymbolRenderer,
     QgsSymbolLayer,
     QgsVectorLayer,
@@ -38,6 +44,12 @@ from robot_bridge.gateway.storage.map_views import SCHEMA
 ROOT = Path(__file__).resolve().parents[1]
 SAMPLE = ROOT / "resources" / "sample_site" / "sample_site.qgz"
 SERVER = "qgis_mapserver"
+PLUGINS = Path(__file__).resolve().with_name("qgis_server_plugins")
+"""What refuses requests that reach for more than the project, and says where the fleet's layers lie."""
+GUARDED = b"REQUEST of WMS is one of"
+"""How it refuses."""
+WIDEST = 4096
+"""Pixels that a picture may have each way: one of 20 000 took 30 s and 1.6 GB, and all others waited."""
 FLEET = {
     "trajectories": "Trajectories",
     "observations": "Observations",
@@ -91,9 +103,12 @@ def write_project(source: Path, fleet: str | None, target: Path) -> list[str]:
             f"project {source}: the data of layer {', '.join(missing)} is gone; open it in QGIS and mend or "
             "remove the layer"
         )
+    around = _extent(project)
     for layer in fleet_layers(fleet):
         project.addMapLayer(layer)
-    _publish(project)
+        extent = _transformed(around, project.crs(), layer.crs(), project)
+        layer.setCustomProperty("fleet/extent", extent.asWktPolygon())
+    _publish(project, around)
     project.setFilePathStorage(Qgis.FilePathType.Absolute)
     if not project.write(str(target)):
         raise ServiceError(f"project {target} cannot be written: {project.error()}")
@@ -117,6 +132,24 @@ def fleet_layers(fleet: str | None) -> list[QgsVectorLayer]:
         _style(view, layer)
         layers.append(layer)
     return layers
+
+
+def _extent(project: QgsProject) -> QgsRectangle:
+    """Return where the layers of the site are, in the CRS of ``project``: where robots may be."""
+    around = QgsRectangle()
+    for layer in project.mapLayers().values():
+        if layer.isSpatial() and not layer.extent().isEmpty():
+            around.combineExtentWith(_transformed(layer.extent(), layer.crs(), project.crs(), project))
+    return around
+
+
+def _transformed(
+    rectangle: QgsRectangle,
+    of: QgsCoordinateReferenceSystem,
+    to: QgsCoordinateReferenceSystem,
+    project: QgsProject,
+) -> QgsRectangle:
+    return QgsCoordinateTransform(of, to, project).transformBoundingBox(rectangle)
 
 
 def _application() -> QgsApplication:
@@ -163,8 +196,9 @@ def _style(view: str, layer: QgsVectorLayer) -> None:
     layer.setRenderer(QgsSingleSymbolRenderer(symbol))
 
 
-def _publish(project: QgsProject) -> None:
+def _publish(project: QgsProject, around: QgsRectangle) -> None:
     """Have QGIS Server publish every layer of ``project``: pictures of all, features of those with any."""
+    corners = (around.xMinimum(), around.yMinimum(), around.xMaximum(), around.yMaximum())
     layers = project.mapLayers()
     vectors = [id for id, layer in layers.items() if layer.type() == QgsMapLayerType.VectorLayer]
     crs = list(dict.fromkeys([project.crs().authid(), *WEB]))
@@ -174,6 +208,9 @@ def _publish(project: QgsProject) -> None:
         ("WMSServiceTitle", "/", title),
         ("WMSCrsList", "/", crs),
         ("WFSLayers", "/", vectors),
+        ("WMSExtent", "/", [str(corner) for corner in corners]),
+        ("WMSMaxWidth", "/", WIDEST),
+        ("WMSMaxHeight", "/", WIDEST),
         ("WMTSLayers", "Project", True),
         ("WMTSLayers", "Layer", list(layers)),
         ("WMTSPngLayers", "Project", True),
@@ -185,23 +222,53 @@ def _publish(project: QgsProject) -> None:
     ]
     for scope, key, value in entries:
         project.writeEntry(scope, key, value)
+    # Whatever the project allows, these services only read.
+    for key in ("Update", "Insert", "Delete"):
+        project.removeEntry("WFSTLayers", key)
 
 
 def _serve(program: str, project: Path, port: int) -> int:
     """Run QGIS Server until this program is interrupted or told to end; return its status."""
     address = f"127.0.0.1:{port}"
-    server = subprocess.Popen(
-        [program, "-p", project, address],
-        env={**os.environ, "QT_QPA_PLATFORM": "offscreen", "QGIS_SERVER_LOG_STDERR": "1"},
-    )
+    environment = {
+        "QGIS_PROJECT_FILE": str(project),
+        "QGIS_PLUGINPATH": str(PLUGINS),
+        "QT_QPA_PLATFORM": "offscreen",
+        "QGIS_SERVER_LOG_STDERR": "1",
+    }
+    server = subprocess.Popen([program, address], env={**os.environ, **environment})
     signal.signal(signal.SIGTERM, lambda *_: server.terminate())
-    print(f"WMS, WMTS and WFS at http://{address}/, OGC API Features at http://{address}/wfs3/", flush=True)
     try:
+        _check_guard(server, address)
+        print(
+            f"WMS, WMTS and WFS at http://{address}/, OGC API Features at http://{address}/wfs3/", flush=True
+        )
         status = server.wait()
     except KeyboardInterrupt:
         server.terminate()
         status = server.wait()
     return 0 if status in (0, -signal.SIGTERM, -signal.SIGINT) else status
+
+
+def _check_guard(server: subprocess.Popen[bytes], address: str) -> None:
+    """Wait until the server answers; raise ServiceError where it does not refuse what it has to."""
+    while server.poll() is None:
+        try:
+            urllib.request.urlopen(
+                f"http://{address}/?SERVICE=WMS&REQUEST=GetProjectSettings", timeout=60
+            ).close()
+        except urllib.error.HTTPError as error:
+            if error.code == 400 and GUARDED in error.read():
+                return
+        except OSError:
+            time.sleep(0.1)
+            continue
+        server.terminate()
+        server.wait()
+        raise ServiceError(
+            f"{SERVER} does not load {PLUGINS}, so it would read files for whoever asks; run: apt-get "
+            "install libqgispython" + Qgis.QGIS_VERSION.partition("-")[0]
+        )
 
 
 def _arguments() -> argparse.Namespace:

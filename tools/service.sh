@@ -19,6 +19,7 @@ MAPS_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-maps.service
 USERS=$DESTDIR/usr/lib/sysusers.d/robot-bridge.conf
 SETTINGS=$DESTDIR/etc/robot-bridge/robot-bridge.env
 MAPS_SETTINGS=$DESTDIR/etc/robot-bridge/maps.env
+GUARD=qgis_server_plugins/fleet_services
 
 say() { printf 'service: %s\n' "$*"; }
 
@@ -89,6 +90,9 @@ install_maps() {
         stop "QGIS Server or PyQGIS of /usr/bin/python3 is missing: apt-get install qgis-server python3-qgis"
     packages=$(python3 -c 'import sys; print("lib/python{}.{}/site-packages".format(*sys.version_info))')
     install -D -m 644 tools/serve_maps.py "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
+    for file in __init__.py metadata.txt; do
+        install -D -m 644 "tools/$GUARD/$file" "$DESTDIR$PREFIX/share/robot-bridge/$GUARD/$file"
+    done
     install -d "$(dirname "$MAPS_UNIT")"
     sed "s|@PREFIX@|$PREFIX|g; s|@PACKAGES@|$packages|g" resources/service/robot-bridge-maps.service > "$MAPS_UNIT"
     install_settings resources/service/maps.env "$MAPS_SETTINGS"
@@ -106,6 +110,7 @@ uninstall_service() {
         fi
     done
     rm -f "$UNIT" "$LINK_UNIT" "$MAPS_UNIT" "$USERS" "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
+    rm -rf "$DESTDIR$PREFIX/share/robot-bridge/qgis_server_plugins"
     if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
         rm -rf "$DESTDIR$PREFIX"
     fi

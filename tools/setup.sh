@@ -54,6 +54,7 @@ missing_servers() {
     "$python" -c 'import MySQLdb' >/dev/null 2>&1 || echo python3-mysqldb
     ls /usr/share/postgresql/*/extension/postgis.control >/dev/null 2>&1 || echo postgresql-postgis
     has qgis_mapserver || echo qgis-server
+    has nginx || [ -x /usr/sbin/nginx ] || echo nginx
     has chromium || has google-chrome || echo chromium
     has debootstrap || [ -x /usr/sbin/debootstrap ] || echo debootstrap
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto

@@ -59,10 +59,15 @@ def doctor(
     site: SiteOption,
     database: DatabaseOption = "",
     database_password_file: PasswordFileOption = None,
-    host: Annotated[str, typer.Option(help="Address that the gateway listens on.")] = "",
+    host: Annotated[
+        str, typer.Option(help="Address that the gateway listens on.", envvar="ROBOT_BRIDGE_HOST")
+    ] = "",
     port: Annotated[int | None, typer.Option(help="Port that it listens on.", min=1, max=65535)] = None,
-    certificate: Annotated[Path | None, typer.Option(help="The gateway's certificate (PEM).")] = None,
-    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    certificate: Annotated[
+        Path | None,
+        typer.Option(help="The gateway's certificate (PEM).", envvar="ROBOT_BRIDGE_CERTIFICATE"),
+    ] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key (PEM).", envvar="ROBOT_BRIDGE_KEY")] = None,
 ) -> None:
     """Check what a gateway needs on this computer, and say what to do.
 

@@ -41,15 +41,20 @@ def serve(
     database: options.DatabaseOption = "",
     database_password_file: options.PasswordFileOption = None,
     host: Annotated[
-        str, typer.Option(help=f"Address to listen on ({HOST}); beyond loopback with TLS and accounts.")
+        str,
+        typer.Option(
+            help=f"Address to listen on ({HOST}); beyond loopback with TLS and accounts.",
+            envvar="ROBOT_BRIDGE_HOST",
+        ),
     ] = "",
     port: Annotated[
         int | None, typer.Option(help=f"Port to listen on ({PORT}); 0 takes any.", min=0, max=65535)
     ] = None,
     certificate: Annotated[
-        Path | None, typer.Option(help="The gateway's certificate (PEM), for wss://.")
+        Path | None,
+        typer.Option(help="The gateway's certificate (PEM), for wss://.", envvar="ROBOT_BRIDGE_CERTIFICATE"),
     ] = None,
-    key: Annotated[Path | None, typer.Option(help="Its key (PEM).")] = None,
+    key: Annotated[Path | None, typer.Option(help="Its key (PEM).", envvar="ROBOT_BRIDGE_KEY")] = None,
     gateway_name: Annotated[
         str,
         typer.Option(

@@ -3,14 +3,17 @@
 # there, so that the test needs no network.
 #
 #   PLACE=/var/tmp/fleet-appliance-bookworm   where it is kept; delete it to begin anew
+#   ARCH=arm64      for other computers than this one; qemu-user-static runs their programs
+#   ALSO=PACKAGES   more Debian packages; give a PLACE of its own with them
 set -eu
 cd "$(dirname "$0")/../.."
 
 SUITE=${SUITE:-bookworm}
-PLACE=${PLACE:-/var/tmp/fleet-appliance-$SUITE}
+ARCH=${ARCH:-}
+PLACE=${PLACE:-/var/tmp/fleet-appliance-$SUITE${ARCH:+-$ARCH}}
 MIRROR=${MIRROR:-http://deb.debian.org/debian}
 OURS=$PLACE/.fleet-appliance
-PACKAGES="systemd systemd-sysv dbus iproute2 python3-venv ca-certificates nftables chrony avahi-daemon"
+PACKAGES="systemd systemd-sysv dbus iproute2 python3-venv ca-certificates nftables chrony avahi-daemon${ALSO:+ $ALSO}"
 EXTRAS=postgresql,mariadb,speed
 
 NAME=appliance_root AGAIN="this as root"

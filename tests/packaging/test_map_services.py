@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
 import json
 import os
+import ssl
 import subprocess
 import sys
+import urllib.error
 import urllib.parse
 import urllib.request
 from pathlib import Path
@@ -26,6 +29,7 @@ from qgis.PyQt.QtGui import QImage
 from sqlalchemy import insert
 
 from robot_bridge.core.sites.settings import read_settings
+from robot_bridge.gateway.auth import certificates
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.map_views import map_views_on, virtual_layers
@@ -41,6 +45,7 @@ FRAME = read_settings(SITE / "site.toml").frame
 NOW = 1_790_000_000.0
 EXTENT = (640420.0, 5193485.0, 640500.0, 5193545.0)
 SIZE = (640, 480)
+NGINX_WRITES = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
 ENVIRONMENT = {"QT_QPA_PLATFORM": "offscreen"}
 
 
@@ -48,6 +53,7 @@ class Services:
     """QGIS Server on the sample project, with a fleet in a SQLite file."""
 
     def __init__(self, folder: Path, processes: Processes) -> None:
+        self.folder, self.processes = folder, processes
         self.database = f"sqlite:///{folder}/fleet.db"
         self.fleet, self.project = folder / "fleet.vrt", folder / "written.qgs"
         run_once(self.database, revisions.create)
@@ -72,6 +78,14 @@ class Services:
         address = f"{self.url}{path}?{urllib.parse.urlencode(query)}"
         with urllib.request.urlopen(address, timeout=120) as answer:
             return answer.read()
+
+    def refusal(self, body: bytes | None = None, **query: str) -> str:
+        """Return why a request is refused; fails where it is answered."""
+        address = f"{self.url}?{urllib.parse.urlencode(query)}"
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            urllib.request.urlopen(address, data=body, timeout=120)
+        assert refused.value.code == 400
+        return refused.value.read().decode()
 
     @staticmethod
     def _fill(connection) -> None:
@@ -220,6 +234,130 @@ def test_qgis_is_a_client_too(services, qgis_app):
     )
     assert features.isValid(), features.error().summary()
     assert sorted(one["robot"] for one in features.getFeatures()) == ["r1", "r2"]
+
+
+MAP = {
+    **{"SERVICE": "WMS", "REQUEST": "GetMap", "VERSION": "1.3.0", "LAYERS": "Robots", "CRS": "EPSG:4326"},
+    **{"BBOX": "46,16,47,17", "WIDTH": "9", "HEIGHT": "9", "FORMAT": "image/png"},
+}
+GET_FEATURE = {"SERVICE": "WFS", "VERSION": "1.1.0", "REQUEST": "GetFeature", "TYPENAME": "Robots"}
+ENV = "<Function name='env'><Literal>HOME</Literal></Function>"
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        (MAP | {"map": "/srv/other.qgz"}, "MAP is no parameter"),
+        ({"MAP": "/srv/other.qgz"}, "a path below /wfs3"),
+        (MAP | {"SLD": "http://127.0.0.1/"}, "SLD is no parameter"),
+        (MAP | {"SLD_BODY": "<a/>"}, "SLD_BODY is no parameter"),
+        (MAP | {"HIGHLIGHT_SYMBOL": "<a/>"}, "HIGHLIGHT_SYMBOL is no parameter"),
+        (MAP | {"LAYERS": "EXTERNAL_WMS:a", "a:url": "http://127.0.0.1/"}, "A?URL is no parameter"),
+        (MAP | {"FILTER": "Robots:" + ENV}, "no functions"),
+        (MAP | {"LAYERS": "Walls,walls"}, "LAYERS names a layer twice"),
+        (MAP | {"WIDTH": "4097"}, "map size is too large"),
+        (MAP | {"FORMAT": "application/dxf"}, "FORMAT is none"),
+        (MAP | {"REQUEST": "GetPrint"}, "REQUEST of WMS is one of"),
+        (GET_FEATURE | {"EXP_FILTER": "env('HOME') = '/'"}, "EXP_FILTER is no parameter"),
+        (GET_FEATURE | {"FILTER": f"<Filter>{ENV}</Filter>"}, "no functions"),
+        (GET_FEATURE | {"SORTBY": "\"v\"*(env('HOME')~'/')"}, "SORTBY may hold names"),
+        (GET_FEATURE | {"REQUEST": "Transaction"}, "REQUEST of WFS is one of"),
+        ({"SERVICE": "WCS", "REQUEST": "GetCapabilities"}, "SERVICE is one of"),
+    ],
+)
+def test_what_reaches_beyond_the_project_is_refused(services, query, said):
+    assert said in services.refusal(**query)
+
+
+def test_a_body_is_refused_and_so_is_what_it_would_write(services):
+    assert "have no body" in services.refusal(b"<Transaction/>")
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        address = f"{services.url}wfs3/collections/Walls/items/1"
+        urllib.request.urlopen(urllib.request.Request(address, method="DELETE"))
+    assert refused.value.code == 403
+
+
+def test_filters_and_orders_that_clients_ask_for_are_answered(services):
+    same = "<PropertyName>robot</PropertyName><Literal>r2</Literal>"
+    chosen = f"<Filter><PropertyIsEqualTo>{same}</PropertyIsEqualTo></Filter>"
+    page = json.loads(services.get(**GET_FEATURE, OUTPUTFORMAT="GeoJSON", FILTER=chosen, SORTBY="robot D"))
+    assert [one["properties"]["robot"] for one in page["features"]] == ["r2"]
+    assert services.get(**(MAP | {"FILTER": "Robots:\"robot\" = 'r2'"})).startswith(b"\x89PNG")
+
+
+class Proxy:
+    """nginx before the services, by the settings that the guide names."""
+
+    def __init__(self, services: Services, program: str, folder: Path) -> None:
+        (folder / "passwords").write_text("ada:{PLAIN}secret\n", "utf-8")
+        tls = certificates.create(folder / "tls", ["localhost"], ["127.0.0.1"])
+        port, written = free_port(), (ROOT / "resources" / "service" / "maps-proxy.conf").read_text("utf-8")
+        for there, here in {
+            "listen 443": f"listen 127.0.0.1:{port}",
+            "127.0.0.1:8790": f"127.0.0.1:{services.port}",
+            "/etc/nginx/maps.passwords": f"{folder}/passwords",
+            "/etc/nginx/maps.pem": str(tls.certificate),
+            "/etc/nginx/maps-key.pem": str(tls.key),
+        }.items():
+            assert there in written
+            written = written.replace(there, here)
+        places = " ".join(f"{kind}_temp_path {folder}/{kind};" for kind in NGINX_WRITES)
+        settings = folder / "nginx.conf"
+        settings.write_text(
+            f"daemon off; pid {folder}/pid; error_log stderr notice; user root; events {{}}\n"
+            f"http {{ access_log off; {places}\n{written} }}\n",
+            "utf-8",
+        )
+        services.processes.start("proxy", [program, "-p", folder, "-c", settings])
+        services.processes.wait_for_line("proxy", "start worker process ", 60)
+        self.url = f"https://localhost:{port}/"
+        self._context = ssl.create_default_context(cafile=tls.ca)
+
+    def ask(self, path: str, password: str = "secret", **how) -> str:
+        """Return what a request is answered with; raises HTTPError."""
+        login = base64.b64encode(f"ada:{password}".encode()).decode()
+        request = urllib.request.Request(self.url + path, headers={"Authorization": f"Basic {login}"}, **how)
+        with urllib.request.urlopen(request, timeout=120, context=self._context) as answer:
+            return answer.read().decode()
+
+
+@pytest.fixture(scope="module")
+def proxy(services, tmp_path_factory):
+    try:
+        program = find_program("nginx", "/usr/sbin")
+    except StageError as error:
+        pytest.skip(f"{error}; run: make setup")
+    return Proxy(services, program, tmp_path_factory.mktemp("proxy"))
+
+
+def test_a_proxy_lets_in_by_password_only_and_answers_by_its_own_address(proxy):
+    for path in (
+        "?SERVICE=WMS&REQUEST=GetCapabilities",
+        "?SERVICE=WFS&VERSION=1.1.0&REQUEST=GetCapabilities",
+        "?SERVICE=WMTS&REQUEST=GetCapabilities",
+        "wfs3/collections/Robots/items.json",
+        "wfs3/api",
+    ):
+        # A client that is led to http:// would send its password there.
+        assert proxy.url in (answer := proxy.ask(path)) and "http://localhost" not in answer, path
+    for how, status in {
+        ("wrong", None, "GET"): 401,
+        ("secret", b"<Transaction/>", "POST"): 403,
+        ("secret", None, "DELETE"): 403,
+    }.items():
+        with pytest.raises(urllib.error.HTTPError) as refused:
+            proxy.ask("wfs3/collections/Walls/items/1", how[0], data=how[1], method=how[2])
+        assert refused.value.code == status
+
+
+def test_layers_of_a_fleet_that_is_not_there_yet_lie_on_the_site(services):
+    from owslib.wms import WebMapService
+
+    contents = WebMapService(services.url, version="1.3.0").contents
+    west, south, east, north = contents["Observations"].boundingBoxWGS84
+    assert (west, south) > (16.842, 46.879) and (east, north) < (16.846, 46.882)
+    own = contents["Orthophoto"].boundingBoxWGS84
+    assert west <= own[0] and south <= own[1] and east >= own[2] and north >= own[3]
 
 
 @pytest.mark.parametrize(

@@ -49,7 +49,7 @@ set_option() { sed -i "s|^#\?$1=.*|$1=$2|" "$SETTINGS/robot-bridge.env"; }
 # with_settings COMMAND...: with the gateway's own environment
 with_settings() {
     as_bridge env "ROBOT_BRIDGE_SITE=$DATA/site" "ROBOT_BRIDGE_DATABASE=sqlite:///$DATA/fleet.db" \
-        $(grep -h '^ROBOT_BRIDGE_' "$SETTINGS/robot-bridge.env") "$@"
+        $(grep -h '^ROBOT_BRIDGE_\|^PGPASSFILE=' "$SETTINGS/robot-bridge.env") "$@"
 }
 
 # administer COMMAND...: robot-bridge by whoever may do everything in the database
