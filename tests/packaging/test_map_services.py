@@ -6,7 +6,6 @@ import base64
 import json
 import os
 import ssl
-import subprocess
 import sys
 import urllib.error
 import urllib.parse
@@ -37,9 +36,10 @@ from robot_bridge.gateway.storage.schema import robots, trajectories
 from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
 from tests.support.processes import Processes, free_port
+from tools import serve_maps
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = ROOT / "tools" / "serve_maps.py"
+PROGRAM = Path(serve_maps.__file__)
 SITE = ROOT / "resources" / "sample_site"
 FRAME = read_settings(SITE / "site.toml").frame
 NOW = 1_790_000_000.0
@@ -60,11 +60,10 @@ class Services:
         run_once(self.database, self._fill)
         self.fleet.write_text(virtual_layers(f"{folder}/fleet.db", FRAME), "utf-8")
         self.port = free_port()
-        command = [sys.executable, PROGRAM, "--fleet", self.fleet]
-        subprocess.run(
-            [*command, "--write", self.project], check=True, env={**os.environ, **ENVIRONMENT}, timeout=120
-        )
-        processes.start("services", [*command, "--port", str(self.port)], env={**os.environ, **ENVIRONMENT})
+        command = [PROGRAM, "--fleet", self.fleet]
+        assert run_here([*command, "--write", self.project]) == 0
+        command = [sys.executable, *command, "--port", str(self.port)]
+        processes.start("services", command, env={**os.environ, **ENVIRONMENT})
         processes.wait_for_line("services", "listening on", 120)
         self.url = f"http://127.0.0.1:{self.port}/"
 
@@ -79,9 +78,9 @@ class Services:
         with urllib.request.urlopen(address, timeout=120) as answer:
             return answer.read()
 
-    def refusal(self, body: bytes | None = None, **query: str) -> str:
+    def refusal(self, body: bytes | None = None, path: str = "", **query: str) -> str:
         """Return why a request is refused; fails where it is answered."""
-        address = f"{self.url}?{urllib.parse.urlencode(query)}"
+        address = f"{self.url}{path}?{urllib.parse.urlencode(query)}"
         with pytest.raises(urllib.error.HTTPError) as refused:
             urllib.request.urlopen(address, data=body, timeout=120)
         assert refused.value.code == 400
@@ -101,8 +100,18 @@ class Services:
         map_views_on(connection).make(FRAME)
 
 
+def run_here(words) -> int | str | None:
+    """Run ``serve_maps.py`` in this process, which has QGIS already; return what it ends with."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "argv", list(map(str, words)))
+        try:
+            return serve_maps.main()
+        except SystemExit as end:
+            return end.code
+
+
 @pytest.fixture(scope="module")
-def services(tmp_path_factory):
+def services(tmp_path_factory, qgis_app):
     try:
         find_program("qgis_mapserver", "/usr/bin")
     except StageError as error:
@@ -240,6 +249,12 @@ MAP = {
     **{"SERVICE": "WMS", "REQUEST": "GetMap", "VERSION": "1.3.0", "LAYERS": "Robots", "CRS": "EPSG:4326"},
     **{"BBOX": "46,16,47,17", "WIDTH": "9", "HEIGHT": "9", "FORMAT": "image/png"},
 }
+INFO = MAP | {
+    **{"REQUEST": "GetFeatureInfo", "CRS": FRAME.crs, "BBOX": ",".join(map(str, EXTENT))},
+    **{"WIDTH": "640", "HEIGHT": "480", "QUERY_LAYERS": "Robots", "INFO_FORMAT": "application/json"},
+    **{"I": "320", "J": "240", "FI_POINT_TOLERANCE": "1000000000", "FEATURE_COUNT": "1000000000"},
+}
+LEGEND = {"SERVICE": "WMS", "REQUEST": "GetLegendGraphic", "LAYER": "Robots", "FORMAT": "image/png"}
 GET_FEATURE = {"SERVICE": "WFS", "VERSION": "1.1.0", "REQUEST": "GetFeature", "TYPENAME": "Robots"}
 ENV = "<Function name='env'><Literal>HOME</Literal></Function>"
 
@@ -255,11 +270,23 @@ ENV = "<Function name='env'><Literal>HOME</Literal></Function>"
         (MAP | {"LAYERS": "EXTERNAL_WMS:a", "a:url": "http://127.0.0.1/"}, "A?URL is no parameter"),
         (MAP | {"FILTER": "Robots:" + ENV}, "no functions"),
         (MAP | {"LAYERS": "Walls,walls"}, "LAYERS names a layer twice"),
-        (MAP | {"WIDTH": "4097"}, "map size is too large"),
+        (MAP | {"WIDTH": "4097"}, "WIDTH is a number of at most 4096"),
+        (INFO | {"HEIGHT": "20000"}, "HEIGHT is a number of at most 4096"),
+        (INFO | {"QUERY_LAYERS": "Robots,robots"}, "QUERY_LAYERS names a layer twice"),
+        (INFO | {"FILTER_GEOM": "POINT(0 0)"}, "FILTER_GEOM is no parameter"),
+        (INFO | {"WITH_MAPTIP": "1"}, "WITH_MAPTIP is no parameter"),
+        (LEGEND | {"SYMBOLWIDTH": "4000"}, "SYMBOLWIDTH is no parameter"),
+        (LEGEND | {"DPI": "100000"}, "DPI is a number of at most 1200"),
         (MAP | {"FORMAT": "application/dxf"}, "FORMAT is none"),
-        (MAP | {"REQUEST": "GetPrint"}, "REQUEST of WMS is one of"),
+        *(
+            (MAP | {"REQUEST": request}, "REQUEST of WMS is one of")
+            for request in ("GetPrint", "GetProjectSettings", "GetStyles", "GetContext")
+        ),
+        ({}, "a path below /wfs3"),
+        ({"path": "wfs3/collections", "MAP": "/srv/other.qgz"}, "MAP is no parameter"),
         (GET_FEATURE | {"EXP_FILTER": "env('HOME') = '/'"}, "EXP_FILTER is no parameter"),
         (GET_FEATURE | {"FILTER": f"<Filter>{ENV}</Filter>"}, "no functions"),
+        (GET_FEATURE | {"FILTER": "<!DOCTYPE a [<!ENTITY b 'c'>]><Filter>&b;</Filter>"}, "no entities"),
         (GET_FEATURE | {"SORTBY": "\"v\"*(env('HOME')~'/')"}, "SORTBY may hold names"),
         (GET_FEATURE | {"REQUEST": "Transaction"}, "REQUEST of WFS is one of"),
         ({"SERVICE": "WCS", "REQUEST": "GetCapabilities"}, "SERVICE is one of"),
@@ -267,6 +294,46 @@ ENV = "<Function name='env'><Literal>HOME</Literal></Function>"
 )
 def test_what_reaches_beyond_the_project_is_refused(services, query, said):
     assert said in services.refusal(**query)
+
+
+@pytest.mark.parametrize("request_", [MAP, INFO], ids=["GetMap", "GetFeatureInfo"])
+@pytest.mark.parametrize(
+    "condition",
+    [
+        "env('HOME') LIKE '/%'",
+        "file_size('/etc/passwd') > 1",
+        "eval('1 = 1')",
+        "aggregate('Walls', 'count', 1) > 0",
+        # All that follow pass the check of QGIS Server.
+        "'a'||env('HOME')||'b'",
+        "'1'=(select(count(*))from(sqlite_master))or'1'='2'",
+        '"pg_sleep" ( 9 )',
+        "'a\\'=env('HOME')||'b'",
+        "'a'='a';<a/>",
+    ],
+)
+def test_a_filter_of_a_map_compares_fields_with_values_and_does_nothing_else(services, request_, condition):
+    assert "FILTER may compare" in services.refusal(**request_, FILTER=f"Robots:{condition}")
+
+
+def test_features_at_a_place_are_those_of_the_layers_and_of_the_filter(services):
+    def found(**query):
+        return {one["properties"]["robot"] for one in json.loads(services.get(**INFO, **query))["features"]}
+
+    assert found() == {"r1", "r2"}
+    assert found(FILTER="Robots:\"robot\" IN ( 'r2' , 'r3' ) AND \"v\" >= 0.5;") == {"r2"}
+
+
+def test_no_error_says_where_on_this_computer_something_is(services):
+    wrong = [
+        *({**MAP, name: "none"} for name in ("LAYERS", "BBOX", "CRS", "FORMAT", "STYLES")),
+        MAP | {"FILTER": 'Robots:"none" = 1'},
+        *({**INFO, name: "none"} for name in ("QUERY_LAYERS", "INFO_FORMAT", "I", "FI_POINT_TOLERANCE")),
+        *({**GET_FEATURE, name: value} for name, value in {"TYPENAME": "none", "FILTER": "<Filter>"}.items()),
+    ]
+    said = [services.refusal(**query) for query in wrong]
+    folders = {"/usr", "/etc", "/home", "/root", str(ROOT), str(services.folder), services.project.name}
+    assert [(text, one) for text in said for one in folders if one in text] == []
 
 
 def test_a_body_is_refused_and_so_is_what_it_would_write(services):
@@ -372,10 +439,5 @@ def test_what_is_missing_is_named_before_anything_is_served(tmp_path, services, 
     project = services.project.read_text("utf-8").replace("layername=walls", "layername=gone")
     (tmp_path / "gone.qgs").write_text(project, "utf-8")
     words = [word.format(folder=tmp_path) for word in options]
-    command = [sys.executable, PROGRAM, *words, "--write", str(tmp_path / "services.qgs")]
-    done = subprocess.run(
-        command, capture_output=True, text=True, env={**os.environ, **ENVIRONMENT}, timeout=120
-    )
-    assert done.returncode == 1
-    assert said in done.stderr
+    assert said in run_here([PROGRAM, *words, "--write", tmp_path / "services.qgs"])
     assert not (tmp_path / "services.qgs").exists()

@@ -45,6 +45,15 @@ NAMES = {
 }
 """Lists of names: what QGIS Server sorts by it takes for expressions."""
 MOST_LETTERS = 4000
+MOST = {"width": 4096, "height": 4096, "dpi": 1200, "map_resolution": 1200}
+"""QGIS Server makes a picture of that size for GetFeatureInfo, too, and has a bound of its own for maps only."""
+NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?")
+WORD = r"""(?:[\s0-9.(),=<>]|!=|-(?=[0-9])|'[^'";\\]*'|"[^'";\\]*"(?!\s*\()|(?:AND|OR|NOT|IN|IS|NULL|I?LIKE)\b)"""
+CONDITION = rf"""[^:;<'"]+:{WORD}+"""
+CONDITIONS = re.compile(rf"{CONDITION}(;{CONDITION})*;?", re.IGNORECASE)
+"""FILTER of WMS. QGIS Server has a check of its own before it asks the database by it, and that takes for a text
+what has quotes at both ends, 'a'||f()||'b' too, and a function for a field whose name is in quotes."""
+XML = re.compile(r"\(?<.*>\)?", re.DOTALL)
 
 
 class RefusedError(Exception):
@@ -94,14 +103,20 @@ def _check_features(path: str, given: Mapping[str, str]) -> None:
 def _check_value(name: str, value: str) -> None:
     if len(value) > MOST_LETTERS:
         raise RefusedError(f"{name.upper()} has more than {MOST_LETTERS} letters.")
-    if name == "filter" and "<" in value and re.search("function|<!|&", value, re.IGNORECASE):
+    if name == "filter" and value and not (CONDITIONS.fullmatch(value) or _is_xml(value)):
         raise RefusedError("FILTER may compare fields with values, and has no functions and no entities.")
+    if name in MOST and value and not (NUMBER.fullmatch(value) and float(value) <= MOST[name]):
+        raise RefusedError(f"{name.upper()} is a number of at most {MOST[name]}.")
     if name in REPEATED and len(names := value.lower().split(",")) != len(set(names)):
         raise RefusedError(f"{name.upper()} names a layer twice.")
     if name == "format" and "dxf" in value.lower():
         raise RefusedError("FORMAT is none that is served here; features are served by WFS.")
     if name in NAMES and not NAMES[name].fullmatch(value):
         raise RefusedError(f"{name.upper()} may hold names.")
+
+
+def _is_xml(value: str) -> bool:
+    return bool(XML.fullmatch(value)) and not re.search("function|<!|&", value, re.IGNORECASE)
 
 
 def _shown(name: str) -> str:
