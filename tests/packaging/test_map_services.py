@@ -7,9 +7,12 @@ import json
 import os
 import ssl
 import sys
+import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from contextlib import closing
+from http.client import HTTPSConnection
 from pathlib import Path
 
 import numpy as np
@@ -380,12 +383,28 @@ class Proxy:
         self.url = f"https://localhost:{port}/"
         self._context = ssl.create_default_context(cafile=tls.ca)
 
-    def ask(self, path: str, password: str = "secret", **how) -> str:
+    def ask(self, path: str, password: str = "secret", headers: dict[str, str] | None = None, **how) -> str:
         """Return what a request is answered with; raises HTTPError."""
-        login = base64.b64encode(f"ada:{password}".encode()).decode()
-        request = urllib.request.Request(self.url + path, headers={"Authorization": f"Basic {login}"}, **how)
+        headers = login(password) | (headers or {})
+        request = urllib.request.Request(self.url + path, headers=headers, **how)
         with urllib.request.urlopen(request, timeout=120, context=self._context) as answer:
             return answer.read().decode()
+
+    def statuses(self, password: str, times: int) -> list[int]:
+        """Return how so many requests on one connection are answered."""
+        found = []
+        where = urllib.parse.urlsplit(self.url).netloc
+        with closing(HTTPSConnection(where, timeout=120, context=self._context)) as connection:
+            for _ in range(times):
+                connection.request("HEAD", "/wfs3", headers=login(password))
+                answer = connection.getresponse()
+                answer.read()
+                found.append(answer.status)
+        return found
+
+
+def login(password: str) -> dict[str, str]:
+    return {"Authorization": f"Basic {base64.b64encode(f'ada:{password}'.encode()).decode()}"}
 
 
 @pytest.fixture(scope="module")
@@ -417,6 +436,12 @@ def test_a_proxy_lets_in_by_password_only_and_answers_by_its_own_address(proxy):
         assert refused.value.code == status
 
 
+def test_addresses_in_answers_are_none_that_a_client_says(proxy):
+    said = dict.fromkeys(("X-Forwarded-Host", "X-Qgis-Service-Url", "X-Qgis-WMS-Service-Url"), "a.example")
+    answer = proxy.ask("?SERVICE=WMS&REQUEST=GetCapabilities", headers=said | {"Forwarded": "host=a.example"})
+    assert proxy.url in answer and "a.example" not in answer
+
+
 def test_layers_of_a_fleet_that_is_not_there_yet_lie_on_the_site(services):
     from owslib.wms import WebMapService
 
@@ -441,3 +466,10 @@ def test_what_is_missing_is_named_before_anything_is_served(tmp_path, services, 
     words = [word.format(folder=tmp_path) for word in options]
     assert said in run_here([PROGRAM, *words, "--write", tmp_path / "services.qgs"])
     assert not (tmp_path / "services.qgs").exists()
+
+
+def test_passwords_cannot_be_guessed_fast(proxy):
+    began = time.monotonic()
+    refused = proxy.statuses("wrong", 400)
+    assert set(refused) == {401, 429}
+    assert refused.count(401) <= 200 + 20 * (time.monotonic() - began) + 2

@@ -46,13 +46,15 @@ NAMES = {
 """Lists of names: what QGIS Server sorts by it takes for expressions."""
 MOST_LETTERS = 4000
 MOST = {"width": 4096, "height": 4096, "dpi": 1200, "map_resolution": 1200}
-"""QGIS Server makes a picture of that size for GetFeatureInfo, too, and has a bound of its own for maps only."""
+"""QGIS Server bounds the picture of a map only; GetFeatureInfo makes one, too."""
 NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?")
-WORD = r"""(?:[\s0-9.(),=<>]|!=|-(?=[0-9])|'[^'";\\]*'|"[^'";\\]*"(?!\s*\()|(?:AND|OR|NOT|IN|IS|NULL|I?LIKE)\b)"""
+FIELD = r"""\"[^'";\\]*"(?!\s*\()"""
+TEXT = r"""'[^'";\\]*'"""
+WORD = rf"(?:[\s0-9.(),=<>]|!=|-(?=[0-9])|{TEXT}|{FIELD}|(?:AND|OR|NOT|IN|IS|NULL|I?LIKE)\b)"
 CONDITION = rf"""[^:;<'"]+:{WORD}+"""
 CONDITIONS = re.compile(rf"{CONDITION}(;{CONDITION})*;?", re.IGNORECASE)
-"""FILTER of WMS. QGIS Server has a check of its own before it asks the database by it, and that takes for a text
-what has quotes at both ends, 'a'||f()||'b' too, and a function for a field whose name is in quotes."""
+"""FILTER of WMS, which goes to the database. The check of QGIS Server takes for a text what has quotes at
+both ends, such as 'a'||f()||'b', and for a field a function whose name has quotes."""
 XML = re.compile(r"\(?<.*>\)?", re.DOTALL)
 
 
