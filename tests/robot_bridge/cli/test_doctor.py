@@ -26,9 +26,9 @@ def bridge(start_bridge, sample_site):
 def check(sample_site, tmp_path):
     """Run it, where no gateway listens: return its status, and level and text by subject."""
 
-    def run(*options, site=sample_site, database=f"sqlite:///{tmp_path}/fleet.db"):
+    def run(*options, site=sample_site, database=f"sqlite:///{tmp_path}/fleet.db", env=None):
         where = () if "--port" in options else ("--port", free_port())
-        done = run_command("doctor", "--site", site, "--database", database, *where, *options)
+        done = run_command("doctor", "--site", site, "--database", database, *where, *options, env=env)
         lines = [line.split(maxsplit=1) for line in done.stdout.splitlines()]
         assert not done.stderr
         return done.returncode, {rest[:12].strip(): (level, rest[13:]) for level, rest in lines}
@@ -78,6 +78,30 @@ def test_beyond_this_computer_it_takes_tls_and_an_account(check, tmp_path):
     done = run_command("operators", "add", "Ada", "--role", "supervisor", "--database", database)
     assert done.returncode == 0, done.stderr
     assert check(*secure)[1]["reach"][0] == "ok"
+
+
+def test_the_environment_says_how_the_gateway_is_reached_where_no_option_does(check, tmp_path):
+    files = certificates.create(tmp_path / "tls", ["gateway.example.org"], [])
+    env = {
+        "ROBOT_BRIDGE_HOST": "0.0.0.0",
+        "ROBOT_BRIDGE_CERTIFICATE": str(files.certificate),
+        "ROBOT_BRIDGE_KEY": str(files.key),
+    }
+    status, found = check(env=env)
+    assert status == 1 and "robot-bridge operators add" in found["reach"][1]
+    assert found["certificate"][0] == "ok" and "gateway.example.org" in found["certificate"][1]
+    status, found = check("--host", "127.0.0.1", env=env)
+    assert status == 0 and found["reach"] == ("ok", "127.0.0.1: nobody beyond this computer")
+    status, found = check(env={"ROBOT_BRIDGE_HOST": "0.0.0.0"})
+    assert status == 1 and "robot-bridge tls create" in found["reach"][1]
+
+
+@pytest.mark.parametrize("given", ["ROBOT_BRIDGE_CERTIFICATE", "ROBOT_BRIDGE_KEY"])
+def test_a_certificate_and_its_key_come_together(sample_site, tmp_path, given):
+    files = certificates.create(tmp_path / "tls", ["gateway"], [])
+    file = files.key if given == "ROBOT_BRIDGE_KEY" else files.certificate
+    done = run_command("doctor", "--site", sample_site, env={given: str(file)})
+    assert done.returncode == 1 and "--certificate and --key" in done.stderr
 
 
 @pytest.mark.parametrize(("days", "level"), [(29, "warning"), (40, "ok")])

@@ -234,6 +234,21 @@ def test_site_toml_says_where_to_listen_and_what_to_use(site, tmp_path, start_pr
     assert (tmp_path / "named.db").is_file()
 
 
+def test_the_environment_says_it_before_site_toml(site, tmp_path, start_program):
+    from robot_bridge.gateway.auth import certificates
+
+    with (site / "site.toml").open("a") as file:
+        file.write(f'[gateway]\nhost = "::1"\nport = 0\ndatabase = "sqlite:///{tmp_path}/named.db"\n')
+    files = certificates.create(tmp_path / "tls", ["gateway"], ["127.0.0.2"])
+    env = {
+        "ROBOT_BRIDGE_HOST": "127.0.0.2",
+        "ROBOT_BRIDGE_CERTIFICATE": str(files.certificate),
+        "ROBOT_BRIDGE_KEY": str(files.key),
+    }
+    said = start_program(["serve", "--site", site], r"listening on (wss?://\S+)", env)
+    assert said.startswith("wss://127.0.0.2:")
+
+
 @pytest.fixture
 def start_program(tmp_path):
     """Start the program and return what it says first."""
