@@ -77,6 +77,19 @@ def test_every_make_target_that_a_document_names_is_there():
         assert done.returncode == 0, f"a document names make {target}: {done.stderr}"
 
 
+def test_every_program_that_a_document_names_is_there_and_knows_its_variables():
+    named = set()
+    for document in DOCUMENTS:
+        text = document.read_text(encoding="utf-8")
+        named |= set(
+            re.findall(r"((?:[A-Z_]+=\S+ )*)(?<![\w/])((?:tests|tools)/[\w./-]+\.(?:sh|py))\b", text)
+        )
+    assert ("ARCH=arm64 ", "tests/packaging/appliance_root.sh") in named
+    for variables, path in sorted(named):
+        text = (ROOT / path).read_text(encoding="utf-8")
+        assert [name for name in re.findall(r"([A-Z_]+)=", variables) if name not in text] == [], path
+
+
 def test_the_help_lists_every_target():
     shown = subprocess.run(["make"], cwd=ROOT, capture_output=True, text=True, check=True).stdout
     phony = re.search(r"^\.PHONY: (.+)$", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
