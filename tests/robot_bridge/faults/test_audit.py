@@ -55,8 +55,8 @@ def story():
     )
 
 
-def wrong(story):
-    return judged(story.ledger, story.faults, story.stored, story.lines, story.deaths).wrong
+def wrong(story, *stops):
+    return judged(story.ledger, story.faults, story.stored, story.lines, story.deaths, stops).wrong
 
 
 def test_a_right_story_is_right_and_is_counted(story):
@@ -190,3 +190,20 @@ def be_refused_for_no_reason(story):
 def test_one_thing_that_is_wrong_is_found(story, spoil, says):
     spoil(story)
     assert any(says in sentence for sentence in wrong(story)), wrong(story)
+
+
+def test_what_an_emergency_stop_withdrew_need_not_have_been_acted_on(story):
+    del story.lines[0]
+    story.stored.commands[TARGET].state = "aborted"
+    story.stored.steps[TARGET] = [step("queued", 1.0), step("delivered", 1.1), step("aborted", 2.5)]
+    story.stored.commands[STOP].state = "superseded"
+    story.stored.steps[STOP] = [step("queued", 3.0), step("superseded", 3.1)]
+    assert wrong(story, 2.0, 3.05) == []
+    # A stop of before or afterwards withdrew nothing.
+    assert len(wrong(story, 3.05)) == 1 and "never acted on it" in wrong(story, 3.05)[0]
+    assert "it is superseded" in wrong(story, 2.0, 9.0)[0]
+    # Acted on it counts.
+    story.stored.steps[TARGET].insert(2, step("acknowledged", 1.2))
+    story.lines.insert(0, line("acted", 1.15, op="SetPosEnd", number=1, id=5))
+    story.lines.insert(1, line("acted", 1.16, op="SetPosEnd", number=1, id=7))
+    assert any("acted on 2 times" in text for text in wrong(story, 2.0, 3.05))
