@@ -3,19 +3,22 @@
 from __future__ import annotations
 
 import itertools
+import math
 import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+import time
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack
 from dataclasses import dataclass
 from pathlib import Path
+from statistics import fmean
 
 from benchmarks.clock import Spread, spread, table
-from benchmarks.load import MALLOC, SERVER_CORE, SWARM_CORE, site_with_room
+from benchmarks.load import MALLOC, SERVER_CORE, site_with_room
+from benchmarks.load import SWARM_CORE as LOADING_CORE
 from benchmarks.page import Part, goal
-from benchmarks.swarm import Plan, Swarm, cpu_seconds
 from benchmarks.trial import size
 from tests.support.fleet import Served, serve
 from tests.support.operators import Desk, open_desk
@@ -25,14 +28,16 @@ from tools.plugin_files import ROOT
 
 PEER = os.environ.get("PEER", "2a3f103a")
 """The revision beside which this one is measured: the last before several gateways could serve a fleet."""
-ROUNDS = size(5, 1)
+ROUNDS, QUARTETS = size((3, 25), (1, 2))
 TURNS = "now", "then", "then", "now"
-ROBOTS, RATE, OPERATORS, SECONDS = size((200, 10.0, 5, 4.0), (20, 10.0, 2, 1.0))
-DRIVEN, COMMANDS, READIES = size((10, 300, 200), (2, 10, 10))
+ROBOTS, OPERATORS, OPERATOR_RATE = size(50, 5), 5, 5.0
+POSITIONS, COMMANDS, READIES = size((1000, 20, 20), (100, 5, 5))
+"""in each turn."""
+ANSWER_WITHIN = 60.0
 MORE = 0.02
 """by which this revision may be slower."""
 LOADS = {
-    "position": "a position, told to operators",
+    "position": "a position of a robot",
     "command": "a command, from the desk to reached",
     "ready": "a robot that connects, says Ready, has its map and leaves",
 }
@@ -40,11 +45,12 @@ LOADS = {
 TEXT = """\
 One gateway on SQLite of this revision, and one of {peer}, before several gateways could serve a fleet:
 the same Python and libraries, one core for both, the other one for who loads them. In each of {rounds}
-rounds both are started anew, and take the same load by turns, this one first and last: positions of
-{robots} robots, {rate:g} a second each, with {operators} operators, for {seconds:g} s; {commands}
-commands to {driven} robots, one after the other; {readies} robots that connect one after the other. The
-seconds are of the gateway's processor time for each, the ratio that of two turns that followed one
-another, this revision over the other.
+rounds both are started anew, and take the same load by turns, {quartets} times this one, the other one
+twice, this one: in each turn {positions} positions of {robots} robots, with {operators} operators at
+{operator_rate:g} Hz; {commands} commands, one after the other; {readies} robots that connect one after
+the other. Figures are the gateway's processor time for each, as the kernel counts it in nanoseconds; the
+ratio is that of four turns, this revision over the other, and behind it how far its median may be off (a
+standard error). Other work on the machine falls on both.
 
 {figures}
 
@@ -57,15 +63,24 @@ class Side:
     """One of the two gateways with everybody at it."""
 
     served: Served
-    swarm: Swarm
     desk: Desk
     robots: list[RobotWire]
     numbers: Iterator[int]
 
     def position(self) -> float:
         """Return the gateway's seconds for each position."""
-        seen = self.swarm.window(RATE, SECONDS)
-        return seen.cpu / seen.rate
+        steps = range(POSITIONS // ROBOTS)
+        at, used = time.time(), seconds_of(self.served.process.pid)
+        for place, step in itertools.product(range(ROBOTS), steps):
+            x = 20.0 + (next(self.numbers) % 1000) * 0.05
+            self.robots[place].tell(
+                "SendPos", {"x": x, "y": 8.0, "theta": 0.5, "v": 1.0, "t": at + step / 1000}
+            )
+        # A connection answers a ping when it has dealt with what came before.
+        for answered in [robot.connection.ping() for robot in self.robots]:
+            if not answered.wait(ANSWER_WITHIN):
+                raise RuntimeError("a gateway does not answer: is it more than a robot may send?")
+        return (seconds_of(self.served.process.pid) - used) / POSITIONS
 
     def command(self) -> float:
         """Return its seconds for each command."""
@@ -76,16 +91,15 @@ class Side:
         return self._each(self._come_and_go, READIES)
 
     def _each(self, action: Callable[[], None], times: int) -> float:
-        action()
-        used = cpu_seconds(self.served.process.pid)
+        used = seconds_of(self.served.process.pid)
         for _ in range(times):
             action()
-        return (cpu_seconds(self.served.process.pid) - used) / times
+        return (seconds_of(self.served.process.pid) - used) / times
 
     def _command(self) -> None:
         number = next(self.numbers)
-        place = number % DRIVEN
-        robot, name, x = self.robots[place], f"driven-{place}", 20.0 + number // DRIVEN % 2 * 2.0
+        place = number % ROBOTS
+        robot, name, x = self.robots[place], f"robot-{place}", 20.0 + number // ROBOTS % 2 * 2.0
         self.desk.send(f"command-{number:06d}", name, "SetPosEnd", x=x, y=8.0)
         robot.hear("SetPosEnd")
         robot.tell("SendPos", {"x": x, "y": 8.0, "theta": 0.0, "v": 0.0})
@@ -93,13 +107,20 @@ class Side:
 
     def _come_and_go(self) -> None:
         number = next(self.numbers)
-        with RobotWire(f"{self.served.address}/robot?robot=guest-{number % DRIVEN}") as robot:
+        with RobotWire(f"{self.served.address}/robot?robot=guest-{number % ROBOTS}") as robot:
             robot.plug_in(number + 1)
+
+
+def seconds_of(pid: int) -> float:
+    """Return the processor time that a process has used, finer than the ticks of :func:`cpu_seconds`."""
+    tasks = Path(f"/proc/{pid}/task").iterdir()
+    return sum(int((task / "schedstat").read_text(encoding="ascii").split()[0]) for task in tasks) / 1e9
 
 
 def measure(_data: Path) -> Part:
     """Measure both revisions by turns."""
     found: dict[str, dict[str, list[float]]] = {load: {"now": [], "then": []} for load in LOADS}
+    os.sched_setaffinity(0, {LOADING_CORE} & os.sched_getaffinity(0) or os.sched_getaffinity(0))
     with tempfile.TemporaryDirectory(prefix="fleet-before-") as name:
         tree = _tree(Path(name), PEER)
         for number in range(ROUNDS):
@@ -107,12 +128,22 @@ def measure(_data: Path) -> Part:
             folder.mkdir()
             with ExitStack() as stack:
                 sides = {
-                    which: _side(stack, folder / which, of) for which, of in (("now", ROOT), ("then", tree))
+                    "now": _side(stack, folder / "now", ROOT),
+                    "then": _side(stack, folder / "then", tree),
                 }
-                for load, which in itertools.product(LOADS, TURNS):
-                    found[load][which].append(getattr(sides[which], load)())
+                for load in LOADS:
+                    for side in sides.values():
+                        getattr(side, load)()
+                    for _ in range(QUARTETS):
+                        _add_quartet(found[load], sides, load)
             print({load: _ratio(found[load]) for load in LOADS}, file=sys.stderr, flush=True)
     return report(found)
+
+
+def _add_quartet(found: dict[str, list[float]], sides: dict[str, Side], load: str) -> None:
+    turns = [(which, getattr(sides[which], load)()) for which in TURNS]
+    for which, seconds in found.items():
+        seconds.append(fmean(value for name, value in turns if name == which))
 
 
 def _tree(folder: Path, revision: str) -> Path:
@@ -136,21 +167,27 @@ def _side(stack: ExitStack, folder: Path, tree: Path) -> Side:
     served = serve(
         processes, site_with_room(folder), f"sqlite:///{folder}/fleet.db", env=MALLOC, through=through
     )
-    plan = Plan("127.0.0.1", served.port, served.process.pid, ROBOTS, OPERATORS)
-    swarm = stack.enter_context(Swarm(plan, SWARM_CORE))
     desk = stack.enter_context(open_desk(served.address))
+    for _ in range(OPERATORS):
+        operator = stack.enter_context(open_desk(served.address))
+        operator.ask("subscribe", {"rate": OPERATOR_RATE, "form": "columns"})
     robots = []
-    for number in range(DRIVEN):
-        robot = stack.enter_context(RobotWire(f"{served.address}/robot?robot=driven-{number}"))
+    for number in range(ROBOTS):
+        robot = stack.enter_context(RobotWire(f"{served.address}/robot?robot=robot-{number}"))
         robot.plug_in(number + 1)
         robot.tell("SendPos", {"x": 24.0, "y": 8.0, "theta": 0.0, "v": 0.0})
         robots.append(robot)
-    return Side(served, swarm, desk, robots, itertools.count(1))
+    return Side(served, desk, robots, itertools.count(1))
 
 
-def _ratio(seconds: dict[str, Sequence[float]] | dict[str, list[float]]) -> Spread:
-    """Return by how much this revision takes longer, of the turns that followed one another."""
+def _ratio(seconds: dict[str, list[float]]) -> Spread:
+    """Return by how much this revision takes longer."""
     return spread(now / then for now, then in zip(seconds["now"], seconds["then"], strict=True))
+
+
+def _error(ratio: Spread, count: int) -> float:
+    """Return the standard error of a median, by the quartiles of ``count`` values."""
+    return 0.93 * (ratio.high - ratio.low) / math.sqrt(count)
 
 
 def report(found: dict[str, dict[str, list[float]]]) -> Part:
@@ -162,13 +199,15 @@ def report(found: dict[str, dict[str, list[float]]]) -> Part:
             LOADS[load],
             *(f"{spread(seconds[which]).scaled(1e6):.0f}" for which in ("then", "now")),
             f"{ratios[load]:.3f}",
+            f"{_error(ratios[load], len(seconds['now'])):.3f}",
         ]
         for load, seconds in found.items()
     ]
     text = TEXT.format(
-        **{"peer": PEER, "rounds": ROUNDS, "robots": ROBOTS, "rate": RATE, "operators": OPERATORS},
-        **{"seconds": SECONDS, "commands": COMMANDS, "driven": DRIVEN, "readies": READIES, "worst": worst},
-        figures=table(["", f"{PEER}, µs", "this revision, µs", "ratio"], rows),
+        **{"peer": PEER, "rounds": ROUNDS, "robots": ROBOTS, "operators": OPERATORS, "quartets": QUARTETS},
+        **{"operator_rate": OPERATOR_RATE, "positions": POSITIONS, "commands": COMMANDS, "readies": READIES},
+        figures=table(["", f"{PEER}, µs", "this revision, µs", "ratio", "±"], rows),
+        worst=worst,
         goal=goal(f"at most {1 + MORE:g}", worst <= 1 + MORE),
     )
     return Part("One gateway, beside an earlier revision", text, settings=MALLOC)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -291,60 +291,19 @@ class ClusterYard:
         """Judge what happened, once it is finished."""
         stored = run_once(self._url, load_stored)
         kinds = [replace(fault, what=fault.what.rpartition(" g")[0] or fault.what) for fault in self.faults]
-        self.stored = stored
+        lines = self.journal.lines
         stops = [stop.at for stop in self.stopping.stops]
-        findings = judged(self.ledger, kinds, stored, self.journal.lines, Deaths([], {}), stops)
+        findings = judged(self.ledger, kinds, stored, lines, Deaths([], {}), stops)
         findings.wrong += self.stopping.wrong
-        findings.wrong += list(self._moved_while_stopped())
-        findings.wrong += list(self._done_though_refused())
+        findings.wrong += list(moved_while_stopped(lines, self.stopping.stops))
+        findings.wrong += list(done_though_refused(lines, self.ledger.refused))
         for log in sorted((self._folder / "logs").glob("*.log")):
             if "Traceback" in (text := log.read_text(encoding="utf-8", errors="replace")):
                 findings.wrong.append(f"{log.name}: {text[text.index('Traceback') :][-600:]}")
-        findings.back_after = list(self._taken_up_again())
+        findings.back_after = list(taken_up_again(lines, self.faults, self.addresses))
         findings.counts["stops"] = len(self.stopping.stops)
-        findings.counts[AGAIN] = sum(line["what"] == "again" for line in self.journal.lines)
+        findings.counts[AGAIN] = sum(line["what"] == "again" for line in lines)
         return findings
-
-    def _moved_while_stopped(self) -> Iterator[str]:
-        """Yield each command that a robot acted on between hearing of a stop and the asking for its end."""
-        for line in self.journal.lines:
-            if line["what"] != "acted" or line["op"] == "Abort":
-                continue
-            for stop in self.stopping.stops:
-                if stop.heard.get(line["robot"], float("inf")) < line["at"] < stop.ended:
-                    number = line["number"]
-                    yield f"{line['robot']} was sent {line['op']} {number} while {stop.id} was in force"
-
-    def _done_though_refused(self) -> Iterator[str]:
-        acted = {
-            f"{line['robot']}-{line['number']:06d}"
-            for line in self.journal.lines
-            if line["what"] == "acted" and line["op"] != "Abort"
-        }
-        for id, text in self.ledger.refused.items():
-            if id in acted and re.search(NOT_DONE, text):
-                yield f"command {id} was acted on, though the desk was told: {text}"
-
-    def _taken_up_again(self) -> Iterator[float]:
-        """Yield for each gateway that was killed the seconds until another one had its last robot."""
-        ready = sorted(
-            (line for line in self.journal.lines if line["what"] == "ready"), key=lambda line: line["at"]
-        )
-        for fault in self.faults:
-            kind, _, number = fault.what.rpartition(" g")
-            if kind != GATEWAY_KILLED:
-                continue
-            at: dict[str, str] = {}
-            again: dict[str, float] = {}
-            for line in ready:
-                if line["at"] < fault.at:
-                    at[line["robot"]] = line["address"]
-                else:
-                    again.setdefault(line["robot"], line["at"] - fault.at)
-            hit = [robot for robot, address in at.items() if address == self.addresses[int(number)]]
-            found = [again[robot] for robot in hit if robot in again]
-            if found:
-                yield max(found)
 
     # --- the beginning --------------------------------------------------------------------------------
 
@@ -379,3 +338,51 @@ class ClusterYard:
             if time.monotonic() > until:
                 raise StageError(f"the robots did not all come; see the logs in {self._folder}")
             time.sleep(0.1)
+
+
+# --- What is judged beside what the audit does --------------------------------------------------------------
+
+
+def moved_while_stopped(lines: Iterable[dict[str, Any]], stops: Sequence[Stop]) -> Iterator[str]:
+    """Yield each command that a robot acted on between hearing of a stop and the asking for its end."""
+    for line in lines:
+        if line["what"] != "acted" or line["op"] == "Abort":
+            continue
+        for stop in stops:
+            if stop.heard.get(line["robot"], float("inf")) < line["at"] < stop.ended:
+                number = line["number"]
+                yield f"{line['robot']} was sent {line['op']} {number} while {stop.id} was in force"
+
+
+def done_though_refused(lines: Iterable[dict[str, Any]], refused: Mapping[str, str]) -> Iterator[str]:
+    """Yield each command that was acted on though the desk was told that it was not done."""
+    acted = {
+        f"{line['robot']}-{line['number']:06d}"
+        for line in lines
+        if line["what"] == "acted" and line["op"] != "Abort"
+    }
+    for id, said in refused.items():
+        if id in acted and re.search(NOT_DONE, said):
+            yield f"command {id} was acted on, though the desk was told: {said}"
+
+
+def taken_up_again(
+    lines: Iterable[dict[str, Any]], faults: Iterable[Fault], addresses: Sequence[str]
+) -> Iterator[float]:
+    """Yield for each gateway that was killed the seconds until another one had its last robot."""
+    ready = sorted((line for line in lines if line["what"] == "ready"), key=lambda line: float(line["at"]))
+    for fault in faults:
+        kind, _, number = fault.what.rpartition(" g")
+        if kind != GATEWAY_KILLED:
+            continue
+        at: dict[str, str] = {}
+        again: dict[str, float] = {}
+        for line in ready:
+            if line["at"] < fault.at:
+                at[line["robot"]] = line["address"]
+            else:
+                again.setdefault(line["robot"], line["at"] - fault.at)
+        hit = [robot for robot, address in at.items() if address == addresses[int(number)]]
+        found = [again[robot] for robot in hit if robot in again]
+        if found:
+            yield max(found)
