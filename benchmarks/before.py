@@ -54,7 +54,7 @@ standard error). Other work on the machine falls on both.
 
 {figures}
 
-This revision, worst of the three: {worst:.3f} times the processor time ({goal}).
+This revision, worst of the three: {worst:.3f} times the processor time ({goal}).{doubt}
 """
 
 
@@ -190,6 +190,19 @@ def _error(ratio: Spread, count: int) -> float:
     return 0.93 * (ratio.high - ratio.low) / math.sqrt(count)
 
 
+def _doubt(found: dict[str, dict[str, list[float]]]) -> str:
+    """Return what is to be said where the machine was too busy to tell."""
+    highest = []
+    for seconds in found.values():
+        ratio = _ratio(seconds)
+        highest.append(ratio.median + 2 * _error(ratio, len(seconds["now"])))
+    if max(highest) <= 1 + MORE:
+        return ""
+    return (
+        f" Two standard errors allow for up to {max(highest):.3f}: the machine was too busy to rule that out."
+    )
+
+
 def report(found: dict[str, dict[str, list[float]]]) -> Part:
     """Return the part of the page."""
     ratios = {load: _ratio(seconds) for load, seconds in found.items()}
@@ -208,6 +221,7 @@ def report(found: dict[str, dict[str, list[float]]]) -> Part:
         **{"operator_rate": OPERATOR_RATE, "positions": POSITIONS, "commands": COMMANDS, "readies": READIES},
         figures=table(["", f"{PEER}, µs", "this revision, µs", "ratio", "±"], rows),
         worst=worst,
+        doubt=_doubt(found),
         goal=goal(f"at most {1 + MORE:g}", worst <= 1 + MORE),
     )
     return Part("One gateway, beside an earlier revision", text, settings=MALLOC)

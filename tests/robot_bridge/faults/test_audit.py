@@ -204,15 +204,19 @@ def test_what_an_emergency_stop_withdrew_need_not_have_been_acted_on(story):
     story.stored.steps[TARGET] = [step("queued", 1.0), step("delivered", 1.1), step("aborted", 2.5)]
     story.stored.commands[STOP].state = "superseded"
     story.stored.steps[STOP] = [step("queued", 3.0), step("superseded", 3.1)]
-    assert wrong(story, 2.0, 3.05) == []
+    assert wrong(story, (2.0, 2.2), (3.05, 3.1)) == []
     # A stop of before or afterwards withdrew nothing.
-    assert len(wrong(story, 3.05)) == 1 and "never acted on it" in wrong(story, 3.05)[0]
-    assert "it is superseded" in wrong(story, 0.9, 9.0)[0]
+    (found,) = wrong(story, (3.05, 3.1))
+    assert "never acted on it" in found
+    (found,) = wrong(story, (0.9, 0.95), (9.0, 9.5))
+    assert "it is superseded" in found
+    # An Abort that was asked for while a stop was in force gives way to the stop's own, too.
+    assert wrong(story, (0.5, 3.05)) == []
     # Acted on it counts.
     story.stored.steps[TARGET].insert(2, step("acknowledged", 1.2))
     story.lines.insert(0, line("acted", 1.15, op="SetPosEnd", number=1, id=5))
     story.lines.insert(1, line("acted", 1.16, op="SetPosEnd", number=1, id=7))
-    assert any("acted on 2 times" in text for text in wrong(story, 2.0, 3.05))
+    assert any("acted on 2 times" in text for text in wrong(story, (2.0, 2.2), (3.05, 3.1)))
 
 
 def test_what_stops_and_refusals_must_keep_robots_from_is_found():

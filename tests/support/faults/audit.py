@@ -25,7 +25,7 @@ LAST_WORDS_S = 0.5
 CLOCK_S = 0.1
 """seconds by which two processes of this machine may disagree on what came first."""
 STOP_KNOWN_S = 2.0
-"""seconds after an emergency stop in which a gateway that has not heard of it may still queue a command."""
+"""seconds that gateways may differ on whether a stop is in force."""
 LOST_YOUNG = f"... lost, told at most {YOUNG_S:g} s before a gateway was killed"
 LOST_WITH_ROBOT = f"... lost, told at most {LAST_WORDS_S:g} s before the robot itself was killed"
 ORDER = ("queued", "delivered", "acknowledged", "reached")
@@ -88,11 +88,11 @@ def judged(
     stored: Stored,
     lines: Sequence[dict[str, Any]],
     deaths: Deaths,
-    stops: Sequence[float] = (),
+    stops: Sequence[tuple[float, float]] = (),
 ) -> Findings:
     """Judge what is stored by what desks were told, what was done, and what robots wrote down.
 
-    ``stops`` are the times of emergency stops, each of which withdraws what robots have not read yet.
+    ``stops`` are the times of emergency stops and of their ends: what robots have not read is withdrawn.
     """
     findings = Findings(wrong=list(ledger.wrong))
     lines = sorted(lines, key=lambda line: float(line["at"]))
@@ -138,7 +138,7 @@ def _acts(lines: Iterable[dict[str, Any]]) -> Acts:
 
 
 def _judge_commands(
-    ledger: Ledger, stored: Stored, acts: Acts, findings: Findings, stops: Sequence[float]
+    ledger: Ledger, stored: Stored, acts: Acts, findings: Findings, stops: Sequence[tuple[float, float]]
 ) -> None:
     counts = findings.counts
     counts["commands told queued"] = len(ledger.told)
@@ -166,11 +166,12 @@ def _same_message(acts: list[dict[str, Any]], sa_id: int) -> list[dict[str, Any]
     return [act for act in acts if act["id"] == sa_id]
 
 
-def _is_stopped(steps: list[Any], stops: Sequence[float]) -> bool:
+def _is_stopped(steps: list[Any], stops: Sequence[tuple[float, float]]) -> bool:
     """Tell whether a command ended aborted, or superseded by another Abort, of an emergency stop."""
     if not steps or steps[-1].state not in ("aborted", "superseded"):
         return False
-    return any(steps[0].at - STOP_KNOWN_S <= at <= steps[-1].at + CLOCK_S for at in stops)
+    first, last = steps[0].at - STOP_KNOWN_S, steps[-1].at + CLOCK_S
+    return any(at <= last and first <= end for at, end in stops)
 
 
 def _life_faults(command: Any, steps: list[Any], withdrawn: bool = False) -> Iterator[str]:

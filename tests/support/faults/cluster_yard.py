@@ -292,7 +292,7 @@ class ClusterYard:
         stored = run_once(self._url, load_stored)
         kinds = [replace(fault, what=fault.what.rpartition(" g")[0] or fault.what) for fault in self.faults]
         lines = self.journal.lines
-        stops = [stop.at for stop in self.stopping.stops]
+        stops = [(stop.at, stop.ended) for stop in self.stopping.stops]
         findings = judged(self.ledger, kinds, stored, lines, Deaths([], {}), stops)
         findings.wrong += self.stopping.wrong
         findings.wrong += list(moved_while_stopped(lines, self.stopping.stops))
