@@ -299,7 +299,7 @@ class ClusterYard:
         findings.wrong += list(done_though_refused(lines, self.ledger.refused))
         for log in sorted((self._folder / "logs").glob("*.log")):
             if "Traceback" in (text := log.read_text(encoding="utf-8", errors="replace")):
-                findings.wrong.append(f"{log.name}: {text[text.index('Traceback') :][-600:]}")
+                findings.wrong.append(f"{log.name}: {text[text.index('Traceback') :][:3000]}")
         findings.back_after = list(taken_up_again(lines, self.faults, self.addresses))
         findings.counts["stops"] = len(self.stopping.stops)
         findings.counts[AGAIN] = sum(line["what"] == "again" for line in lines)
