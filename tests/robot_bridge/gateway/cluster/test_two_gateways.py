@@ -8,10 +8,8 @@ import signal
 import time
 
 import pytest
-from sqlalchemy import text
 from websockets.exceptions import ConnectionClosed
 
-from robot_bridge.gateway.storage.database import open_engine, read_address
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 from tests.support.databases.database_client import DatabaseClient
@@ -182,31 +180,6 @@ def test_a_robot_that_moves_to_another_gateway_is_known_there(pair, name):
     with standing_still(pair.a):
         pair.robot(pair.b, name, magic=7)
     assert "does not say whether another robot" not in pair.b.output()
-
-
-def test_a_robot_that_is_lost_while_it_is_let_in_is_not_let_in(pair, fleet_url, name):
-    """It would stay connected to a gateway that never tells it anything: as it was lost it was not in yet."""
-    robot = pair.a.robot(name)
-    engine, _ = open_engine(read_address(fleet_url))
-    with engine.connect() as somebody:
-        somebody.execute(text("lock table commands in access exclusive mode"))
-        call = robot.begin("Ready", {"magic": 1})
-        owner = "select gw from robot_owners where robot = ?"
-        wait_until(lambda: pair.b.sql(owner, name) == [("a",)])
-        # As a gateway does that takes over robots whose gateway had no lease for a moment.
-        pair.b.sql(
-            "update robot_owners set gw = g.gw, run = g.run, fence = fence + 1 from gateways g "
-            "where g.gw = 'b' and robot = ?",
-            name,
-        )
-        wait_until(lambda: f"robot {name} has connected to gateway b" in pair.a.output())
-    with pytest.raises(RefusedError, match="another gateway has got it meanwhile"):
-        robot.answer(call)
-    robot.plug_in(1)
-    desk = desk_at(pair.b)
-    desk.wait_for_robots(name)
-    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
-    robot.hear("SetPosEnd")
 
 
 def test_a_gateway_that_dies_is_replaced(pair, name):
