@@ -49,12 +49,13 @@ WAYS_OUT = (OSError, TimeoutError, WebSocketException, RefusedError)
 
 @dataclass
 class Stop:
-    """An emergency stop: when it was asked for, when each robot heard, and when its end was asked for."""
+    """An emergency stop: when it was asked for, each robot heard, its end was asked for, and it was cleared."""
 
     id: str
     at: float
     heard: dict[str, float] = field(default_factory=dict)
     ended: float = float("inf")
+    cleared: float = float("inf")
 
     @property
     def seconds(self) -> float:
@@ -106,6 +107,7 @@ class StoppingDesk(threading.Thread):
             time.sleep(self._random.uniform(*STANDING_S))
             stop.ended = time.time()
             self._insist("clear_emergency_stop", {"stop": stop.id, "reason": "all stand"})
+            stop.cleared = time.time()
 
     def _await_robots(self, stop: Stop) -> None:
         until = time.time() + HEARD_WITHIN_S * BUSY
@@ -292,7 +294,7 @@ class ClusterYard:
         stored = run_once(self._url, load_stored)
         kinds = [replace(fault, what=fault.what.rpartition(" g")[0] or fault.what) for fault in self.faults]
         lines = self.journal.lines
-        stops = [(stop.at, stop.ended) for stop in self.stopping.stops]
+        stops = [(stop.at, stop.cleared) for stop in self.stopping.stops]
         findings = judged(self.ledger, kinds, stored, lines, Deaths([], {}), stops)
         findings.wrong += self.stopping.wrong
         findings.wrong += list(moved_while_stopped(lines, self.stopping.stops))
