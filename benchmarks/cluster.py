@@ -21,7 +21,7 @@ from benchmarks.cluster_crowd import JITTER_S, Plan
 from benchmarks.page import Part, goal
 from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
 from benchmarks.trial import size
-from robot_bridge.gateway.cluster.position_relay import TICK_S
+from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.database_server import DatabaseServer
@@ -44,14 +44,18 @@ STANDING = size(1.0, 0.2)
 OTHERS = range(1, GATEWAYS)
 ACROSS_MS, MORE_MS, IN_FORCE_MS, LAST_MS, SHARE, DIED_S, BACK_S = 50, 20, 50, 500, 0.9, 5, 1
 """What is to be kept to: see :func:`report`."""
+LATEST_MS = 1000 / DESK_RATE + POSITION_TICK_S * 1000 + ACROSS_MS
+"""milliseconds in which a position is to be at a desk elsewhere."""
+FRESH_S = 1 / ROBOT_RATE + LATEST_MS / 1000
+"""seconds that what a desk elsewhere knows of a robot may be old while all is well."""
 
 TEXT = """\
 {gateways} gateways of one fleet on PostgreSQL, which waits for its disk, and one NATS server, and beside
 them, in the same run and with the same load, one gateway alone on PostgreSQL. {robots} robots, each on a
 WebSocket, dealt out evenly, say where they are {robot_rate:g} times a second; a desk at each gateway
 subscribes to all of them at {desk_rate:g} Hz. With one gateway {gateways} desks are at that. All of it is on
-this machine's {cpus} processors, robots and desks together in one process. Delays are from the robot's clock;
-a tick of the desk is {desk_tick:.0f} ms, and one between gateways {tick:.0f} ms.
+this machine's {cpus} processors, robots and these desks together in one process. Delays are from the robot's
+clock; a tick of the desk is {desk_tick:.0f} ms, and one between gateways {tick:.0f} ms.
 
 {first}
 
@@ -62,14 +66,17 @@ as many positions for each second of a core. {share_goal}
 ### Emergency stops
 
 From when a desk at the first gateway asks, of {stops} stops each: until each gateway says to a desk of its
-own that the stop is in force, and until the last robot has heard. *Frozen* is SIGSTOP; what the frozen
-gateway and its robots hear when it wakes does not count.
+own that the stop is in force, and until the last robot has heard. Those desks are told no positions, and are
+in a process of their own. *Frozen* is SIGSTOP; what the frozen gateway and its robots hear when it wakes does
+not count.
 
 {second}
 
 ### What dies
 
-NATS {rounds} times, a gateway once. Robots whose gateway ended go to the next one after up to {jitter:g} s.
+NATS {rounds} times, a gateway once. Robots whose gateway ended go to the next one after up to {jitter:g} s,
+and what is new was said after that. Once NATS is back, new is what is no older than while all is well, at
+most {fresh:.2f} s: each robot says something once in {period:g} s.
 
 {third}
 """
@@ -101,12 +108,13 @@ class Fleet:
         addresses = [one.address for one in gateways]
         # With one gateway as many desks as with several.
         addresses *= GATEWAYS if len(addresses) == 1 else 1
-        plan = Plan(addresses, ROBOTS, ROBOT_RATE, DESK_RATE)
-        self._crowd = Onlooker(sys.executable, "-m", "benchmarks.cluster_crowd", json.dumps(asdict(plan)))
-        self._crowd.line()
+        self._crowd = _onlooker(Plan(addresses, ROBOTS, ROBOT_RATE, DESK_RATE))
+        self._stopping = _onlooker(Plan(addresses, 0, ROBOT_RATE, 0.0))
+        """Desks that make stops and hear of them, in a process that has nothing else to do."""
 
     def end(self) -> None:
         """Let everybody go."""
+        self._stopping.end()
         self._crowd.end()
 
     def measure(self) -> Run:
@@ -130,15 +138,17 @@ class Fleet:
         return Run(watched, cpu, memory, commands, stops, recovered)
 
     def _ask(self, what: str, **how: Any) -> Any:
-        self._crowd.tell(do=what, **how)
-        return self._crowd.line()
+        return _answer(self._crowd, what, **how)
 
     def _stop_while(
         self, trouble: contextlib.AbstractContextManager[None], without: list[int] | None = None
     ) -> dict[str, Any]:
+        others: list[int] = without or []
         with trouble:
-            found: dict[str, Any] = self._ask("stop", desk=0, without=without or [])
-        self._ask("clear")
+            found: dict[str, Any] = _answer(self._stopping, "stop", desk=0, without=others)
+            stop, began = found["stop"], found["began"]
+            found["robots"] = self._ask("stopped", stop=stop, began=began, without=others)
+        _answer(self._stopping, "clear")
         time.sleep(STANDING)
         return found
 
@@ -165,7 +175,7 @@ class Fleet:
     def _lose_nats(self) -> float:
         with self._without_nats():
             time.sleep(NATS_AWAY)
-        seconds: float = self._ask("heard", since=time.time(), desk=0, homes=list(OTHERS))
+        seconds: float = self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
         return seconds
 
     def _lose_gateway(self) -> float:
@@ -174,6 +184,17 @@ class Fleet:
         gateway.wait()
         seconds: float = self._ask("heard", since=since, desk=0, homes=[OTHERS[-1]])
         return seconds
+
+
+def _onlooker(plan: Plan) -> Onlooker:
+    one = Onlooker(sys.executable, "-m", "benchmarks.cluster_crowd", json.dumps(asdict(plan)))
+    one.line()
+    return one
+
+
+def _answer(onlooker: Onlooker, what: str, **how: Any) -> Any:
+    onlooker.tell(do=what, **how)
+    return onlooker.line()
 
 
 def measure(_data: Path) -> Part:
@@ -211,8 +232,7 @@ def _measured(database: DatabaseServer, *, several: bool) -> Run:
 
 def report(one: Run, several: Run) -> Part:
     """Return the part of the page."""
-    desk_tick, tick = 1000 / DESK_RATE, TICK_S * 1000
-    latest = desk_tick + tick + ACROSS_MS
+    desk_tick, tick = 1000 / DESK_RATE, POSITION_TICK_S * 1000
     share = one.microseconds / several.microseconds
     across = _percentile(several.watched["elsewhere"], 99)
     more = _percentile(several.commands, 50) - _percentile(one.commands, 50)
@@ -221,7 +241,7 @@ def report(one: Run, several: Run) -> Part:
     died = max(several.recovered["a gateway killed"])
     back = max(several.recovered["NATS killed, and back after some seconds"])
     goals = {
-        "across": goal(f"p99 at most {latest:.0f} ms", across <= latest),
+        "across": goal(f"p99 at most {LATEST_MS:.0f} ms", across <= LATEST_MS),
         "commands": goal(f"at most {MORE_MS} ms more", more <= MORE_MS),
         "share": goal(f"at least {SHARE}", share >= SHARE),
         "in force": goal(f"p99 at most {IN_FORCE_MS} ms", in_force <= IN_FORCE_MS),
@@ -268,7 +288,7 @@ def report(one: Run, several: Run) -> Part:
     )
     second += f"\n\nIn force: {goals['in force']}. Last robot, also of the worst case: {goals['last']}."
     third = table(
-        ["", "seconds until a desk elsewhere sees all its robots anew", ""],
+        ["", "seconds until a desk elsewhere knows of all its robots what is new", ""],
         [
             [
                 f"NATS killed, back after {NATS_AWAY:g} s: since it is back",
@@ -287,6 +307,8 @@ def report(one: Run, several: Run) -> Part:
             "stops": STOPS,
             "rounds": ROUNDS,
             "jitter": JITTER_S,
+            "fresh": FRESH_S,
+            "period": 1 / ROBOT_RATE,
         },
     )
     return Part("Several gateways", text)

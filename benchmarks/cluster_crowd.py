@@ -35,7 +35,10 @@ GONE = (ConnectionClosed, InvalidHandshake, InvalidMessage, OSError, TimeoutErro
 
 @dataclass(frozen=True)
 class Plan:
-    """Gateways by address; ``robots`` are dealt out to them, and each has a desk that is told at ``rate``."""
+    """Gateways by address; ``robots`` are dealt out to them, and each has a desk that is told at ``rate``.
+
+    At a rate of 0 desks do not subscribe to positions.
+    """
 
     addresses: list[str]
     robots: int
@@ -135,8 +138,9 @@ class Desk:
             try:
                 async with _open(f"{self._address}/desk") as self._socket:
                     await self._socket.send(rpc_call("hello", {"operator": "Ada"}, 1))
-                    subscription = {"rate": self._plan.rate, "form": "columns"}
-                    await self._socket.send(rpc_call("subscribe", subscription, 2))
+                    if self._plan.rate:
+                        subscription = {"rate": self._plan.rate, "form": "columns"}
+                        await self._socket.send(rpc_call("subscribe", subscription, 2))
                     self.up.set()
                     await self._hear(self._socket)
             except GONE:
@@ -198,7 +202,8 @@ class Crowd:
         async with asyncio.timeout(ARRIVED_WITHIN):
             for one in (*(robot.has_map for robot in self._robots), *(desk.up for desk in self._desks)):
                 await one.wait()
-        self._tasks.append(asyncio.create_task(self._drive()))
+        if self._robots:
+            self._tasks.append(asyncio.create_task(self._drive()))
 
     async def do_watch(self, seconds: float) -> dict[str, Any]:
         """Return the delays of positions in milliseconds, of robots at the desk's gateway and of others."""
@@ -235,25 +240,31 @@ class Crowd:
         return found
 
     async def do_stop(self, desk: int, without: Sequence[int] = ()) -> dict[str, Any]:
-        """Make a stop; return the milliseconds until each gateway but ``without`` says that it is in force,
-        and until the last robot of theirs has heard of it."""
+        """Make a stop; return its id, when that was, and the milliseconds until each gateway but ``without``
+        says that it is in force."""
         stop, began = f"bench-{next(self._numbers):08d}", time.time()
         asked = asyncio.create_task(
             self._desks[desk].ask("emergency_stop", {"command": stop, "reason": "measured"})
         )
-        robots = [robot for robot in self._robots if robot.home not in without]
         desks = [one for number, one in enumerate(self._desks) if number not in without]
+        await _until(lambda: all(stop in one.in_force for one in desks))
+        await asked
+        return {
+            "stop": stop,
+            "began": began,
+            "gateways": [(one.in_force[stop] - began) * 1e3 for one in desks],
+        }
+
+    async def do_stopped(self, stop: str, began: float, without: Sequence[int] = ()) -> float:
+        """Return the milliseconds from ``began`` until the last robot heard, those of ``without`` aside."""
+        robots = [robot for robot in self._robots if robot.home not in without]
         try:
             await _until(lambda: all(f"emergency-{stop}" in robot.heard for robot in robots))
-            await _until(lambda: all(stop in one.in_force for one in desks))
         except TimeoutError:
             missed = [one for one in robots if f"emergency-{stop}" not in one.heard]
             text = ", ".join(f"{one.name} of {one.home} ({one.state})" for one in missed[:20])
             raise RuntimeError(f"{len(missed)} robots did not hear of {stop}: {text}") from None
-        await asked
-        heard = max(robot.heard[f"emergency-{stop}"] for robot in robots)
-        gateways = [(one.in_force[stop] - began) * 1e3 for one in desks]
-        return {"stop": stop, "gateways": gateways, "robots": (heard - began) * 1e3}
+        return (max(robot.heard[f"emergency-{stop}"] for robot in robots) - began) * 1e3
 
     async def do_clear(self) -> None:
         """Clear the stop as soon as that can be, and wait until no gateway has it any more."""
@@ -280,6 +291,19 @@ class Crowd:
 
         await _until(all_heard)
         return max(found.values()) - since
+
+    async def do_fresh(self, since: float, desk: int, homes: Sequence[int], age: float) -> float:
+        """Return the seconds from ``since`` until what a desk was told of no robot of ``homes`` is older than
+        ``age`` seconds."""
+        told = self._desks[desk].newest
+        robots = [robot.name for robot in self._robots if robot.home in homes]
+
+        def all_fresh() -> bool:
+            oldest = min(told.get(name, (0.0, 0.0))[0] for name in robots)
+            return time.time() - oldest <= age
+
+        await _until(all_fresh)
+        return time.time() - since
 
     async def _drive(self) -> None:
         began, gap = time.monotonic(), 1 / (self._plan.robot_rate * len(self._robots))

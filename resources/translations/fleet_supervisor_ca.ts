@@ -3232,14 +3232,6 @@
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} encara no ha dit on és; el mapa no hi pot anar.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/density_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot aquí, mostrat com a densitat; amplieu el mapa per veure'l</numerusform>
-                <numerusform>%n robots aquí, mostrats com a densitat; amplieu el mapa per veure'ls un a un</numerusform>
-            </translation>
-        </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
@@ -3329,6 +3321,14 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· fora de línia</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/robots_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrat com a densitat; amplieu el mapa per veure'l</numerusform>
+                <numerusform>%n robots aquí, mostrats com a densitat; amplieu el mapa per veure'ls un a un</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

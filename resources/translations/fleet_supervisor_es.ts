@@ -3232,14 +3232,6 @@
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} aún no ha dicho dónde está; el mapa no puede ir allí.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/density_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot aquí, mostrado como densidad; amplíe el mapa para verlo</numerusform>
-                <numerusform>%n robots aquí, mostrados como densidad; amplíe el mapa para verlos uno a uno</numerusform>
-            </translation>
-        </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
@@ -3329,6 +3321,14 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· sin conexión</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/robots_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrado como densidad; amplíe el mapa para verlo</numerusform>
+                <numerusform>%n robots aquí, mostrados como densidad; amplíe el mapa para verlos uno a uno</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

@@ -3212,13 +3212,6 @@
             <source>{robot} has not said yet where it is; the map cannot go there.</source>
             <translation>{robot} még nem mondta meg, hol van; a térkép nem tud odamenni.</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/density_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot itt, sűrűségként; nagyítson, hogy mindegyik látható legyen</numerusform>
-            </translation>
-        </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>, {remaining:.1f} m to go</source>
@@ -3308,6 +3301,13 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· offline</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/robots_painter.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot itt, sűrűségként; nagyítson, hogy mindegyik látható legyen</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

@@ -1,8 +1,9 @@
-"""``robot-bridge robot``: the reference robot as a program."""
+"""``robot-bridge robot``: the reference robot as a program, in real time on one of the links."""
 
 from __future__ import annotations
 
 import asyncio
+import secrets
 import signal
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
@@ -10,15 +11,24 @@ from contextlib import contextmanager
 from dataclasses import replace
 from enum import Enum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Protocol
 
 import typer
 
 from ..core.errors import BridgeError
 from ..core.messages.robots import SetObject
+from ..core.messages.validation import check_robot_name
 from ..core.parent_process import call_at_end_of_input
+from ..protocol.credentials import ClientCredentials
+from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings, RequestSink, RobotMemory
 from ..reference_robot.body import BodyLimits, ScriptedObject, SimulatedVehicle
+from ..reference_robot.websocket_link import RobotWebSocketLink
 from .options import PasswordFileOption, UntilStdinCloses, database_address
+
+if TYPE_CHECKING:
+    from sqlalchemy import URL
+
+ALIVE_INTERVAL = 1.0
 
 
 class Localisation(str, Enum):
@@ -81,34 +91,31 @@ def robot(
     until_stdin_closes: UntilStdinCloses = False,
 ) -> None:
     """Run the reference robot: a simulated body that speaks the protocol."""
-    from ..protocol.credentials import ClientCredentials
-    from ..reference_robot.runner import ReferenceRobotSettings, run
-
     if (url is None) == (database is None):
         raise BridgeError("a robot has one link: give either --url or --database")
     where, limits = _pose(pose), BodyLimits.of(speed, turn_rate, acceleration)
     if (localisation is Localisation.FILTER) != (world is not None):
         raise BridgeError("--world is the site in which a robot with --localisation filter drives: give both")
-    settings = ReferenceRobotSettings(
-        name=name,
-        url=url,
-        database=None if database is None else database_address(database, database_password_file),
+    settings = AgentSettings(
+        magic=secrets.randbelow(1 << 31),
         pose=where,
         limits=limits,
         rate=rate,
         noise=noise,
         seed=seed,
-        credentials=ClientCredentials(token_file, ca),
         things=tuple(_thing(text) for text in see or ()),
         image=None if image is None else _bytes(image),
         asks_path=ask_path,
         path_cones=path_cones,
         asks_surface=ask_surface,
-        memory=memory,
+        memory=None if memory is None else RobotMemory(memory),
     )
 
-    async def work(settings: ReferenceRobotSettings) -> None:
-        await run(settings, _stop_event(until_stdin_closes))
+    address = None if database is None else database_address(database, database_password_file)
+
+    async def work(settings: AgentSettings) -> None:
+        link = _link(name, url, address, ClientCredentials(token_file, ca))
+        await _run(link, settings, _stop_event(until_stdin_closes))
 
     if world is None:
         asyncio.run(work(settings))
@@ -117,6 +124,57 @@ def robot(
 
     with _localised(world, robot_settings, limits, where, knows_pose, gps, seed) as body:
         asyncio.run(work(replace(settings, body=body, map_margin=MAP_MARGIN)))
+
+
+class RobotLink(RequestSink, Protocol):
+    """Carries the agent's requests out and the server's answers in."""
+
+    async def run(self, agent: Agent) -> None:
+        """Carry messages until cancelled."""
+
+
+def _link(name: str, url: str | None, database: URL | None, credentials: ClientCredentials) -> RobotLink:
+    check_robot_name(name)
+    if url is not None:
+        return RobotWebSocketLink(url, name, credentials)
+    assert database is not None
+    # SQLAlchemy takes as long to load as all the rest, and robots on WebSocket need none.
+    from ..reference_robot.sql_link import RobotSqlLink
+
+    return RobotSqlLink(database, name)
+
+
+async def _run(link: RobotLink, settings: AgentSettings, stop: asyncio.Event) -> None:
+    """Run a robot in real time until ``stop`` is set; it says Stopped before it leaves."""
+    agent = Agent(settings, link)
+    tasks = [
+        asyncio.create_task(work) for work in (link.run(agent), _live(agent), _say_alive(agent), stop.wait())
+    ]
+    done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+    agent.stop()
+    await asyncio.sleep(2 * STEER_EVERY)
+    for task in tasks:
+        task.cancel()
+    await asyncio.gather(*tasks, return_exceptions=True)
+    for task in done:
+        task.result()
+
+
+async def _live(agent: Agent) -> None:
+    """Let the body move in real time, however late the event loop is."""
+    loop = asyncio.get_running_loop()
+    last = loop.time()
+    while True:
+        await asyncio.sleep(STEER_EVERY)
+        now = loop.time()
+        agent.step(min(now - last, 10 * STEER_EVERY))
+        last = now
+
+
+async def _say_alive(agent: Agent) -> None:
+    while True:
+        await asyncio.sleep(ALIVE_INTERVAL)
+        agent.alive()
 
 
 @contextmanager

@@ -6,11 +6,10 @@ import asyncio
 from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
-from .cluster.detail_relay import DetailRelay
 from .cluster.feeds import Followed, Follower, ObservationRelay, QueueFeed, StepFeed
 from .cluster.messages import Wake
-from .cluster.position_relay import PositionRelay
 from .cluster.request_relay import RequestRelay
+from .cluster.robot_relay import DetailRelay, PositionRelay
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.events import SiteChosen

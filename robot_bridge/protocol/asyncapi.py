@@ -7,18 +7,8 @@ from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Any
 
+from ..core.messages import links
 from ..core.messages.administration import PROTOCOL_VERSION, Playback, PlaybackReport
-from ..core.messages.links import (
-    AbortOfAll,
-    GetAreas,
-    LinkColumns,
-    LinkHello,
-    LinkPositions,
-    LinkStatus,
-    LinkWelcome,
-    Released,
-    SiteAreas,
-)
 from ..core.messages.operator_requests import DESK_REQUESTS, Done
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
 from ..core.messages.validation import ROBOT_NAME
@@ -121,7 +111,7 @@ def _frame(properties: Schema, *, required: list[str]) -> Schema:
 
 # --- What goes over ``/link``: the messages of robots, with ``robot`` among the params, and a link's own
 
-CALLS: dict[str, type] = {cls.method: cls for cls in (LinkHello, LinkStatus, GetAreas)}
+CALLS: dict[str, type] = {cls.method: cls for cls in (links.LinkHello, links.LinkStatus, links.GetAreas)}
 """What a link calls for itself, by method."""
 ROBOT_CALLS: dict[str, type] = {op: cls for op, cls in REQUESTS.items() if op != "OpAck"}
 """What a link calls for a robot of its own, by method."""
@@ -130,9 +120,9 @@ ROBOT_ANSWERS: dict[str, type] = {op: cls for op, cls in ANSWERS.items() if op n
 OF_ROBOT = "OfRobot"
 """The end of the names of schemas with ``robot``."""
 _RESULTS: dict[str, type] = {
-    "helloResult": LinkWelcome,
+    "helloResult": links.LinkWelcome,
     "statusResult": Done,
-    "get_areasResult": SiteAreas,
+    "get_areasResult": links.SiteAreas,
 }
 _STOP = "AbortOfAll"
 _PLAYBACK_RESULT = f"{Playback.method}Result"
@@ -152,13 +142,14 @@ def link_documents() -> dict[str, Schema]:
         f"link/{method}.json": schema_of(cls, closed=True) for method, cls in CALLS.items()
     }
     positions = [_with_robot(schema_of(cls, closed=True)) for cls in (SendPos, SendGPS)]
-    received_documents["link/positions.json"] = _with_entries(schema_of(LinkPositions), positions)
-    received_documents["head/link-positions.json"] = schema_of(LinkColumns)
+    received_documents["link/positions.json"] = _with_entries(schema_of(links.LinkPositions), positions)
+    received_documents["head/link-positions.json"] = schema_of(links.LinkColumns)
     sent_documents = {
         f"link-gateway/{op}.json": _with_robot(schema_of(cls)) for op, cls in ROBOT_ANSWERS.items()
     }
     sent_documents |= {
-        f"link-gateway/{cls.__name__}.json": schema_of(cls) for cls in (Start, Released, AbortOfAll)
+        f"link-gateway/{cls.__name__}.json": schema_of(cls)
+        for cls in (Start, links.Released, links.AbortOfAll)
     }
     sent_documents[f"link-gateway/{Playback.method}.json"] = schema_of(Playback)
     received_documents[f"link/{_PLAYBACK_RESULT}.json"] = schema_of(PlaybackReport)
@@ -168,7 +159,14 @@ def link_documents() -> dict[str, Schema]:
 
 def link_schemas(template: str) -> dict[str, Schema]:
     """Return the schemas of the AsyncAPI document; ``template`` is how they refer to each other."""
-    own: list[type] = [*CALLS.values(), LinkPositions, LinkColumns, *_RESULTS.values(), Released, AbortOfAll]
+    own: list[type] = [
+        *CALLS.values(),
+        links.LinkPositions,
+        links.LinkColumns,
+        *_RESULTS.values(),
+        links.Released,
+        links.AbortOfAll,
+    ]
     own += [Playback, PlaybackReport]
     robots: list[type] = [*ROBOT_CALLS.values(), *ROBOT_ANSWERS.values()]
     found = definitions(robots, template, list(ROBOT_CALLS.values()))
@@ -181,18 +179,18 @@ def link_schemas(template: str) -> dict[str, Schema]:
 
 def link_channel() -> Schema:
     """Return the endpoint with its messages."""
-    positions = {LinkPositions.method: LinkPositions}
-    extra = {"Start": Start, "Released": Released}
+    positions = {links.LinkPositions.method: links.LinkPositions}
+    extra = {"Start": Start, "Released": links.Released}
     messages = {
         **calls(CALLS),
         **calls(ROBOT_CALLS, OF_ROBOT),
         **calls(ROBOT_ANSWERS, OF_ROBOT),
         **results(_RESULTS),
         **news({**positions, **extra}),
-        **in_columns({LinkPositions.method: LinkColumns}),
+        **in_columns({links.LinkPositions.method: links.LinkColumns}),
         **calls({Playback.method: Playback}),
         **results({_PLAYBACK_RESULT: PlaybackReport}),
-        _STOP: message(_STOP, AbortOfAll, call(AbortOfAll.method, _STOP, with_id=False)),
+        _STOP: message(_STOP, links.AbortOfAll, call(links.AbortOfAll.method, _STOP, with_id=False)),
         "OpAck": result(OpAck),
         "error": error(),
     }
@@ -203,7 +201,7 @@ def link_channel() -> Schema:
 def link_operations() -> Schema:
     """Return what the gateway receives of links and sends them, each with what answers it."""
     acknowledged = ("OpAck", "error")
-    positions = [LinkPositions.method, f"{LinkPositions.method}InColumns"]
+    positions = [links.LinkPositions.method, f"{links.LinkPositions.method}InColumns"]
     return {
         **{
             f"link.{name}": operation("receive", "link", [name], (f"{name}Result", "error")) for name in CALLS

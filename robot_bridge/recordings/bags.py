@@ -17,17 +17,7 @@ from pathlib import Path
 from typing import IO, Any, NamedTuple
 
 from ..core.messages.validation import COORDINATE
-from .tracks import (
-    LATITUDE,
-    LONGITUDE,
-    SPEED_BOUNDS,
-    WGS84,
-    RecordingError,
-    Remarks,
-    Sample,
-    Source,
-    ValueRefusedError,
-)
+from . import tracks
 
 # --- A message as a bag holds it, and the bounds of all bags ---
 
@@ -320,7 +310,7 @@ _UNIT = 0.1
 """How far a quaternion may be from length 1."""
 
 
-def read_bag(bag: Path, topics: Sequence[str], remarks: Remarks) -> Source:
+def read_bag(bag: Path, topics: Sequence[str], remarks: tracks.Remarks) -> tracks.Source:
     """Return the positions in a bag, a file or the folder of a rosbag2.
 
     ``topics`` are patterns of those that are read, none for all that tell positions. Times are those at which
@@ -334,26 +324,30 @@ def read_bag(bag: Path, topics: Sequence[str], remarks: Remarks) -> Source:
     if first is None:
         because = f"; {remarks.texts[0]}" if remarks.texts else ""
         which = "none of the topics asked for" if topics else "no topic"
-        raise RecordingError(f"{bag}: {which} tells a position{because}")
+        raise tracks.RecordingError(f"{bag}: {which} tells a position{because}")
     is_earth, sample = first
-    return Source(WGS84 if is_earth else None, chain([sample], _of_one_kind(bag, found, is_earth)))
+    return tracks.Source(
+        tracks.WGS84 if is_earth else None, chain([sample], _of_one_kind(bag, found, is_earth))
+    )
 
 
-def _of_one_kind(bag: Path, found: Iterator[tuple[bool, Sample]], is_earth: bool) -> Iterator[Sample]:
+def _of_one_kind(
+    bag: Path, found: Iterator[tuple[bool, tracks.Sample]], is_earth: bool
+) -> Iterator[tracks.Sample]:
     for other, sample in found:
         if other is not is_earth:
-            raise RecordingError(f"{bag} tells places in degrees and in metres; choose with topics")
+            raise tracks.RecordingError(f"{bag} tells places in degrees and in metres; choose with topics")
         yield sample
 
 
 class _BagReading:
-    def __init__(self, bag: Path, topics: Sequence[str], remarks: Remarks) -> None:
+    def __init__(self, bag: Path, topics: Sequence[str], remarks: tracks.Remarks) -> None:
         self._bag, self._topics, self._remarks = bag, topics, remarks
         self._robots: dict[str, str] = {}
         """the topic of each robot."""
         self._decode = _decoder()
 
-    def samples(self) -> Iterator[tuple[bool, Sample]]:
+    def samples(self) -> Iterator[tuple[bool, tracks.Sample]]:
         for file in self._files():
             try:
                 for message in _FILES[file.suffix](file):
@@ -362,7 +356,7 @@ class _BagReading:
             except CutOffError as error:
                 self._remarks.add(f"{file}", f"nothing behind is read: {error}")
             except OSError as error:
-                raise RecordingError(f"{file} cannot be read: {error.strerror or error}") from None
+                raise tracks.RecordingError(f"{file} cannot be read: {error.strerror or error}") from None
 
     def _files(self) -> list[Path]:
         if not self._bag.is_dir():
@@ -374,19 +368,19 @@ class _BagReading:
     def _is_wanted(self, topic: str) -> bool:
         return not self._topics or any(fnmatchcase(topic, pattern) for pattern in self._topics)
 
-    def _of(self, file: Path, message: Message) -> Iterator[tuple[bool, Sample]]:
+    def _of(self, file: Path, message: Message) -> Iterator[tuple[bool, tracks.Sample]]:
         robot = message.topic.strip("/").rpartition("/")[0] or self._bag.name.split(".")[0]
         known = self._robots.setdefault(robot, message.topic)
         if known != message.topic:
-            raise RecordingError(
+            raise tracks.RecordingError(
                 f"{self._bag}: {known} and {message.topic} both tell where robot {robot!r} is; choose with "
                 f"topics = ['*/{known.rpartition('/')[2]}']"
             )
         try:
             if len(message.data) > LARGEST:
-                raise ValueRefusedError("data", f"it has {len(message.data)} bytes")
+                raise tracks.ValueRefusedError("data", f"it has {len(message.data)} bytes")
             yield message.kind == EARTH, _bag_sample(message, robot, self._decode(message))
-        except ValueRefusedError as error:
+        except tracks.ValueRefusedError as error:
             self._remarks.add(f"{file}: message {message.number} of {message.topic}", str(error))
 
 
@@ -395,7 +389,7 @@ def _decoder() -> Callable[[Message], Any]:
         from rosbags.serde import SerdeError
         from rosbags.typesys import Stores, get_typestore
     except ModuleNotFoundError as error:
-        raise RecordingError(
+        raise tracks.RecordingError(
             f"bags need the Python package rosbags, and {error.name} is missing; install it with: pip "
             "install 'fleet-supervisor-robot-bridge[ros2]'"
         ) from None
@@ -408,34 +402,36 @@ def _decoder() -> Callable[[Message], Any]:
                 return ros1.deserialize_ros1(message.data, kind)
             return ros2.deserialize_cdr(message.data, kind)
         except (SerdeError, IndexError, ValueError, OverflowError, MemoryError, KeyError) as error:
-            raise ValueRefusedError("data", f"it is no {message.kind} ({error})") from None
+            raise tracks.ValueRefusedError("data", f"it is no {message.kind} ({error})") from None
 
     return decode
 
 
-def _bag_sample(message: Message, robot: str, content: Any) -> Sample:
+def _bag_sample(message: Message, robot: str, content: Any) -> tracks.Sample:
     number, t = message.number, message.t
     if message.kind == EARTH:
         if content.status.status <= _NO_FIX:
-            raise ValueRefusedError("status", "the receiver has no fix")
+            raise tracks.ValueRefusedError("status", "the receiver has no fix")
         lon, lat = (
-            _finite(content.longitude, "longitude", LONGITUDE),
-            _finite(content.latitude, "latitude", LATITUDE),
+            _finite(content.longitude, "longitude", tracks.LONGITUDE),
+            _finite(content.latitude, "latitude", tracks.LATITUDE),
         )
-        return Sample(number, robot, t, lon, lat)
+        return tracks.Sample(number, robot, t, lon, lat)
     pose = content.pose if message.kind == KINDS[1] else content.pose.pose
     x, y = (_finite(getattr(pose.position, name), f"position.{name}", COORDINATE) for name in "xy")
     v = math.nan
     if message.kind == KINDS[0]:
         ahead, aside = content.twist.twist.linear.x, content.twist.twist.linear.y
-        v = _finite(math.copysign(math.hypot(ahead, aside), ahead or 1.0), "twist.linear", SPEED_BOUNDS)
-    return Sample(number, robot, t, x, y, _yaw(pose.orientation), v)
+        v = _finite(
+            math.copysign(math.hypot(ahead, aside), ahead or 1.0), "twist.linear", tracks.SPEED_BOUNDS
+        )
+    return tracks.Sample(number, robot, t, x, y, _yaw(pose.orientation), v)
 
 
 def _yaw(q: Any) -> float:
     parts = [_finite(getattr(q, name), f"orientation.{name}", (-2.0, 2.0)) for name in "xyzw"]
     if abs(math.hypot(*parts) - 1.0) > _UNIT:
-        raise ValueRefusedError("orientation", f"{tuple(parts)} is no rotation: its length is not 1")
+        raise tracks.ValueRefusedError("orientation", f"{tuple(parts)} is no rotation: its length is not 1")
     x, y, z, w = parts
     return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
@@ -443,5 +439,7 @@ def _yaw(q: Any) -> float:
 def _finite(value: Any, column: str, bounds: tuple[float, float]) -> float:
     number = float(value)
     if not bounds[0] <= number <= bounds[1]:
-        raise ValueRefusedError(column, f"{number} is not a number from {bounds[0]:g} to {bounds[1]:g}")
+        raise tracks.ValueRefusedError(
+            column, f"{number} is not a number from {bounds[0]:g} to {bounds[1]:g}"
+        )
     return number

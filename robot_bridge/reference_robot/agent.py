@@ -1,31 +1,20 @@
-"""What the robot says and does, without a wire or a clock of its own."""
+"""What the robot says, does and remembers, without a wire or a clock of its own."""
 
 from __future__ import annotations
 
+import json
 import math
 import random
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
 from typing import Protocol
 
-from ..core.errors import RobotMapError
+from ..core.errors import BridgeError, RobotMapError
+from ..core.files import write_state
+from ..core.json_decoder import decode_json
+from ..core.messages import robots as messages
 from ..core.messages.roads import GetSurface, SetSurface
-from ..core.messages.robots import (
-    Abort,
-    Alive,
-    Answer,
-    GetMap,
-    GetPath,
-    OpAck,
-    Ready,
-    Request,
-    SendPos,
-    SetMap,
-    SetPath,
-    SetPosEnd,
-    SetPosIni,
-    Start,
-    Stopped,
-)
 from ..core.robotmap.binary import decode
 from ..core.robotmap.columns import LARGEST_TEXT
 from ..core.robotmap.model import RobotMap
@@ -39,7 +28,6 @@ from .body import (
     SimulatedVehicle,
     before_border,
 )
-from .memory import RememberedRun, RobotMemory
 
 STANDING = 0.01
 """m/s."""
@@ -107,7 +95,7 @@ class Awaited:
 class RequestSink(Protocol):
     """Who carries a robot's requests to the gateway."""
 
-    def say(self, request: Request) -> None:
+    def say(self, request: messages.Request) -> None:
         """Send a request."""
 
 
@@ -161,36 +149,36 @@ class Agent:
         """Say Ready; done again whenever the link is made anew."""
         self._greet_in = math.inf
         asks, cones = self._settings.asks_path or None, self._settings.path_cones or None
-        self._sink.say(Ready(magic=self._magic, asks_path=asks, path_cones=cones))
+        self._sink.say(messages.Ready(magic=self._magic, asks_path=asks, path_cones=cones))
 
-    def receive(self, answer: Answer, id: int | None) -> OpAck | None:
+    def receive(self, answer: messages.Answer, id: int | None) -> messages.OpAck | None:
         """Take in message ``id`` of the server; return what to acknowledge it with."""
-        if isinstance(answer, Start):
+        if isinstance(answer, messages.Start):
             self._count_ids_of(answer.database)
             self.greet()
-            return None if id is None else OpAck(id=id)
-        if isinstance(answer, OpAck):
+            return None if id is None else messages.OpAck(id=id)
+        if isinstance(answer, messages.OpAck):
             self._take_acknowledgement(answer)
             return None
-        if isinstance(answer, Abort) and self._admitted:
+        if isinstance(answer, messages.Abort) and self._admitted:
             # What it has come to the end of has been reached, and is not aborted: said before its OpAck.
             self._sink.say(self._position())
         if id is not None and id in self._done:
             # The gateway has not heard what became of it: it is told once more that all is done, when it is.
             self._moving = True
-            return OpAck(id=id)
+            return messages.OpAck(id=id)
         refusal = self._do(answer)
         if id is not None:
             self._note_done(id)
         # Before it is acknowledged: what a robot has acknowledged it is not told once more.
         self._keep()
-        return OpAck(id=id, ok=refusal is None, reason=refusal)
+        return messages.OpAck(id=id, ok=refusal is None, reason=refusal)
 
-    def concerns(self, answer: Answer) -> bool:
+    def concerns(self, answer: messages.Answer) -> bool:
         """Tell whether a message is for this run of the robot, and not for another one of its account."""
-        if isinstance(answer, OpAck) and answer.magic is not None:
+        if isinstance(answer, messages.OpAck) and answer.magic is not None:
             return answer.magic == self._magic
-        return self._admitted or isinstance(answer, Start)
+        return self._admitted or isinstance(answer, messages.Start)
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
@@ -249,12 +237,12 @@ class Agent:
         """Say that the robot stands and does nothing; what it remembers of its task stays."""
         self._driver = None
         if self._admitted:
-            self._sink.say(Stopped())
+            self._sink.say(messages.Stopped())
 
     def alive(self) -> None:
         """Say Alive."""
         if self._admitted:
-            self._sink.say(Alive())
+            self._sink.say(messages.Alive())
 
     def _go_on(self, remembered: RememberedRun) -> None:
         """Be the run of the robot that is remembered, and say once more that all is done when it is."""
@@ -279,8 +267,12 @@ class Agent:
             RememberedRun(self._magic, self._database, done, self._body.pose, way, theta, awaits)
         )
 
-    def _take_acknowledgement(self, ack: OpAck) -> None:
-        if self._awaited is not None and not ack.ok and (ack.reason or "").startswith(GetPath.__name__):
+    def _take_acknowledgement(self, ack: messages.OpAck) -> None:
+        if (
+            self._awaited is not None
+            and not ack.ok
+            and (ack.reason or "").startswith(messages.GetPath.__name__)
+        ):
             self._no_path = ack.reason
         if ack.magic != self._magic:
             return
@@ -303,29 +295,29 @@ class Agent:
         if len(self._done) > MOST_DONE:
             del self._done[next(iter(self._done))]
 
-    def _do(self, answer: Answer) -> str | None:
+    def _do(self, answer: messages.Answer) -> str | None:
         """Do what a message asks; return why not, or None."""
         limits = self._settings.limits
-        if isinstance(answer, SetMap):
+        if isinstance(answer, messages.SetMap):
             return self._take_map(answer)
-        if isinstance(answer, SetPosEnd):
+        if isinstance(answer, messages.SetPosEnd):
             self._take_target(answer)
             self._ask_surface((answer.x, answer.y))
-        elif isinstance(answer, SetPath):
+        elif isinstance(answer, messages.SetPath):
             self._driver = Driver(answer.points, answer.theta, limits)
             self._await_path(None)
             self._ask_surface(answer.points[-1])
         elif isinstance(answer, SetSurface):
             names = ["no road" if name is None else name or "an unknown surface" for name in answer.surfaces]
             self._ground = " to ".join(names)
-        elif isinstance(answer, SetPosIni):
+        elif isinstance(answer, messages.SetPosIni):
             return self._take_place(answer)
-        elif isinstance(answer, Abort):
+        elif isinstance(answer, messages.Abort):
             self._halt()
         self._moving = self._moving or self._driver is not None
         return None
 
-    def _take_target(self, target: SetPosEnd) -> None:
+    def _take_target(self, target: messages.SetPosEnd) -> None:
         """Drive straight to a target, or stand until its path is known."""
         place = target.x, target.y
         if not self._settings.asks_path:
@@ -354,20 +346,20 @@ class Agent:
         self._ask_in = ASK_AGAIN
         # The path is to begin where the robot is now.
         self._sink.say(self._position())
-        self._sink.say(GetPath())
+        self._sink.say(messages.GetPath())
 
     def _ask_way_round(self) -> None:
         """Ask for another path where something stays in the way; what it has is driven until one comes."""
         if self._driver is not None and self._settings.asks_path:
             self._ask_round_in = ASK_ROUND
             self._sink.say(self._position())
-            self._sink.say(GetPath())
+            self._sink.say(messages.GetPath())
 
     def _ask_surface(self, goal: tuple[float, float]) -> None:
         if self._settings.asks_surface:
             self._sink.say(GetSurface([self._body.pose[:2], goal]))
 
-    def _take_map(self, answer: SetMap) -> str | None:
+    def _take_map(self, answer: messages.SetMap) -> str | None:
         try:
             robot_map = decode(answer.map, LARGEST_TEXT)
         except RobotMapError as error:
@@ -384,7 +376,7 @@ class Agent:
         if self.map is None:
             if self._map_refused:
                 self._ask_map_in = ASK_AGAIN
-                self._sink.say(GetMap(round(x, 2), round(y, 2), FIRST_AREA))
+                self._sink.say(messages.GetMap(round(x, 2), round(y, 2), FIRST_AREA))
             return
         border = self.map.border
         inside = before_border(self.map, x, y)
@@ -393,20 +385,20 @@ class Agent:
         near = max(NEAR_BORDER * min(width, height), self._settings.map_margin)
         if inside < near and (driven > SAME_MAP or inside < SAME_MAP):
             self._ask_map_in = ASK_AGAIN
-            self._sink.say(GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
+            self._sink.say(messages.GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
 
-    def _take_place(self, begin: SetPosIni) -> str | None:
+    def _take_place(self, begin: messages.SetPosIni) -> str | None:
         drives = self._driver is not None and self._body.hindrance is None
         if drives or abs(self._body.v) >= STANDING:
             return "it drives, and knows where; abort its task first"
         self._body.place((begin.x, begin.y, self._body.pose[2] if begin.theta is None else begin.theta))
         return None
 
-    def _position(self) -> SendPos:
+    def _position(self) -> messages.SendPos:
         x, y, theta = self._body.pose
         accuracy = self._body.accuracy
         noise = self._settings.noise if accuracy is None else 0.0
-        return SendPos(
+        return messages.SendPos(
             x=round(x + self._random.gauss(0, noise), 3),
             y=round(y + self._random.gauss(0, noise), 3),
             theta=round(theta, 4),
@@ -430,4 +422,61 @@ class Agent:
             self._moving = False
             self._keep()
             self._sink.say(self._position())
-            self._sink.say(Stopped())
+            self._sink.say(messages.Stopped())
+
+
+# --- What it keeps on its disk, so that a program that is started anew goes on as the one before it ---
+
+Point = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class RememberedRun:
+    """The run of a robot: its ``magic`` number, and the ids of the messages of ``database`` that it has done.
+
+    ``pose`` is where it was, ``way`` the points that are left of its task (none when it has nothing to do),
+    and ``theta`` the heading to end in; metres and radians in the site frame. With ``awaits_path`` it was not
+    told the path to the end of ``way`` yet, and stands.
+    """
+
+    magic: int
+    database: str | None = None
+    done: Sequence[int] = field(default_factory=list)
+    pose: Pose = (0.0, 0.0, 0.0)
+    way: Sequence[Point] = field(default_factory=list)
+    theta: float | None = None
+    awaits_path: bool = False
+
+
+class RobotMemory:
+    """A file with what a robot remembers: on the disk when :meth:`keep` returns, and never half of it."""
+
+    def __init__(self, file: Path) -> None:
+        self._file = file
+
+    def recall(self) -> RememberedRun | None:
+        """Return what an earlier run kept, None where there was none; raises BridgeError."""
+        try:
+            kept = decode_json(self._file.read_bytes())
+            x, y, theta = kept["pose"]
+            way = [(float(to_x), float(to_y)) for to_x, to_y in kept["way"]]
+            return RememberedRun(**{**kept, "pose": (float(x), float(y), float(theta)), "way": way})
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            raise BridgeError(f"memory {self._file} cannot be read: {error.strerror or error}") from None
+        except (ValueError, TypeError, KeyError) as error:
+            raise BridgeError(
+                f"memory {self._file} is none of a robot ({error}); name another file, or delete it if the "
+                "robot may be told once more what it has done"
+            ) from None
+
+    def keep(self, remembered: RememberedRun) -> None:
+        """Write what is to be remembered in place of what was; raises BridgeError."""
+        try:
+            write_state(self._file, json.dumps(asdict(remembered)).encode())
+        except OSError as error:
+            raise BridgeError(
+                f"memory {self._file} cannot be written: {error.strerror or error}; check its folder and "
+                "free space"
+            ) from error

@@ -52,7 +52,6 @@ BRIDGE = Program(
         "robot_bridge.cli.robot",
         "robot_bridge.cli.serve",
         "robot_bridge.gateway.app",
-        "robot_bridge.reference_robot.runner",
         "robot_bridge.reference_robot.sql_link",
         "sqlalchemy.dialects.sqlite",
         # What is imported only where it is needed, by nearly each of them.

@@ -8,21 +8,7 @@ import math
 from enum import Enum
 from typing import Any, TypeVar
 
-from . import roads
-from .administration import (
-    LinkReport,
-    Links,
-    NewToken,
-    OperatorReport,
-    Operators,
-    SessionReport,
-    SiteOffer,
-    SiteReport,
-    Sites,
-    Suspension,
-    Suspensions,
-    TokenState,
-)
+from . import administration, roads
 from .commands import CommandReport, CommandState, CommandStep
 from .operator_requests import Role
 from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, PlanStopReport
@@ -116,10 +102,12 @@ def command_report(values: dict[str, Any]) -> CommandReport:
     return dataclasses.replace(report, stood=(x, y, theta))
 
 
-def site_report(values: dict[str, Any]) -> SiteReport:
+def site_report(values: dict[str, Any]) -> administration.SiteReport:
     """Return the site that a gateway sent as JSON."""
-    known = known_fields(SiteReport, values)
-    return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
+    known = known_fields(administration.SiteReport, values)
+    return administration.SiteReport(
+        **{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])}
+    )
 
 
 def observation_report(values: dict[str, Any]) -> ObservationReport:
@@ -231,36 +219,47 @@ def _points(pairs: list[Any]) -> list[tuple[float, float]]:
 # --- What supervisors are told, from plain JSON values: accounts, tokens, open sessions, sites ---
 
 
-def operators_report(values: dict[str, Any]) -> Operators:
+def operators_report(values: dict[str, Any]) -> administration.Operators:
     """Return every account that a gateway sent as JSON."""
-    return Operators([_operator_report(one) for one in values["operators"]])
+    return administration.Operators([_operator_report(one) for one in values["operators"]])
 
 
-def _operator_report(values: dict[str, Any]) -> OperatorReport:
-    enums = {"role": Role(values["role"]), "token": TokenState(values["token"])}
-    return OperatorReport(**{**known_fields(OperatorReport, values), **enums})
+def _operator_report(values: dict[str, Any]) -> administration.OperatorReport:
+    enums = {"role": Role(values["role"]), "token": administration.TokenState(values["token"])}
+    return administration.OperatorReport(**{**known_fields(administration.OperatorReport, values), **enums})
 
 
-def new_token(values: dict[str, Any]) -> NewToken:
+def new_token(values: dict[str, Any]) -> administration.NewToken:
     """Return the token that was just made, as a gateway sent it as JSON."""
-    return NewToken(**{**known_fields(NewToken, values), "role": Role(values["role"])})
+    return administration.NewToken(
+        **{**known_fields(administration.NewToken, values), "role": Role(values["role"])}
+    )
 
 
-def open_session(values: dict[str, Any]) -> SessionReport:
+def open_session(values: dict[str, Any]) -> administration.SessionReport:
     """Return one connection of an operator, as a gateway sent it as JSON."""
-    return SessionReport(**known_fields(SessionReport, values))
+    return administration.SessionReport(**known_fields(administration.SessionReport, values))
 
 
-def suspensions_report(values: dict[str, Any]) -> Suspensions:
+def suspensions_report(values: dict[str, Any]) -> administration.Suspensions:
     """Return which robots' accounts are locked, as a gateway sent it as JSON."""
-    return Suspensions([Suspension(**known_fields(Suspension, one)) for one in values["robots"]])
+    return administration.Suspensions(
+        [
+            administration.Suspension(**known_fields(administration.Suspension, one))
+            for one in values["robots"]
+        ]
+    )
 
 
-def links_report(values: dict[str, Any]) -> Links:
+def links_report(values: dict[str, Any]) -> administration.Links:
     """Return how each link is, as a gateway sent it as JSON."""
-    return Links([LinkReport(**known_fields(LinkReport, one)) for one in values["links"]])
+    return administration.Links(
+        [administration.LinkReport(**known_fields(administration.LinkReport, one)) for one in values["links"]]
+    )
 
 
-def sites_report(values: dict[str, Any]) -> Sites:
+def sites_report(values: dict[str, Any]) -> administration.Sites:
     """Return the sites that a gateway may serve, as it sent them as JSON."""
-    return Sites([SiteOffer(**known_fields(SiteOffer, one)) for one in values["sites"]])
+    return administration.Sites(
+        [administration.SiteOffer(**known_fields(administration.SiteOffer, one)) for one in values["sites"]]
+    )

@@ -10,6 +10,7 @@ import re
 import types
 import typing
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import islice
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -151,8 +152,8 @@ def usable_addresses(addresses: Sequence[str] | None) -> list[str] | None:
 
     For others nobody is refused: where a robot may connect when its gateway dies is no reason to lose it now.
     """
-    usable = [address for address in addresses or () if is_gateway_address(address)]
-    return list(dict.fromkeys(usable))[:MOST_GATEWAYS] or None
+    usable = filter(is_gateway_address, dict.fromkeys(addresses or ()))
+    return list(islice(usable, MOST_GATEWAYS)) or None
 
 
 def check_crs(crs: str | None) -> None:

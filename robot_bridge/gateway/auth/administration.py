@@ -10,24 +10,7 @@ from typing import Any, TypeVar
 from sqlalchemy import Connection
 
 from ...core.errors import StoreError
-from ...core.messages.administration import (
-    AddOperator,
-    Audit,
-    AuditReport,
-    EndSession,
-    GetAudit,
-    GetOperators,
-    GetSessions,
-    NewToken,
-    OperatorReport,
-    Operators,
-    RevokeToken,
-    RotateToken,
-    SessionReport,
-    Sessions,
-    SetRole,
-    TokenState,
-)
+from ...core.messages import administration
 from ...protocol.credentials import AccessError
 from ..model.request_handlers import handles
 from ..storage.database import Database
@@ -49,53 +32,55 @@ class AccountAdministration:
         self._database = database
         self._journal = journal
 
-    @handles(GetOperators)
-    async def operators(self) -> Operators:
+    @handles(administration.GetOperators)
+    async def operators(self) -> administration.Operators:
         """Return every account."""
         now = time.time()
         found = await self._database.read(accounts.all_operators)
-        return Operators([_operator_report(operator, now) for operator in found])
+        return administration.Operators([_operator_report(operator, now) for operator in found])
 
-    @handles(AddOperator)
-    async def add(self, request: AddOperator) -> NewToken:
+    @handles(administration.AddOperator)
+    async def add(self, request: administration.AddOperator) -> administration.NewToken:
         """Make an account and return its token; raises AccessError for a name that is taken or unfit."""
         return await self._new_token(request, accounts.add_operator, request.role)
 
-    @handles(RotateToken)
-    async def rotate(self, request: RotateToken) -> NewToken:
+    @handles(administration.RotateToken)
+    async def rotate(self, request: administration.RotateToken) -> administration.NewToken:
         """Return a new token in place of those before; raises AccessError for an operator not known."""
         return await self._new_token(request, accounts.rotate_operator)
 
-    @handles(RevokeToken)
-    async def revoke(self, request: RevokeToken) -> OperatorReport:
+    @handles(administration.RevokeToken)
+    async def revoke(self, request: administration.RevokeToken) -> administration.OperatorReport:
         """Take an operator's token away; raises AccessError when unknown, or the last supervisor."""
         now = time.time()
         return await self._changed(request.operator, now, accounts.revoke_operator, now)
 
-    @handles(SetRole)
-    async def set_role(self, request: SetRole) -> OperatorReport:
+    @handles(administration.SetRole)
+    async def set_role(self, request: administration.SetRole) -> administration.OperatorReport:
         """Give an operator another role; raises AccessError when unknown, or the last supervisor."""
         return await self._changed(request.operator, time.time(), accounts.set_role, request.role)
 
-    @handles(GetSessions)
-    async def sessions(self, request: GetSessions) -> Sessions:
+    @handles(administration.GetSessions)
+    async def sessions(self, request: administration.GetSessions) -> administration.Sessions:
         """Return the operators' connections."""
         await self._write_noted()
         found = await self._database.run(_listed, request.ended, request.limit)
-        return Sessions([_session_report(session) for session in found])
+        return administration.Sessions([_session_report(session) for session in found])
 
-    @handles(EndSession)
-    async def end_session(self, request: EndSession, operator: str) -> SessionReport:
+    @handles(administration.EndSession)
+    async def end_session(
+        self, request: administration.EndSession, operator: str
+    ) -> administration.SessionReport:
         """End a connection and return what was known of it; raises AccessError when it is not open."""
         now, reason = time.time(), f"{request.reason} ({operator})"
         return _session_report(await self._database.run(audit.end_session, request.session, now, reason))
 
-    @handles(GetAudit)
-    async def audit_log(self, request: GetAudit) -> Audit:
+    @handles(administration.GetAudit)
+    async def audit_log(self, request: administration.GetAudit) -> administration.Audit:
         """Return who did what, up to now."""
         await self._write_noted()
         found = await self._database.run(_entries, request)
-        return Audit([AuditReport(**vars(entry)) for entry in found])
+        return administration.Audit([administration.AuditReport(**vars(entry)) for entry in found])
 
     async def _write_noted(self) -> None:
         # What cannot be written yet keeps nobody from reading what is.
@@ -103,8 +88,11 @@ class AccountAdministration:
             await self._journal.flush()
 
     async def _new_token(
-        self, request: AddOperator | RotateToken, make: Callable[..., str], *arguments: Any
-    ) -> NewToken:
+        self,
+        request: administration.AddOperator | administration.RotateToken,
+        make: Callable[..., str],
+        *arguments: Any,
+    ) -> administration.NewToken:
         now = time.time()
         expires_at = None if request.expires_in is None else now + request.expires_in
 
@@ -113,11 +101,11 @@ class AccountAdministration:
             return token, accounts.find_operator(connection, request.operator)
 
         token, operator = await self._database.run(_with_supervisor, now, make_it)
-        return NewToken(operator.name, operator.role, token, expires_at)
+        return administration.NewToken(operator.name, operator.role, token, expires_at)
 
     async def _changed(
         self, name: str, now: float, change: Callable[..., object], *arguments: Any
-    ) -> OperatorReport:
+    ) -> administration.OperatorReport:
         def change_it(connection: Connection) -> Operator:
             change(connection, name, *arguments)
             return accounts.find_operator(connection, name)
@@ -137,11 +125,13 @@ def _with_supervisor(connection: Connection, now: float, work: Callable[[Connect
     return result
 
 
-def _operator_report(operator: Operator, now: float) -> OperatorReport:
+def _operator_report(operator: Operator, now: float) -> administration.OperatorReport:
     token = operator.token
     if token is None:
-        return OperatorReport(operator.name, operator.role, operator.created_at, TokenState.NONE)
-    return OperatorReport(
+        return administration.OperatorReport(
+            operator.name, operator.role, operator.created_at, administration.TokenState.NONE
+        )
+    return administration.OperatorReport(
         operator.name,
         operator.role,
         operator.created_at,
@@ -152,21 +142,23 @@ def _operator_report(operator: Operator, now: float) -> OperatorReport:
     )
 
 
-def _state(token: Grant, now: float) -> TokenState:
+def _state(token: Grant, now: float) -> administration.TokenState:
     if token.revoked_at is not None:
-        return TokenState.REVOKED
-    return TokenState.VALID if token.fault(now) is None else TokenState.EXPIRED
+        return administration.TokenState.REVOKED
+    return administration.TokenState.VALID if token.fault(now) is None else administration.TokenState.EXPIRED
 
 
 def _listed(connection: Any, ended: bool, limit: int) -> list[SessionRow]:
     return audit.list_sessions(connection, everything=ended, limit=limit)
 
 
-def _entries(connection: Any, request: GetAudit) -> list[audit.AuditEntry]:
+def _entries(connection: Any, request: administration.GetAudit) -> list[audit.AuditEntry]:
     return audit.newest_entries(
         connection, request.limit, since=request.since, who=request.who, before=request.before
     )
 
 
-def _session_report(row: SessionRow) -> SessionReport:
-    return SessionReport(row.id, row.operator, row.role, row.address, row.began_at, row.ended_at, row.reason)
+def _session_report(row: SessionRow) -> administration.SessionReport:
+    return administration.SessionReport(
+        row.id, row.operator, row.role, row.address, row.began_at, row.ended_at, row.reason
+    )

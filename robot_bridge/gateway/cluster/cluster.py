@@ -11,9 +11,8 @@ from ...core.errors import BridgeError
 from ...core.messages.validation import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
 from .bus import Bus, NatsBus, NoBus, NotifyBus
-from .exchange import Exchange, fleet_key
-from .leases import check_gateway_name
-from .membership import LEASE_PATIENCE_S, Membership
+from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name
+from .messages import Exchange, fleet_key
 from .ownership import Ownership
 
 log = logging.getLogger(__name__)

@@ -23,8 +23,7 @@ from ..storage.database import Database
 from ..storage.repositories import commands, queues, records
 from ..storage.repositories.records import ObservationChanges
 from .bus import EVERYBODY
-from .exchange import Exchange
-from .messages import MOST_NAMED, QueuesChanged, Wake, WakeTopic
+from .messages import MOST_NAMED, Exchange, QueuesChanged, Wake, WakeTopic
 
 LOOK_S = 1.0
 """seconds between two looks when nobody tells of a change."""

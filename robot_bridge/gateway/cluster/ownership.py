@@ -1,24 +1,27 @@
-"""Ownership: claims of robots, and the fence of whatever is written of them."""
+"""Ownership: claims of robots and of their names, and the fence of whatever is written of robots."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
 import math
+import uuid
 from collections.abc import Collection, Iterable, Sequence
 from collections.abc import Set as AbstractSet
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 from sqlalchemy import Connection
 
 from ...core.errors import StoreError, listed_names
+from ...core.logs import log_and_continue
 from ..storage.database import Database, to_its_end
 from ..storage.owner_fence import FencedError
 from ..storage.repositories import gateways
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories.gateways import Claimed, Owner
-from .leases import OwnedRobots
-from .membership import Membership
+from .bus import own_subject
+from .membership import Membership, OwnedRobots
+from .messages import Exchange, NameAnswer, NameQuery
 
 log = logging.getLogger(__name__)
 
@@ -172,3 +175,65 @@ def _fail(waiting: Iterable[asyncio.Future[bool]], error: Exception) -> None:
             one.set_exception(error if isinstance(error, StoreError) else StoreError(str(error)))
             # Whoever waited may have gone.
             one.exception()
+
+
+# --- Names: whether another robot runs under one is asked of the gateway that has it ---
+
+ANSWER_WITHIN_S = 1.5
+"""seconds that a Ready waits for another gateway, which may take one to ask its robot."""
+
+
+class NameHolder(Protocol):
+    """The robots that say Ready to this gateway."""
+
+    async def refusal(self, robot: str, magic: int) -> str | None:
+        """Return why a Ready with ``magic`` is refused: another robot of that name is here. None if not."""
+
+
+class NameClaims:
+    """Asks other gateways of a robot's name, and answers them by ``holder``."""
+
+    def __init__(self, exchange: Exchange, holder: NameHolder) -> None:
+        self._exchange = exchange
+        self._holder = holder
+        self._asked: dict[str, asyncio.Future[str | None]] = {}
+        self._answering: set[asyncio.Task[None]] = set()
+        exchange.subscribe(NameQuery, self._begin_answer)
+        exchange.subscribe(NameAnswer, self._answered)
+
+    async def refusal(self, robot: str, magic: int, gateway: str) -> str | None:
+        """Return why ``gateway``, which has ``robot``, keeps its name from a Ready with ``magic``.
+
+        One that does not answer keeps nothing: its robots are to go on here.
+        """
+        id = uuid.uuid4().hex
+        asked = self._asked[id] = asyncio.get_running_loop().create_future()
+        try:
+            if not self._exchange.send(
+                own_subject(gateway), NameQuery(self._exchange.gateway, id, robot, magic)
+            ):
+                return None
+            async with asyncio.timeout(ANSWER_WITHIN_S):
+                refusal = await asked
+        except TimeoutError:
+            log.warning("gateway %s does not say whether another robot runs there as %r", gateway, robot)
+            return None
+        finally:
+            del self._asked[id]
+        return None if refusal is None else f"at gateway {gateway} {refusal}"
+
+    def _begin_answer(self, query: NameQuery) -> None:
+        task = asyncio.create_task(self._answer(query))
+        self._answering.add(task)
+        task.add_done_callback(self._answering.discard)
+
+    async def _answer(self, query: NameQuery) -> None:
+        with log_and_continue(log, f"answering gateway {query.gw} about robot {query.robot!r}"):
+            refusal = await self._holder.refusal(query.robot, query.magic)
+            answer = NameAnswer(self._exchange.gateway, query.id, refusal)
+            self._exchange.send(own_subject(query.gw), answer)
+
+    def _answered(self, answer: NameAnswer) -> None:
+        asked = self._asked.get(answer.id)
+        if asked is not None and not asked.done():
+            asked.set_result(answer.refusal)

@@ -63,9 +63,8 @@ from ..storage.owner_fence import FencedError
 from ..storage.repositories import commands, relayed
 from ..storage.repositories.relayed import NewRequest, TakenRequest
 from .bus import STOP
-from .exchange import Exchange
 from .membership import Membership
-from .messages import AbortCall, Wake
+from .messages import AbortCall, Exchange, Wake
 
 log = logging.getLogger(__name__)
 

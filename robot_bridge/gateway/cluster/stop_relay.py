@@ -18,9 +18,8 @@ from ..storage.database import Database
 from ..storage.repositories import emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
 from .bus import STOP
-from .exchange import Exchange
 from .membership import Membership
-from .messages import StopCall, StopSeen, Wake
+from .messages import Exchange, StopCall, StopSeen, Wake
 
 log = logging.getLogger(__name__)
 

@@ -389,15 +389,17 @@ class EmergencyStops:
     async def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._put_in_force(stop)
         # Whatever goes wrong in one of these, what comes after it is done.
+        for relay in self._relays if is_own else ():
+            with log_and_continue(log, "telling other gateways of an emergency stop"):
+                relay.announce(stop)
         with log_and_continue(log, "noting an emergency stop"):
-            if (noting := self._note()) is not None:
+            noting = self._note()
+            # Who made one elsewhere has noted it already, and stores it.
+            if noting is not None and is_own:
                 await asyncio.wait({noting}, timeout=NOTED_WITHIN)
         for link in self._links:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
-        for relay in self._relays if is_own else ():
-            with log_and_continue(log, "telling other gateways of an emergency stop"):
-                relay.announce(stop)
         log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
         self.announce()
 

@@ -14,9 +14,8 @@ from ...core.logs import log_and_continue
 from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
 from ...core.messages.positions import link_elsewhere
 from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
-from ..cluster.exchange import Exchange
-from ..cluster.name_claims import NameClaims
-from ..cluster.ownership import Ownership
+from ..cluster.messages import Exchange
+from ..cluster.ownership import NameClaims, Ownership
 from ..commands.service import CommandService
 from ..model.events import EventBus, RobotLeft
 from ..model.request_handlers import handles

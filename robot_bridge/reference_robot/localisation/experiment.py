@@ -16,17 +16,8 @@ from numpy.typing import NDArray
 from ...core.geometry import Polyline
 from ...core.robotmap.model import RobotMap
 from ..body import Body, BodyLimits, Driver
+from . import sensors
 from .particle_filter import ParticleFilter
-from .sensors import (
-    Motion,
-    SimulatedGps,
-    SimulatedGyroscope,
-    SimulatedLaser,
-    SimulatedOdometry,
-    TruePose,
-    motion_between,
-    moved,
-)
 from .settings import LocalisedRobotSettings, Metres, Positive, ReferenceRobotError, settings_tables
 from .world import changed, inside_solids, walls_of
 
@@ -81,7 +72,7 @@ class SensorLog:
     have done between two scans: metres forward and radians counter-clockwise.
     """
 
-    start: TruePose
+    start: sensors.TruePose
     motions: NDArray[Any]
     scans: NDArray[Any]
 
@@ -110,7 +101,7 @@ class Record:
     seconds: NDArray[Any]
     particles: NDArray[Any]
     _: KW_ONLY
-    goal: TruePose | None = None
+    goal: sensors.TruePose | None = None
     maps: int | None = None
     map_bytes: int | None = None
     clearance: float | None = None
@@ -152,7 +143,7 @@ def run(robot_map: RobotMap, settings: ExperimentSettings, seed: int, compiled: 
     return drive.record()
 
 
-def goal_of(settings: ExperimentSettings) -> TruePose | None:
+def goal_of(settings: ExperimentSettings) -> sensors.TruePose | None:
     """Return where the robot should stand in the end, None where that does not matter."""
     heading = settings.end_heading_deg
     return None if heading is None else (*settings.route[-1], math.radians(heading))
@@ -201,15 +192,15 @@ class _Drive:
         self._seed = seed
         world, senses, mind = (np.random.default_rng([seed, part]) for part in range(3))
         seen = walls_of(robot_map).higher_than(settings.laser.height)
-        self._laser = SimulatedLaser(changed(seen, settings.world, world), settings.laser, senses)
-        self._wheels = SimulatedOdometry(settings.odometry, senses)
-        self._gyroscope = SimulatedGyroscope(settings.gyroscope, senses)
+        self._laser = sensors.SimulatedLaser(changed(seen, settings.world, world), settings.laser, senses)
+        self._wheels = sensors.SimulatedOdometry(settings.odometry, senses)
+        self._gyroscope = sensors.SimulatedGyroscope(settings.gyroscope, senses)
         self._line = Polyline(settings.route)
         whole = self._line.length
         self.length = min(settings.length or whole, whole)
         begin = float(world.uniform(0, whole - self.length)) if settings.start == "unknown" else 0.0
         self._receiver = (
-            SimulatedGps(walls_of(robot_map), settings.gps_receiver, senses) if settings.gps else None
+            sensors.SimulatedGps(walls_of(robot_map), settings.gps_receiver, senses) if settings.gps else None
         )
         self._limits = BodyLimits(speed=settings.speed)
         self.body = Body(_along(settings.route, self._line, begin), self._limits)
@@ -219,7 +210,7 @@ class _Drive:
         self._carried: int | None = None
         self._rows: list[tuple[Any, ...]] = []
         self._start = self.body.pose
-        self._motions: list[Motion] = []
+        self._motions: list[sensors.Motion] = []
         self._scans: list[NDArray[Any]] = []
         self.seconds = 0.0
         self._begin()
@@ -238,15 +229,15 @@ class _Drive:
             before = self.body.pose
             self.body.drive(*motion)
             self.body.step(dt)
-            true = motion_between(before, self.body.pose)
+            true = sensors.motion_between(before, self.body.pose)
             wheels = self._wheels.measure(true)
-            self._odometry = moved(self._odometry, wheels)
-            felt = Motion(wheels.distance, self._gyroscope.measure(true.turn, dt))
+            self._odometry = sensors.moved(self._odometry, wheels)
+            felt = sensors.Motion(wheels.distance, self._gyroscope.measure(true.turn, dt))
             distance, turn = distance + felt.distance, turn + felt.turn
-            steered = self.body.pose if settings.steered_by == "truth" else moved(steered, felt)
+            steered = self.body.pose if settings.steered_by == "truth" else sensors.moved(steered, felt)
         self.seconds += steps * dt
         self._carry()
-        self._take_in(Motion(distance, turn))
+        self._take_in(sensors.Motion(distance, turn))
         return True
 
     def record(self) -> Record:
@@ -270,7 +261,7 @@ class _Drive:
         self._scans.append(scan)
         return scan
 
-    def _take_in(self, motion: Motion) -> None:
+    def _take_in(self, motion: sensors.Motion) -> None:
         scan = self._scan()
         self._motions.append(motion)
         if len(self._rows) % max(1, round(self._settings.scans)) == 0:
@@ -306,7 +297,7 @@ class _Drive:
         return Driver([(x, y), *left], None if goal is None else goal[2], self._limits)
 
 
-def _along(route: Sequence[Place], line: Polyline, station: float) -> TruePose:
+def _along(route: Sequence[Place], line: Polyline, station: float) -> sensors.TruePose:
     """Return the pose at ``station`` metres of the route, heading along it."""
     piece = min(int(np.searchsorted(line.stations, station, side="right")), len(route) - 1)
     (x0, y0), (x1, y1) = route[piece - 1], route[piece]

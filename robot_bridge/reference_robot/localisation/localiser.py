@@ -12,18 +12,9 @@ import numpy as np
 
 from ...core.robotmap.model import RobotMap
 from ..body import before_border
+from . import sensors
 from .particle_filter import ParticleFilter
 from .segments import distances
-from .sensors import (
-    BodyReach,
-    Motion,
-    SensorReading,
-    TruePose,
-    motion_fault,
-    moved,
-    scan_fault,
-    without_negatives,
-)
 from .settings import FilterSettings, LaserSettings, ReferenceRobotError
 from .world import Walls, walls_of
 
@@ -37,7 +28,7 @@ class Estimate:
     """What the filter believed after reading ``number``; ``accuracy`` is a standard deviation in metres."""
 
     number: int
-    pose: TruePose
+    pose: sensors.TruePose
     accuracy: float
     lost: bool
     agreement: float
@@ -49,7 +40,7 @@ class Estimate:
 class InitialBelief:
     """Where the robot takes itself to be when it is switched on; ``deviation`` metres and radians."""
 
-    pose: TruePose
+    pose: sensors.TruePose
     deviation: tuple[float, float] = (0.1, 0.05)
     unknown: bool = False
 
@@ -60,7 +51,7 @@ class LocaliserSettings:
 
     laser: LaserSettings
     filter: FilterSettings
-    reach: BodyReach
+    reach: sensors.BodyReach
     fix_noise: float = 1.5
     compiled: bool | None = field(default=None)
 
@@ -83,7 +74,7 @@ class Localiser:
         self._filter: ParticleFilter | None = None
         """Touched by work on the executor alone."""
         self._quiet_scans = 0
-        self._expected: TruePose | None = None
+        self._expected: sensors.TruePose | None = None
         """Where the wheels have it since it knew its place last; this too is the executor's."""
         self._fixed: tuple[float, float] | None = None
         self._fixed_for = 0.0
@@ -94,10 +85,10 @@ class Localiser:
         self._next_map: RobotMap | None = None
         """The map that the filter uses from its next reading on."""
         self._tried: tuple[RobotMap | None, InitialBelief | None] = None, None
-        self._owed: list[Motion] = []
+        self._owed: list[sensors.Motion] = []
         """Motions that the filter does not have yet, because it was busy."""
         self._number = 0
-        self._since: list[tuple[int, Motion]] = []
+        self._since: list[tuple[int, sensors.Motion]] = []
         """Motions by the number of their reading, that the newest estimate does not know of."""
         self._estimate = Estimate(0, start.pose, start.deviation[0], True, 0.0)
         self._fault: str | None = None
@@ -109,11 +100,11 @@ class Localiser:
         self.map: RobotMap | None = None
 
     @property
-    def pose(self) -> TruePose:
+    def pose(self) -> sensors.TruePose:
         """Where the robot takes itself to be, as of the newest reading."""
         pose = self._estimate.pose
         for _, motion in self._since:
-            pose = moved(pose, motion)
+            pose = sensors.moved(pose, motion)
         return pose
 
     @property
@@ -178,13 +169,13 @@ class Localiser:
         self._estimate = Estimate(self._number, start.pose, start.deviation[0], True, 0.0)
         self._since, self._owed, self._worst = [], [], 0.0
 
-    def observe(self, reading: SensorReading) -> None:
+    def observe(self, reading: sensors.SensorReading) -> None:
         """Hand a reading to the filter, now or, while that is busy, with the next one."""
         self._collect()
         before, self._last_t = self._last_t, reading.t
         if self._done_t is None:
             self._done_t = reading.t
-        fault = motion_fault(reading, before, self._settings.reach, self._standing)
+        fault = sensors.motion_fault(reading, before, self._settings.reach, self._standing)
         if fault is not None:
             # What the robot did meanwhile nobody knows: the filter doubts its place.
             self._fault, self._missed, self._done_t = fault, True, reading.t
@@ -192,14 +183,14 @@ class Localiser:
         self._number += 1
         self._since.append((self._number, reading.motion))
         self._owed.append(reading.motion)
-        self._fault = scan_fault(reading, self._settings.laser.beams)
+        self._fault = sensors.scan_fault(reading, self._settings.laser.beams)
         if self._fault is not None or self.map is None:
             self._done_t = reading.t
             return
         if self._work is None:
             self._begin_work(reading)
 
-    def _begin_work(self, reading: SensorReading) -> None:
+    def _begin_work(self, reading: sensors.SensorReading) -> None:
         motions, missed = self._owed, self._missed
         self._tried = self._next_map, self._start
         self._next_map, self._owed, self._start, self._missed = None, [], None, False
@@ -265,15 +256,15 @@ class Localiser:
         number: int,
         robot_map: RobotMap | None,
         start: InitialBelief | None,
-        motions: list[Motion],
-        reading: SensorReading,
+        motions: list[sensors.Motion],
+        reading: sensors.SensorReading,
         missed: bool,
     ) -> Estimate:
         if robot_map is not None:
             self._exchange_map(robot_map)
         tracking = self._filter
         assert tracking is not None
-        ranges = without_negatives(reading.ranges)
+        ranges = sensors.without_negatives(reading.ranges)
         if start is not None:
             self._begin(tracking, start, motions, ranges)
         else:
@@ -289,7 +280,7 @@ class Localiser:
         nothing = self._fixed is None and self._sees_nothing(belief.pose, ranges)
         return Estimate(number, belief.pose, accuracy, belief.lost, belief.agreement, count, nothing)
 
-    def _sees_nothing(self, pose: TruePose, ranges: Any) -> bool:
+    def _sees_nothing(self, pose: sensors.TruePose, ranges: Any) -> bool:
         """Return whether neither the scan nor the map has anything there: all places are alike then."""
         reach = self._settings.laser.reach
         if np.count_nonzero(ranges < reach) > self._standing.few_echoes or self._walls is None:
@@ -297,7 +288,7 @@ class Localiser:
         return bool(distances(np.array(pose[:2]), self._walls.a, self._walls.b).min() > reach)
 
     def _begin(
-        self, tracking: ParticleFilter, start: InitialBelief, motions: list[Motion], ranges: Any
+        self, tracking: ParticleFilter, start: InitialBelief, motions: list[sensors.Motion], ranges: Any
     ) -> None:
         self._quiet_scans, self._fixed = 0, None
         if start.unknown:
@@ -310,12 +301,14 @@ class Localiser:
             tracking.move(motion)
         tracking.observe(ranges)
 
-    def _follow(self, tracking: ParticleFilter, motions: list[Motion], ranges: Any, missed: bool) -> None:
+    def _follow(
+        self, tracking: ParticleFilter, motions: list[sensors.Motion], ranges: Any, missed: bool
+    ) -> None:
         standing = self._standing
         for motion in motions:
             tracking.move(motion)
             if self._expected is not None:
-                self._expected = moved(self._expected, motion)
+                self._expected = sensors.moved(self._expected, motion)
         if missed:
             tracking.doubt()
         if any(abs(m.distance) > standing.still_m or abs(m.turn) > standing.still_rad for m in motions):
@@ -332,7 +325,7 @@ class Localiser:
         if lost and self._is_expected(tracking.belief.pose):
             tracking.settle(standing.scan_worth)
 
-    def _is_expected(self, pose: TruePose) -> bool:
+    def _is_expected(self, pose: sensors.TruePose) -> bool:
         places = (self._expected, self._fixed)
         within = self._standing.expected
         return any(one is not None and math.dist(pose[:2], one[:2]) < within for one in places)

@@ -15,17 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.robotmap.model import RobotMap
-from .scan_matching import (
-    BeamModel,
-    FieldModel,
-    PlaceSearch,
-    bins_of,
-    in_groups,
-    low_variance,
-    occupied_bins,
-    particles_for,
-    usable_beams,
-)
+from . import scan_matching
 from .sensors import Motion, TruePose, bearings_of, moved
 from .settings import FilterSettings, LaserSettings, ReferenceRobotError
 from .world import walls_of
@@ -111,19 +101,25 @@ class ParticleFilter:
                 f"{self._laser.height} m; ask for a larger map, or one of this place"
             )
         self._map = robot_map
-        self._model: BeamModel | FieldModel
+        self._model: scan_matching.BeamModel | scan_matching.FieldModel
         if self._settings.model == "beam":
-            self._model = BeamModel(walls, self._laser, self._settings, self._compiled)
+            self._model = scan_matching.BeamModel(walls, self._laser, self._settings, self._compiled)
         else:
-            self._model = FieldModel(walls, self._laser, self._settings)
-        self._search: PlaceSearch | None = None
+            self._model = scan_matching.FieldModel(walls, self._laser, self._settings)
+        self._search: scan_matching.PlaceSearch | None = None
 
     def place(self, pose: TruePose, deviation: tuple[float, float]) -> None:
         """Begin at ``pose``, known to ``deviation`` metres and radians (standard deviations)."""
         metres, radians = deviation
         spread = self._rng.normal(0, (metres, metres, radians), (self._settings.most, 3))
         poses = np.asarray(pose) + spread
-        self._begin(poses[: particles_for(occupied_bins(poses, self._settings), self._settings)])
+        self._begin(
+            poses[
+                : scan_matching.particles_for(
+                    scan_matching.occupied_bins(poses, self._settings), self._settings
+                )
+            ]
+        )
 
     def search(self, ranges: NDArray[Any]) -> None:
         """Begin where a first scan, (B,), fits, anywhere on the map: global localisation.
@@ -286,7 +282,7 @@ class ParticleFilter:
             raise ReferenceRobotError(
                 f"scan: {ranges.shape} ranges for {len(self._bearings)} beams; see the laser's settings"
             )
-        return usable_beams(ranges)
+        return scan_matching.usable_beams(ranges)
 
     def _begin(self, particles: NDArray[Any]) -> None:
         self.particles = particles
@@ -299,7 +295,7 @@ class ParticleFilter:
     def _together(self) -> NDArray[Any]:
         """Return the particles around the heaviest place: those of its cell, then those near their mean."""
         recovery = self._settings.recovery
-        bins = bins_of(self.particles, recovery.place_m, math.radians(recovery.group_deg))
+        bins = scan_matching.bins_of(self.particles, recovery.place_m, math.radians(recovery.group_deg))
         _, row = np.unique(bins, return_inverse=True)
         near = np.flatnonzero(row == np.bincount(row, weights=self.weights).argmax())
         for _ in range(3):
@@ -329,14 +325,14 @@ class ParticleFilter:
             return
         if looks:
             self._rival = self.belief.share < 1 - recovery.rival
-        drawn = self.particles[low_variance(self.weights, len(self.weights), rng)]
-        count = particles_for(occupied_bins(drawn, settings), settings)
+        drawn = self.particles[scan_matching.low_variance(self.weights, len(self.weights), rng)]
+        count = scan_matching.particles_for(scan_matching.occupied_bins(drawn, settings), settings)
         new = int(rng.binomial(count, max(lost, recovery.new_particles))) if looks else 0
         if self._unsettled:
-            group = bins_of(self.particles, recovery.group_m, math.radians(recovery.group_deg))
-            rows, weights = in_groups(self.weights, group, count - new, rng, recovery)
+            group = scan_matching.bins_of(self.particles, recovery.group_m, math.radians(recovery.group_deg))
+            rows, weights = scan_matching.in_groups(self.weights, group, count - new, rng, recovery)
         else:
-            rows = low_variance(self.weights, count - new, rng)
+            rows = scan_matching.low_variance(self.weights, count - new, rng)
             weights = np.full(len(rows), 1 / len(rows))
         particles = self.particles[rows]
         if new:
@@ -359,7 +355,9 @@ class ParticleFilter:
         """Return poses where the scan fits, (count, 3)."""
         if self._search is None:
             walls = walls_of(self._map).higher_than(self._laser.height)
-            self._search = PlaceSearch(self._map, walls, self._laser, self._settings, self._model)
+            self._search = scan_matching.PlaceSearch(
+                self._map, walls, self._laser, self._settings, self._model
+            )
         near = self._near
         if near is not None:
             near = near[0], near[1], near[2] + self._since_fix

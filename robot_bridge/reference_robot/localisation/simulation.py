@@ -17,23 +17,12 @@ from numpy.typing import NDArray
 from ...core.messages.robots import Observed, SendImage, SetObject
 from ...core.robotmap.model import RobotMap
 from ..body import Body, BodyLimits, Pose
+from . import sensors
 from .avoidance import Avoidance, Discs, MovingObstacles, ObstacleShape, ranges_to
 from .localiser import InitialBelief, Localiser, LocaliserSettings
 from .map_doubts import Doubt, MapDoubts
 from .map_gaps import FoundObject, MapGaps
 from .segments import distances
-from .sensors import (
-    BodyReach,
-    Motion,
-    SensorReading,
-    SimulatedGps,
-    SimulatedGyroscope,
-    SimulatedLaser,
-    SimulatedOdometry,
-    TruePose,
-    motion_between,
-    moved,
-)
 from .settings import LocalisedRobotSettings, ReferenceRobotError, settings_tables
 from .world import Walls, changed, inside_solids, walls_of
 
@@ -80,7 +69,7 @@ class LocalisedSettings:
 
     robot: LocalisedRobotSettings
     limits: BodyLimits
-    truth: TruePose
+    truth: sensors.TruePose
     start: InitialBelief
     scans: float = 5.0
     gps: bool = False
@@ -101,25 +90,25 @@ class LocalisedBody:
         self._body = Body(settings.truth, settings.limits)
         robot = settings.robot
         senses, mind = (np.random.default_rng([settings.seed, part]) for part in (1, 2))
-        self._laser = SimulatedLaser(world.walls, robot.laser, senses)
-        self._wheels = SimulatedOdometry(robot.odometry, senses)
-        self._gyroscope = SimulatedGyroscope(robot.gyroscope, senses)
-        self._receiver = SimulatedGps(world.sky, robot.gps_receiver, senses) if settings.gps else None
+        self._laser = sensors.SimulatedLaser(world.walls, robot.laser, senses)
+        self._wheels = sensors.SimulatedOdometry(robot.odometry, senses)
+        self._gyroscope = sensors.SimulatedGyroscope(robot.gyroscope, senses)
+        self._receiver = sensors.SimulatedGps(world.sky, robot.gps_receiver, senses) if settings.gps else None
         self.avoidance = Avoidance(self._laser.bearings, settings.shape)
         limits = settings.limits
         localising = LocaliserSettings(
             robot.laser,
             robot.filter,
-            BodyReach(limits.speed, limits.turn_rate),
+            sensors.BodyReach(limits.speed, limits.turn_rate),
             robot.gps_receiver.noise,
             settings.compiled,
         )
         self.localiser = Localiser(localising, settings.start, mind, executor)
         self.odometry = settings.start.pose
         """Where the wheels alone would have it."""
-        self._felt = Motion(0.0, 0.0)
+        self._felt = sensors.Motion(0.0, 0.0)
         """What was measured since the newest scan."""
-        self._partial: list[Motion] = []
+        self._partial: list[sensors.Motion] = []
         self._target_speeds = 0.0, 0.0
         self._t = 0.0
         self._next_scan = 0.0
@@ -134,16 +123,16 @@ class LocalisedBody:
         world.surroundings.add(self, lambda: self.discs)
 
     @property
-    def truth(self) -> TruePose:
+    def truth(self) -> sensors.TruePose:
         """Where the robot really is."""
         return self._body.pose
 
     @property
-    def pose(self) -> TruePose:
+    def pose(self) -> sensors.TruePose:
         """Where the robot takes itself to be."""
         pose = self.localiser.pose
         for motion in self._partial:
-            pose = moved(pose, motion)
+            pose = sensors.moved(pose, motion)
         return pose
 
     @property
@@ -184,7 +173,7 @@ class LocalisedBody:
         x, y, _ = self._body.pose
         return np.array([[x, y, self._settings.shape.radius]])
 
-    def place(self, pose: TruePose) -> None:
+    def place(self, pose: sensors.TruePose) -> None:
         """Take itself to be at ``pose``, as a robot that an operator gives a start position."""
         if self.localiser.map is None:
             # It is switched on there.
@@ -252,12 +241,12 @@ class LocalisedBody:
         self._body.drive(*self.avoidance.adjusted(*self._target_speeds, dt))
         before = self._body.pose
         self._body.step(dt)
-        true = motion_between(before, self._body.pose)
+        true = sensors.motion_between(before, self._body.pose)
         wheels = self._wheels.measure(true)
-        self.odometry = moved(self.odometry, wheels)
-        motion = Motion(wheels.distance, self._gyroscope.measure(true.turn, dt))
+        self.odometry = sensors.moved(self.odometry, wheels)
+        motion = sensors.Motion(wheels.distance, self._gyroscope.measure(true.turn, dt))
         self._partial.append(motion)
-        self._felt = Motion(self._felt.distance + motion.distance, self._felt.turn + motion.turn)
+        self._felt = sensors.Motion(self._felt.distance + motion.distance, self._felt.turn + motion.turn)
         self.avoidance.move(motion)
         self._t += dt
         if self._t >= self._next_scan - 1e-9:
@@ -269,14 +258,14 @@ class LocalisedBody:
         nearer = ranges_to(self._world.surroundings.around(self), pose, self._laser.bearings)
         ranges = self._laser.scan(pose, nearer)
         self.readings += 1
-        motion, self._felt, self._partial = self._felt, Motion(0.0, 0.0), []
-        self.avoidance.observe(ranges, Motion(0.0, 0.0))
-        self.localiser.observe(self.measured(SensorReading(self._t, motion, ranges, self._fix())))
+        motion, self._felt, self._partial = self._felt, sensors.Motion(0.0, 0.0), []
+        self.avoidance.observe(ranges, sensors.Motion(0.0, 0.0))
+        self.localiser.observe(self.measured(sensors.SensorReading(self._t, motion, ranges, self._fix())))
         if self._gaps is not None and self._doubts is not None and self.localiser.trouble is None:
             self._found += self._gaps.observe(self.localiser.pose, ranges)
             self._doubted += self._doubts.observe(self.localiser.pose, ranges)
 
-    def measured(self, reading: SensorReading) -> SensorReading:
+    def measured(self, reading: sensors.SensorReading) -> sensors.SensorReading:
         """Return what the sensors say of what is; a place for tests to let them fail."""
         return reading
 
@@ -286,7 +275,7 @@ class LocalisedBody:
         self._next_fix = self._t + FIX_EVERY
         return self._receiver.fix(self._body.pose)
 
-    def carry(self, pose: TruePose) -> None:
+    def carry(self, pose: sensors.TruePose) -> None:
         """Put the body elsewhere; neither its wheels nor its gyroscope notice."""
         self._body.place(pose)
 

@@ -19,9 +19,8 @@ from robot_bridge.core.messages.robots import (
     SetPosEnd,
     Stopped,
 )
-from robot_bridge.reference_robot.agent import Agent, AgentSettings
+from robot_bridge.reference_robot.agent import Agent, AgentSettings, RememberedRun, RobotMemory
 from robot_bridge.reference_robot.body import BodyLimits
-from robot_bridge.reference_robot.memory import RememberedRun, RobotMemory
 
 LAP = [(0.0, 0.0), (10.0, 0.0), (10.0, 10.0), (0.0, 10.0), (0.0, 0.0)]
 

@@ -49,7 +49,7 @@ WAYS_OUT = (OSError, TimeoutError, WebSocketException, RefusedError)
 
 @dataclass
 class Stop:
-    """An emergency stop: when it was asked for, each robot heard, its end was asked for, and it was cleared."""
+    """An emergency stop: when it was asked for, robots heard, its end was asked for, it was cleared."""
 
     id: str
     at: float

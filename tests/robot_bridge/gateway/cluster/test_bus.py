@@ -21,13 +21,13 @@ from robot_bridge.gateway.cluster.bus import (
     check_version,
     own_subject,
 )
-from robot_bridge.gateway.cluster.exchange import Exchange
 from robot_bridge.gateway.cluster.messages import (
     LARGEST,
     Beat,
     BusMessageError,
     Codec,
     DetailBatch,
+    Exchange,
     PositionBatch,
     RobotDetails,
     StopCall,

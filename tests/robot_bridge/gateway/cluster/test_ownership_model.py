@@ -22,7 +22,7 @@ from hypothesis.stateful import (
 from sqlalchemy import text
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.gateway.cluster.leases import LEASE_S, TRUST_S, LeaseTrust, OwnedRobots, leads
+from robot_bridge.gateway.cluster.membership import LEASE_S, TRUST_S, LeaseTrust, OwnedRobots, leads
 from robot_bridge.gateway.storage.database import open_engine, read_address
 from robot_bridge.gateway.storage.owner_fence import CHECK_VALID_S
 from robot_bridge.gateway.storage.repositories import gateways

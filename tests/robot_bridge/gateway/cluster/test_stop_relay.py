@@ -11,9 +11,9 @@ from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop, StoppedGateways
 from robot_bridge.gateway.cluster import stop_relay
 from robot_bridge.gateway.cluster.bus import STOP
-from robot_bridge.gateway.cluster.exchange import Exchange
-from robot_bridge.gateway.cluster.messages import Beat, Codec, StopCall, StopSeen, Wake
+from robot_bridge.gateway.cluster.messages import Beat, Codec, Exchange, StopCall, StopSeen, Wake
 from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
+from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.storage.repositories import emergency_stops
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.patience import BUSY
@@ -136,6 +136,38 @@ async def test_who_has_not_answered_is_called_again(place, monkeypatch):
     assert len(place.bus.of(StopCall)) == calls
     task.cancel()
     await asyncio.gather(task, return_exceptions=True)
+
+
+class StuckDisk:
+    """A journal on a disk that answers when it is let."""
+
+    def __init__(self):
+        self.written = asyncio.get_running_loop().create_future()
+
+    def write(self, _stops):
+        return self.written
+
+
+@pytest.fixture
+async def stuck(place, monkeypatch):
+    monkeypatch.setattr(emergency_stop, "NOTED_WITHIN", 3600.0)
+    place.stops._journal = StuckDisk()
+    return place.stops._journal
+
+
+async def test_others_hear_of_a_stop_before_it_is_noted_on_the_disk(place, stuck):
+    asked = asyncio.create_task(place.stops.stop(EmergencyStop("stop-number-b"), "Bob"))
+    await place.until(lambda: place.bus.of(StopCall))
+    assert place.stops.in_force and not place.told
+    stuck.written.set_result(None)
+    await asked
+    assert place.told == ["emergency-stop-number-b"]
+
+
+async def test_a_stop_from_elsewhere_waits_for_no_disk_here(place, stuck):
+    place.say(CALL)
+    await place.until(lambda: place.bus.of(StopSeen))
+    assert place.told == ["emergency-stop-number-a"] and not stuck.written.done()
 
 
 async def test_a_stop_that_no_message_told_of_is_found_in_the_database(place):

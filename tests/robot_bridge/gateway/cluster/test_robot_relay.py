@@ -1,0 +1,73 @@
+"""Positions across gateways: told when they change, and all of them when somebody may have missed them."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.gateway.cluster.bus import EVERYBODY
+from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
+from robot_bridge.gateway.cluster.robot_relay import PositionRelay
+from robot_bridge.gateway.model.robots import Robots
+
+CODEC = Codec(b"k" * 32)
+
+
+class Bus:
+    connected = True
+
+    def __init__(self):
+        self.sent = []
+
+    def publish(self, _subject, content):
+        self.sent.append(CODEC.decode(content))
+        return self.connected
+
+
+class Place:
+    """Gateway b with a robot, at a time that stands still."""
+
+    def __init__(self):
+        self.bus, self.robots = Bus(), Robots()
+        self.exchange = Exchange("b", b"k" * 32, [self.bus])
+        membership = SimpleNamespace(database_time=lambda: 1000.0, clock_offset=0.0)
+        self.relay = PositionRelay(self.robots, membership, self.exchange)
+        self.robots.ready("r1", 1, "yard", 1000.0)
+        self.robots.observe("r1", SendPos(1.0, 2.0, 0.0, 0.0), "yard", 1000.0)
+
+    def tick(self):
+        """Return what goes out by the next tick: names of robots, and what others are asked for."""
+        self.bus.sent.clear()
+        self.relay.send_changes()
+        named = [name for one in self.bus.sent if isinstance(one, PositionBatch) for name in one.names]
+        return named, [one.what for one in self.bus.sent if isinstance(one, Wake)]
+
+
+@pytest.fixture
+def place():
+    place = Place()
+    place.tick()
+    assert place.tick() == ([], [])
+    return place
+
+
+def test_what_moved_is_told(place):
+    place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    assert place.tick() == (["r1"], [])
+
+
+def test_a_gateway_whose_bus_is_back_tells_of_all_its_robots_and_asks_others_for_theirs(place):
+    place.bus.connected = False
+    assert place.tick() == ([], [])
+    place.bus.connected = True
+    assert place.tick() == (["r1"], ["positions"])
+    assert place.tick() == ([], [])
+
+
+def test_a_gateway_that_asks_is_told_of_all_robots(place):
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
+    assert place.tick() == (["r1"], [])
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "site")))
+    assert place.tick() == ([], [])
