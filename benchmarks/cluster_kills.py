@@ -64,10 +64,11 @@ wrote down.
 
 {figures}
 
-What has to hold: each command that a desk was told is queued has ended, was acted on once or, where it was
-withdrawn before the robot read it, not at all, and its log agrees with what the robot wrote down. No command was acted on
-of which a desk was told that it was not done. Every robot heard of every stop, the stops made while
-PostgreSQL was away included, and between that and the asking for its end it was sent nowhere.
+What has to hold: each command that a desk was told is queued has ended, was acted on once or, where it
+was withdrawn before the robot read it, not at all, and its log agrees with what the robot wrote down. No
+command was acted on of which a desk was told that it was not done. Every robot heard of every stop, the
+stops made while PostgreSQL was away included, and between that and the asking for its end it was sent
+nowhere.
 
 Wrong in all of this: {wrong} ({goal}).
 
