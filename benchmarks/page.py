@@ -28,7 +28,7 @@ most. A goal is *met* or **missed**. A part names the commit whose code it measu
 older than that, and than the code that it lies beside.
 """
 TELLING = (
-    *("MALLOC_", "LD_PRELOAD", "OMP_", "OPENBLAS_", "MKL_", "UV_", "QT_", "MINUTES", "DRIVES"),
+    *("MALLOC_", "LD_PRELOAD", "OMP_", "OPENBLAS_", "MKL_", "UV_", "QT_", "PEER", "MINUTES", "DRIVES"),
     *(
         "GDAL_CACHEMAX",
         "GDAL_NUM_THREADS",
@@ -61,6 +61,8 @@ BENCH = [
     "fleet_views",
     "appliance",
     "cluster",
+    "cluster_kills",
+    "before",
     "endurance",
 ]
 """What ``make bench`` measures: modules of benchmarks; each has ``measure(data)``."""

@@ -15,6 +15,8 @@ PREFIX=${PREFIX:-/opt/robot-bridge}
 PROGRAM=${PROGRAM:-yes}
 UNIT=$DESTDIR/etc/systemd/system/robot-bridge.service
 LINK_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-link@.service
+ARCHIVE_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-archive.service
+ARCHIVE_TIMER=$DESTDIR/etc/systemd/system/robot-bridge-archive.timer
 MAPS_UNIT=$DESTDIR/etc/systemd/system/robot-bridge-maps.service
 USERS=$DESTDIR/usr/lib/sysusers.d/robot-bridge.conf
 SETTINGS=$DESTDIR/etc/robot-bridge/robot-bridge.env
@@ -69,6 +71,8 @@ install_service() {
     install -d "$(dirname "$UNIT")" "$(dirname "$USERS")"
     sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge.service > "$UNIT"
     sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge-link@.service > "$LINK_UNIT"
+    sed "s|@PREFIX@|$PREFIX|g" resources/service/robot-bridge-archive.service > "$ARCHIVE_UNIT"
+    install -m 644 resources/service/robot-bridge-archive.timer "$ARCHIVE_TIMER"
     install -m 644 resources/service/robot-bridge.sysusers "$USERS"
     [ -n "$DESTDIR" ] || systemd-sysusers "$USERS"
     install_settings resources/service/robot-bridge.env "$SETTINGS"
@@ -104,12 +108,12 @@ install_maps() {
 
 uninstall_service() {
     may_write
-    for unit in "$MAPS_UNIT" "$UNIT"; do
+    for unit in "$MAPS_UNIT" "$ARCHIVE_TIMER" "$UNIT"; do
         if [ -z "$DESTDIR" ] && [ -e "$unit" ]; then
-            systemctl disable --now "$(basename "$unit" .service)" || true
+            systemctl disable --now "$(basename "$unit")" || true
         fi
     done
-    rm -f "$UNIT" "$LINK_UNIT" "$MAPS_UNIT" "$USERS" "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
+    rm -f "$UNIT" "$LINK_UNIT" "$ARCHIVE_UNIT" "$ARCHIVE_TIMER" "$MAPS_UNIT" "$USERS" "$DESTDIR$PREFIX/share/robot-bridge/serve_maps.py"
     rm -rf "$DESTDIR$PREFIX/share/robot-bridge/qgis_server_plugins"
     if [ -e "$DESTDIR$PREFIX/pyvenv.cfg" ]; then
         rm -rf "$DESTDIR$PREFIX"

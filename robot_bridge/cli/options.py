@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Annotated
@@ -121,3 +121,13 @@ def seconds_of(option: str, text: str | None) -> float | None:
     except ValueError:
         raise BridgeError(f"{option} {text!r} is no time; write it like 2026-11-21T08:00") from None
     return (time if time.tzinfo else time.replace(tzinfo=UTC)).timestamp()
+
+
+def day_of(option: str, text: str | None) -> int | None:
+    """Return ``text``, a day (UTC), as days since 1970-01-01; raises BridgeError."""
+    if text is None:
+        return None
+    try:
+        return date.fromisoformat(text).toordinal() - date(1970, 1, 1).toordinal()
+    except ValueError:
+        raise BridgeError(f"{option} {text!r} is no day; write it like 2026-11-21") from None

@@ -121,6 +121,8 @@ def serve(
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
     cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)
     settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
+    # pyogrio imports it where it is installed, for a way of reading that a gateway has no use for: 29 MB.
+    sys.modules.setdefault("pyarrow", None)  # type: ignore[arg-type] # as Python documents it
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings, until_stdin_closes))
 

@@ -213,6 +213,41 @@ def export(
     typer.echo(f"{file}: {positions}, {tracks}")
 
 
+@app.command()
+def archive(
+    folder: Annotated[Path, typer.Argument(help="The folder of the files, trajectories-2026-11-21.parquet.")],
+    site: options.SiteOption,
+    database: options.DatabaseOption = options.DEFAULT,
+    database_password_file: options.PasswordFileOption = None,
+    since: Annotated[str | None, typer.Option(help="The first day (UTC): 2026-11-21.")] = None,
+    until: Annotated[str | None, typer.Option(help="The last day; yesterday unless given.")] = None,
+    replace: Annotated[bool, typer.Option("--replace", help="Write days anew that are in FOLDER.")] = False,
+) -> None:
+    """Write positions as GeoParquet: a file for each day that is over and not in FOLDER yet."""
+    from ..gateway.trajectories.archive import ArchivedDay, archive_days, choose_days, require_pyarrow
+
+    require_pyarrow()
+    settings = options.site_settings(site)
+    first, last = options.day_of("--since", since), options.day_of("--until", until)
+    address = options.database_address(database, database_password_file)
+
+    def report(day: ArchivedDay) -> None:
+        robots = counted(day.robots, "robot")
+        typer.echo(f"{day.file}: {counted(day.positions, 'position')} of {robots}")
+
+    async def work() -> int:
+        opened = Database(address, patience=None)
+        try:
+            days = choose_days(opened, first, last, settings.trajectories.keep_days, time.time())
+            return await archive_days(opened, days, settings.frame, folder, replace=replace, report=report)
+        finally:
+            await opened.close()
+
+    kept = asyncio.run(work())
+    if kept:
+        typer.echo(f"{counted(kept, 'day')} in {folder} already; --replace writes them anew")
+
+
 def _bounds(text: str | None) -> tuple[float, float, float, float] | None:
     if text is None:
         return None

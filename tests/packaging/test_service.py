@@ -30,6 +30,8 @@ def test_what_is_installed_lies_below_destdir_and_is_taken_away_again(make, tmp_
     assert done.returncode == 0, done.stderr
     assert files(tmp_path) == [
         "etc/robot-bridge/robot-bridge.env",
+        "etc/systemd/system/robot-bridge-archive.service",
+        "etc/systemd/system/robot-bridge-archive.timer",
         "etc/systemd/system/robot-bridge-link@.service",
         "etc/systemd/system/robot-bridge.service",
         "usr/lib/sysusers.d/robot-bridge.conf",
@@ -58,7 +60,9 @@ def test_systemd_finds_nothing_wrong_with_the_unit(make, tmp_path):
     program.chmod(0o755)
     make("install-service", PREFIX=program.parents[1])
     unit = tmp_path / "etc" / "systemd" / "system" / "robot-bridge.service"
-    done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
+    archive = [unit.with_name(f"robot-bridge-archive.{kind}") for kind in ("service", "timer")]
+    verify = ["systemd-analyze", "verify", unit, *archive]
+    done = subprocess.run(verify, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout + done.stderr) == (0, "")
     unit.write_text(unit.read_text().replace("Restart=on-failure", "Restart=perhaps"))
     done = subprocess.run(["systemd-analyze", "verify", unit], capture_output=True, text=True, check=False)
@@ -66,10 +70,11 @@ def test_systemd_finds_nothing_wrong_with_the_unit(make, tmp_path):
 
 
 @pytest.mark.skipif(shutil.which("systemd-analyze") is None, reason="systemd is not installed")
-@pytest.mark.parametrize("service", ["robot-bridge", "robot-bridge-maps"])
+@pytest.mark.parametrize("service", ["robot-bridge", "robot-bridge-archive", "robot-bridge-maps"])
 def test_systemd_counts_the_service_among_those_that_are_shut_in(make, tmp_path, service):
     make(
-        "install-service" if service == "robot-bridge" else "install-maps-service", PREFIX="/opt/robot-bridge"
+        "install-maps-service" if service == "robot-bridge-maps" else "install-service",
+        PREFIX="/opt/robot-bridge",
     )
     unit = tmp_path / "etc" / "systemd" / "system" / f"{service}.service"
 

@@ -239,6 +239,7 @@ class RobotSession:
         self._fleet.reception.holds.free(self.robot, self)
         outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
         if outcome.admitted:
+            self._fleet.check_owned(self.robot)
             self._admitted = True
             self._sessions.admit(self)
         return outcome

@@ -300,10 +300,28 @@ class RequestRelay:
     async def _do(self, request: TakenRequest) -> None:
         answer = await self._answer_to(request)
         with log_and_continue(log, f"answering gateway {request.asked_by}"):
-            await self._database.run(relayed.answer, request.id, msgspec.json.encode(answer).decode())
-            self._exchange.wake("answers", request.asked_by)
-            # A gateway that asked itself: the robot came to it meanwhile.
-            self._note_answers()
+            if await self._store_answer(request, msgspec.json.encode(answer).decode()):
+                self._exchange.wake("answers", request.asked_by)
+                # A gateway that asked itself: the robot came to it meanwhile.
+                self._note_answers()
+
+    async def _store_answer(self, request: TakenRequest, answer: str) -> bool:
+        """Store an answer, though the database be away, for as long as somebody waits for it."""
+        until = asyncio.get_running_loop().time() + ANSWER_WITHIN_S
+        while True:
+            try:
+                await self._database.run(relayed.answer, request.id, answer)
+                return True
+            except StoreError as error:
+                if asyncio.get_running_loop().time() > until:
+                    log.error(
+                        "gateway %s is not told what became of %s: %s",
+                        request.asked_by,
+                        request.method,
+                        error,
+                    )
+                    return False
+            await asyncio.sleep(LOOK_S)
 
     async def _answer_to(self, taken: TakenRequest) -> dict[str, Any]:
         try:

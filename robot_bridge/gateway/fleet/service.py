@@ -50,7 +50,7 @@ from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
 from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.owner_fence import SOLE_FENCE
+from ..storage.owner_fence import SOLE_FENCE, FencedError
 from ..storage.repositories import robots as stored_robots
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
@@ -342,6 +342,14 @@ class Fleet:
         """Note that a robot sent what is too large to be read: it is there, and its operators are told."""
         if robot in self.robots:
             self.robots.disbelieve(robot, link, self._clock.time(), fault)
+
+    def check_owned(self, robot: str) -> None:
+        """Raise FencedError where another gateway has got a robot while it was let in here.
+
+        Whoever loses a robot closes its connection, but not one on which it is not in yet.
+        """
+        if not self._fence.owns(robot):
+            raise FencedError(f"robot {robot}: another gateway has got it meanwhile; say Ready again")
 
     def closed(self, robot: str) -> None:
         """Note that the robot closed its link in good order."""

@@ -20,7 +20,7 @@ from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import Any, Protocol
 
-from sqlalchemy import URL, Connection, Engine, insert, inspect, select, text, update
+from sqlalchemy import URL, Connection, Engine, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ...core.errors import BridgeError, FatalError, StoreError, listed_names
@@ -28,6 +28,7 @@ from ...core.json_decoder import SHORT, DecodingError, decode_json
 from .database import open_engine, shown
 from .dialects import Dialect, SQLite, sqlite_file_of
 from .repositories import gateways as stored_gateways
+from .repositories.metadata import fact
 from .schema import bridge, gateways
 
 log = logging.getLogger(__name__)
@@ -320,11 +321,10 @@ def _has_lock(url: URL) -> bool:
 
 
 def _make_row(engine: Engine) -> None:
+    # Gateways of a fleet may start on a new database at the same moment.
     with engine.begin() as connection:
-        known = set(connection.scalars(select(bridge.c.name)))
         for name in (RUN, ROW):
-            if name not in known:
-                connection.execute(insert(bridge).values(name=name, value="{}"))
+            fact(connection, name, "{}")
 
 
 def _codes(error: DBAPIError) -> set[object]:

@@ -79,7 +79,7 @@ class TrajectoryFile:
         if not places and self._file.exists():
             return
         points = self._frame.to_crs([(place.x, place.y) for place in places])
-        self._write(POSITIONS, "Point", _point_blobs(points), _columns(places, self._frame))
+        self._write(POSITIONS, "Point", _point_blobs(points), position_columns(places, self._frame))
         self.positions += len(places)
         ended = [
             track for place, (x, y) in zip(places, points, strict=True) for track in self._extend(place, x, y)
@@ -122,7 +122,11 @@ class TrajectoryFile:
             ) from error
 
 
-def _columns(places: Sequence[StoredPosition], frame: SiteFrame) -> dict[str, Any]:
+def position_columns(places: Sequence[StoredPosition], frame: SiteFrame) -> dict[str, Any]:
+    """Return (n,) columns of ``places`` by name, in the site frame; times to the millisecond, UTC.
+
+    What is not known of a place is NaN. ``heading`` is in degrees, clockwise from grid north.
+    """
     numbers = np.array(
         [
             (place.x, place.y, place.theta, place.v, _or_nan(place.device_time), _or_nan(place.fix_time))

@@ -10,13 +10,15 @@ from dataclasses import fields
 
 import pytest
 
+from robot_bridge.core.clock import SYSTEM_CLOCK
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.sites.settings import TABLES
 from robot_bridge.gateway.storage import revisions
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.repositories import records, trajectories
 from robot_bridge.gateway.storage.repositories.records import NewPlacement
-from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
+from robot_bridge.gateway.storage.repositories.trajectories import DAY, Fix, pack
+from tests.support.databases.archive_reader import duckdb_with_spatial
 from tests.support.forked_programs import write_shell_command
 
 SHELL = ["sh", "-eu"]
@@ -27,18 +29,19 @@ def page(root) -> str:
     return (root / "docs" / "operation.md").read_text(encoding="utf-8")
 
 
-def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_path):
+def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_path, monkeypatch):
     shutil.copytree(sample_site, tmp_path / "site", ignore=shutil.ignore_patterns("*.tif", "*.py", "drawing"))
     program = tmp_path / "bin" / "robot-bridge"
     program.parent.mkdir()
     write_shell_command(program)
     blocks = re.findall(r"^```sh sqlite\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     # The track of a robot that was never there is refused, and a layout without a cone.
     database = f"sqlite:///{tmp_path}/robot-bridge.db"
     run_once(database, revisions.create)
-    fix = Fix("r1", 1_790_000_000.0, SendPos(1.0, 2.0, 0.0, 0.0))
-    run_once(database, trajectories.add, [pack(fix)])
+    yesterday = (SYSTEM_CLOCK.time() // DAY - 1) * DAY
+    fixes = [Fix("r1", yesterday + n, SendPos(1.0 + n, 2.0, 0.0, 0.0)) for n in range(3)]
+    run_once(database, trajectories.add, list(map(pack, fixes)))
     place = {"planned_x": 1.0, "planned_y": 2.0, "x": 1.0, "y": 2.0, "theta": 0.0, "deviation": 0.0}
     cone = NewPlacement("task-1", "r1", "command-1", placed_at=1_790_000_000.0, layout="slalom-1", **place)
     run_once(database, records.add_placed_cones, cone)
@@ -56,6 +59,9 @@ def test_the_commands_for_sqlite_do_what_they_say(page, root, sample_site, tmp_p
     assert "the tables are those that this version works with" in done.stdout
     for name in ("fleet-backup.db", "drives.gpkg", "r1.gpkg", "cones.csv", "slalom.gpkg"):
         assert (tmp_path / name).is_file()
+    (query,) = re.findall(r"^```sql archive\n(.*?)^```$", page, re.DOTALL | re.MULTILINE)
+    monkeypatch.chdir(tmp_path)
+    assert duckdb_with_spatial().execute(query).fetchall() == [("r1", 2.0)]
 
 
 def test_every_setting_is_explained(page):

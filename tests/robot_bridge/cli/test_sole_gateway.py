@@ -5,15 +5,18 @@ import json
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 
 import pytest
-from sqlalchemy import insert, select
+from sqlalchemy import insert, select, text
 
 from robot_bridge.core.errors import BridgeError, FatalError, StoreError
 from robot_bridge.gateway.storage import singleton_lock
-from robot_bridge.gateway.storage.database import Database, read_address, run_once
+from robot_bridge.gateway.storage.database import Database, open_engine, read_address, run_once
+from robot_bridge.gateway.storage.repositories.metadata import fact
 from robot_bridge.gateway.storage.schema import bridge
-from robot_bridge.gateway.storage.singleton_lock import SingletonLock, no_gateway
+from robot_bridge.gateway.storage.singleton_lock import SingletonLock, check_no_sole_gateway, no_gateway
+from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import START
 
 HOLDER = """
@@ -143,3 +146,20 @@ async def test_a_server_that_does_not_run_is_named_with_what_to_check(kind):
             pass
     assert str(caught.value).startswith(f"database {kind}://fleet@127.0.0.1:1/fleet: ")
     assert "check that the server runs" in str(caught.value)
+
+
+def test_gateways_of_a_fleet_look_at_a_new_database_at_the_same_moment(new_database):
+    """Whoever comes second waits for the rows of the first one, and has them, too."""
+    url = new_database("postgresql")
+    address = read_address(url)
+    waits = """select count(*) from pg_stat_activity
+        where datname = current_database() and wait_event_type = 'Lock'"""
+    engine, _ = open_engine(address)
+    with engine.begin() as first, ThreadPoolExecutor(1) as thread:
+        fact(first, singleton_lock.RUN, "{}")
+        second = thread.submit(check_no_sole_gateway, address)
+        with open_engine(address)[0].connect() as onlooker:
+            wait_until(lambda: onlooker.scalar(text(waits)) or second.done())
+        assert not second.done()
+        first.commit()
+        second.result(60)

@@ -10,6 +10,12 @@ from types import SimpleNamespace
 import pytest
 
 from tests.support.faults.audit import Deaths, Stored, judged
+from tests.support.faults.cluster_yard import (
+    Stop,
+    done_though_refused,
+    moved_while_stopped,
+    taken_up_again,
+)
 from tests.support.faults.desk import Ledger
 from tests.support.faults.yard import GATEWAY_KILLED, Death, Fault
 
@@ -55,8 +61,8 @@ def story():
     )
 
 
-def wrong(story):
-    return judged(story.ledger, story.faults, story.stored, story.lines, story.deaths).wrong
+def wrong(story, *stops):
+    return judged(story.ledger, story.faults, story.stored, story.lines, story.deaths, stops).wrong
 
 
 def test_a_right_story_is_right_and_is_counted(story):
@@ -190,3 +196,47 @@ def be_refused_for_no_reason(story):
 def test_one_thing_that_is_wrong_is_found(story, spoil, says):
     spoil(story)
     assert any(says in sentence for sentence in wrong(story)), wrong(story)
+
+
+def test_what_an_emergency_stop_withdrew_need_not_have_been_acted_on(story):
+    del story.lines[0]
+    story.stored.commands[TARGET].state = "aborted"
+    story.stored.steps[TARGET] = [step("queued", 1.0), step("delivered", 1.1), step("aborted", 2.5)]
+    story.stored.commands[STOP].state = "superseded"
+    story.stored.steps[STOP] = [step("queued", 3.0), step("superseded", 3.1)]
+    assert wrong(story, (2.0, 2.2), (3.05, 3.1)) == []
+    # A stop of before or afterwards withdrew nothing.
+    (found,) = wrong(story, (3.05, 3.1))
+    assert "never acted on it" in found
+    (found,) = wrong(story, (0.9, 0.95), (9.0, 9.5))
+    assert "it is superseded" in found
+    # An Abort that was asked for while a stop was in force gives way to the stop's own, too.
+    assert wrong(story, (0.5, 3.05)) == []
+    # Acted on it counts.
+    story.stored.steps[TARGET].insert(2, step("acknowledged", 1.2))
+    story.lines.insert(0, line("acted", 1.15, op="SetPosEnd", number=1, id=5))
+    story.lines.insert(1, line("acted", 1.16, op="SetPosEnd", number=1, id=7))
+    assert any("acted on 2 times" in text for text in wrong(story, (2.0, 2.2), (3.05, 3.1)))
+
+
+def test_what_stops_and_refusals_must_keep_robots_from_is_found():
+    stop = Stop("stop-0001", 10.0, {"sq01": 10.5}, ended=12.0)
+    acted = [
+        line("acted", at, op="SetPosEnd", number=number, id=number)
+        for number, at in enumerate((10.4, 11.0, 12.1))
+    ]
+    assert list(moved_while_stopped(acted, [stop])) == [
+        "sq01 was sent SetPosEnd 1 while stop-0001 was in force"
+    ]
+    refused = {"sq01-000000": "may have been done: look", "sq01-000002": "what was asked was not done"}
+    assert [text.split()[1] for text in done_though_refused(acted, refused)] == ["sq01-000002"]
+
+
+def test_a_gateway_is_replaced_when_its_last_robot_is_at_another_one():
+    def ready(robot, at, address):
+        return {"what": "ready", "robot": robot, "at": at, "address": address}
+
+    lines = [ready("a", 1.0, "g0"), ready("b", 1.0, "g0"), ready("c", 1.0, "g1")]
+    lines += [ready("c", 2.0, "g0"), ready("a", 10.3, "g1"), ready("c", 10.7, "g1"), ready("b", 11.5, "g1")]
+    faults = [Fault(f"{GATEWAY_KILLED} g0", 10.0, 10.1), Fault("something else", 11.0, 11.1)]
+    assert list(taken_up_again(lines, faults, ["g0", "g1"])) == [1.5]

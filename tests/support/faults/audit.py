@@ -24,6 +24,8 @@ LAST_WORDS_S = 0.5
 """seconds before the death of a robot in which what it said may go down with its connection, unread."""
 CLOCK_S = 0.1
 """seconds by which two processes of this machine may disagree on what came first."""
+STOP_KNOWN_S = 2.0
+"""seconds that gateways may differ on whether a stop is in force."""
 LOST_YOUNG = f"... lost, told at most {YOUNG_S:g} s before a gateway was killed"
 LOST_WITH_ROBOT = f"... lost, told at most {LAST_WORDS_S:g} s before the robot itself was killed"
 ORDER = ("queued", "delivered", "acknowledged", "reached")
@@ -72,7 +74,7 @@ class Findings:
 
 def audit(yard: Yard) -> Findings:
     """Judge what happened in a yard that has finished."""
-    stored = run_once(yard.place.url, _load)
+    stored = run_once(yard.place.url, load_stored)
     deaths = Deaths(yard.gateway_ends, yard.robot_ends())
     findings = judged(yard.ledger, yard.faults, stored, list(yard.journals()), deaths)
     findings.wrong += yard.said("Traceback")[:3]
@@ -86,20 +88,26 @@ def judged(
     stored: Stored,
     lines: Sequence[dict[str, Any]],
     deaths: Deaths,
+    stops: Sequence[tuple[float, float]] = (),
 ) -> Findings:
-    """Judge what is stored by what desks were told, what was done, and what robots wrote down."""
+    """Judge what is stored by what desks were told, what was done, and what robots wrote down.
+
+    ``stops`` are the times of emergency stops and of their ends: what robots have not read is withdrawn.
+    """
     findings = Findings(wrong=list(ledger.wrong))
     lines = sorted(lines, key=lambda line: float(line["at"]))
     findings.wrong += [f"robot {line['robot']}: {line['text']}" for line in lines if line["what"] == "wrong"]
     findings.wrong += [f"{op} of or for robot {robot} still waits" for robot, op in stored.waiting]
     findings.counts.update(Counter(fault.what for fault in faults))
-    _judge_commands(ledger, stored, _acts(lines), findings)
+    _judge_commands(ledger, stored, _acts(lines), findings, stops)
     _judge_observations(faults, stored, lines, findings)
     _judge_positions(faults, stored, lines, deaths, findings)
     return findings
 
 
-def _load(connection: Connection) -> Stored:
+def load_stored(connection: Connection) -> Stored:
+    """Return what a database holds; to be run when nothing is written any more."""
+
     def rows(query: str) -> list[Any]:
         return list(connection.execute(text(query)))
 
@@ -129,7 +137,9 @@ def _acts(lines: Iterable[dict[str, Any]]) -> Acts:
     return acts
 
 
-def _judge_commands(ledger: Ledger, stored: Stored, acts: Acts, findings: Findings) -> None:
+def _judge_commands(
+    ledger: Ledger, stored: Stored, acts: Acts, findings: Findings, stops: Sequence[tuple[float, float]]
+) -> None:
     counts = findings.counts
     counts["commands told queued"] = len(ledger.told)
     counts["asked again for want of an answer"] = ledger.repeated
@@ -140,9 +150,11 @@ def _judge_commands(ledger: Ledger, stored: Stored, acts: Acts, findings: Findin
             findings.wrong.append(f"command {id} was told queued and is not in the database")
             continue
         steps = stored.steps[id]
-        findings.wrong += [f"command {id}: {fault}" for fault in _life_faults(command, steps)]
+        withdrawn = _is_stopped(steps, stops)
+        findings.wrong += [f"command {id}: {fault}" for fault in _life_faults(command, steps, withdrawn)]
         did = acts[id] if command.op != "Abort" else _same_message(acts[command.robot], command.sa_id)
-        findings.wrong += [f"command {id}: {fault}" for fault in _act_faults(command, steps, did, acts)]
+        if did or not withdrawn:
+            findings.wrong += [f"command {id}: {fault}" for fault in _act_faults(command, steps, did, acts)]
         counts[f"... {command.state}"] += 1
         counts["acted on"] += bool(did)
         counts["acted on again by a robot that had forgotten it"] += len({act["life"] for act in did}) > 1
@@ -154,8 +166,16 @@ def _same_message(acts: list[dict[str, Any]], sa_id: int) -> list[dict[str, Any]
     return [act for act in acts if act["id"] == sa_id]
 
 
-def _life_faults(command: Any, steps: list[Any]) -> Iterator[str]:
-    """Yield what a command's log says that cannot be."""
+def _is_stopped(steps: list[Any], stops: Sequence[tuple[float, float]]) -> bool:
+    """Tell whether a command ended aborted, or superseded by another Abort, of an emergency stop."""
+    if not steps or steps[-1].state not in ("aborted", "superseded"):
+        return False
+    first, last = steps[0].at - STOP_KNOWN_S, steps[-1].at + CLOCK_S
+    return any(at <= last and first <= end for at, end in stops)
+
+
+def _life_faults(command: Any, steps: list[Any], withdrawn: bool = False) -> Iterator[str]:
+    """Yield what a command's log says that cannot be, of one that was ``withdrawn`` by an emergency stop."""
     states = [step.state for step in steps]
     if not states or states[0] != "queued":
         yield f"its log begins with {states[:1]}"
@@ -165,7 +185,8 @@ def _life_faults(command: Any, steps: list[Any]) -> Iterator[str]:
         back = before in ORDER and after in ORDER and ORDER.index(after) < ORDER.index(before)
         if (before in ENDS and after != before) or back:
             yield f"{after} after {before}"
-    if command.state not in ("reached", "aborted"):
+    superseded = withdrawn and command.op == "Abort" and command.state == "superseded"
+    if command.state not in ("reached", "aborted") and not superseded:
         yield f"it is {command.state}: {steps[-1].reason}"
 
 

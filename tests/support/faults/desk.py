@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import random
+import re
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -23,6 +24,7 @@ SHARE_ABORTED, SHARE_PATHS = 0.12, 0.1
 LONGEST_BEFORE_ABORT = 0.15
 ENDS = ("reached", "aborted", "failed", "expired", "superseded")
 DATABASE_AWAY = -32603
+NOTHING = r"(?!)"
 
 
 @dataclass
@@ -51,16 +53,25 @@ class Task:
 
 
 class SendingDesk(threading.Thread):
-    """One connection for some robots; each has one task at a time, and the next after that has ended."""
+    """One connection for some robots; each has one task at a time, and the next after that has ended.
+
+    A refusal is wrong unless the database was away, or ``tolerated``, a regular expression, is found in it.
+    """
 
     def __init__(
-        self, address: Callable[[], str], robots: dict[str, float], seed: str, ledger: Ledger
+        self,
+        address: Callable[[], str],
+        robots: dict[str, float],
+        seed: str,
+        ledger: Ledger,
+        tolerated: str = NOTHING,
     ) -> None:
         super().__init__(name=f"desk {seed}", daemon=True)
         self._address = address
         self._rows = robots
         self._random = random.Random(seed)
         self._ledger = ledger
+        self._tolerated = re.compile(tolerated)
         self._numbers = itertools.count(1)
         self._tasks: dict[str, Task] = {}
         self._rest_until = dict.fromkeys(robots, 0.0)
@@ -153,7 +164,8 @@ class SendingDesk(threading.Thread):
     def _refused(self, frame: dict[str, Any]) -> None:
         id, _ = self._asked.pop(frame["id"], ("", 0.0))
         code, text = frame["error"]["code"], frame["error"]["message"]
-        if code != DATABASE_AWAY or text.startswith("internal error"):
+        known = code == DATABASE_AWAY and not text.startswith("internal error")
+        if not (known or self._tolerated.search(text)):
             self._ledger.wrong.append(f"command {id or frame['id']} was refused: {text}")
         if id:
             self._ledger.refused[id] = text

@@ -8,6 +8,7 @@ twice, and leaves what is not for this life. What it does and remembers is its m
 from __future__ import annotations
 
 import base64
+import itertools
 import json
 import threading
 import time
@@ -38,19 +39,22 @@ class Said:
 
 
 class MindOverWebSocket:
-    """Speaks JSON-RPC; connects again for ever."""
+    """Speaks JSON-RPC; connects again for ever, of several addresses with commas between them to the next."""
 
     def __init__(self, mind: Any, url: str) -> None:
         self._mind = mind
-        self._url = f"{url}/robot?robot={mind.name}"
+        self._addresses = itertools.cycle(url.split(","))
+        self._address = ""
         self._ready = False
         self._calls: dict[int, str] = {}
 
     def run(self, ended: threading.Event) -> None:
         """Live until told to end."""
         while not ended.is_set():
+            self._address = next(self._addresses)
             try:
-                with RobotWire(self._url, open_timeout=10, close_timeout=5) as wire:
+                url = f"{self._address}/robot?robot={self._mind.name}"
+                with RobotWire(url, open_timeout=10, close_timeout=5) as wire:
                     self._live(wire, ended)
             except (OSError, TimeoutError, WebSocketException):
                 ended.wait(RETRY_AFTER)
@@ -85,6 +89,8 @@ class MindOverWebSocket:
         done = "error" not in frame and frame["result"].get("ok", True)
         if op == "Ready":
             self._ready = done
+            if done:
+                self._mind.note("ready", address=self._address)
             return bool(done)
         if done:
             self._mind.acknowledged()

@@ -143,6 +143,13 @@ def read(
     return [StoredPosition(*row) for row in connection.execute(query.order_by(at, id).limit(limit))]
 
 
+def next_time(connection: Connection, since: float) -> float | None:
+    """Return when the oldest position from a time on was received, seconds since 1970; None where none is."""
+    at = trajectories.c.received_at
+    found: float | None = connection.scalar(select(func.min(at)).where(at >= since))
+    return found
+
+
 def never_seen(connection: Connection, robots: Sequence[str]) -> list[str]:
     """Return those of ``robots`` of which no position is stored."""
     column = trajectories.c.robot

@@ -11,13 +11,16 @@ import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.logs import RepeatedLines
+from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.api.robot_session import RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
+from robot_bridge.gateway.fleet.outbox import RequestOutcome
 from robot_bridge.gateway.fleet.registration import ConnectionClaims
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.monitoring import Counters
+from robot_bridge.gateway.storage.owner_fence import FencedError
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
 
@@ -110,6 +113,41 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
     monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}}))
     assert begun == again
+
+
+async def test_a_robot_that_another_gateway_got_while_it_was_let_in_is_refused_and_says_ready_again(
+    own, connection
+):
+    """It would stay connected to a gateway that has it no more; as it was lost it was not in yet."""
+    lost = [FencedError("robot r1: another gateway has got it meanwhile; say Ready again")]
+
+    async def receive(robot, _link, ready, id):
+        return RequestOutcome(robot, OpAck(id=id, magic=ready.magic))
+
+    async def finish(*_, **__):
+        pass
+
+    def check_owned(_robot):
+        if lost:
+            raise lost.pop()
+
+    begun = []
+    own.session._admitted = False
+    own.session._fleet.__dict__.update(
+        receive=receive,
+        check_owned=check_owned,
+        reception=SimpleNamespace(holds=ConnectionClaims()),
+        mailboxes=SimpleNamespace(finish=finish),
+        gateway_urls=lambda _endpoint: None,
+    )
+    own.session._delivery.begin = lambda: begun.append(1)
+    ready = json.dumps({"jsonrpc": "2.0", "method": "Ready", "params": {"magic": 1}, "id": 1})
+    await own._receive(ready)
+    assert "another gateway has got it" in connection.sent[-1]["error"]["message"]
+    assert (own.session._admitted, list(own.session._sessions), begun) == (False, [], [])
+    await own._receive(ready)
+    assert connection.sent[-1]["result"]["ok"]
+    assert (own.session._admitted, list(own.session._sessions), begun) == (True, [own.session], [1])
 
 
 def test_a_connection_that_fails_keeps_no_stop_from_the_others(caplog):
