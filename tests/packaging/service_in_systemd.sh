@@ -16,7 +16,7 @@ mount --bind "$packages" "$root/opt/robot-bridge/packages"
 printf '#!/bin/sh\nexport PYTHONPATH=/opt/robot-bridge:/opt/robot-bridge/packages\nexec %s "$@"\n' "$python" > "$root/opt/robot-bridge/bin/python"
 chmod 755 "$root/opt/robot-bridge/bin/python"
 # Nothing else of this system is to start; the log goes where a test can read it.
-for unit in robot-bridge robot-bridge-link@ robot-bridge-maps; do
+for unit in robot-bridge robot-bridge-link@ robot-bridge-maps robot-bridge-archive; do
     mkdir -p "$root/etc/systemd/system/$unit.service.d"
     cat > "$root/etc/systemd/system/$unit.service.d/alone.conf" <<'END'
 [Unit]

@@ -12,6 +12,8 @@ import pytest
 
 from tests.support.systemd_world import HAS_SYSTEMD, NO_SYSTEMD, world_of
 
+PYTHON = "/opt/robot-bridge/bin/python"
+ACCOUNT = ("setpriv", "--reuid=robot-bridge", "--regid=robot-bridge", "--clear-groups")
 MAPS, CAPABILITIES = "robot-bridge-maps", "SERVICE=WMS&REQUEST=GetCapabilities"
 SCRIPT = Path(__file__).with_name("service_in_systemd.sh")
 
@@ -34,14 +36,13 @@ def log(world):
 def health(world):
     """What the gateway says of itself and its links."""
     code = "import urllib.request as u; print(u.urlopen('http://127.0.0.1:8765/healthz').read().decode())"
-    return world.do("/opt/robot-bridge/bin/python", "-c", code)
+    return world.do(PYTHON, "-c", code)
 
 
 @pytest.mark.skipif(
     shutil.which("qgis_mapserver") is None, reason="qgis-server is not installed; run: make setup"
 )
 def test_the_maps_are_served_beside_it_with_the_fleet(world):
-    account = ("setpriv", "--reuid=robot-bridge", "--regid=robot-bridge", "--clear-groups")
     fleet, database = "/var/lib/robot-bridge/fleet.vrt", "sqlite:////var/lib/robot-bridge/fleet.db"
     views = (
         "database",
@@ -53,16 +54,34 @@ def test_the_maps_are_served_beside_it_with_the_fleet(world):
         "--database",
         database,
     )
-    made = world.run(*account, "/opt/robot-bridge/bin/python", "-m", "robot_bridge", *views)
+    made = world.run(*ACCOUNT, PYTHON, "-m", "robot_bridge", *views)
     assert made.returncode == 0, made.stderr
     world.do("sed", "-i", f"s|^MAPS_OPTIONS=.*|& --fleet {fleet}|", "/etc/robot-bridge/maps.env")
     world.do("systemctl", "start", MAPS)
     ask = f"import urllib.request as u; print(u.urlopen('http://127.0.0.1:8790/?{CAPABILITIES}').read().decode())"
-    text = world.until(lambda: world.do("/opt/robot-bridge/bin/python", "-c", ask), lambda: log(world))
+    text = world.until(lambda: world.do(PYTHON, "-c", ask), lambda: log(world))
     assert "<Name>Robots</Name>" in text and "<Name>Orthophoto</Name>" in text
     assert world.do("ps", "-o", "user=", "-p", world.fact("MainPID", MAPS)).startswith("robot-b")
     world.do("systemctl", "stop", MAPS)
     assert (world.fact("ActiveState", MAPS), world.fact("Result", MAPS)) == ("inactive", "success")
+
+
+ARCHIVE = "robot-bridge-archive"
+YESTERDAY = """
+import sqlite3, time
+with sqlite3.connect("/var/lib/robot-bridge/fleet.db", timeout=30) as fleet:
+    columns = "robot, received_at, x, y, theta, v"
+    fleet.execute(f"insert into trajectories ({columns}) values ('r1', ?, 1, 2, 0, 0)", [time.time() - 86400])
+"""
+
+
+def test_the_days_that_are_over_are_archived_beside_the_gateway(world):
+    done = world.run(*ACCOUNT, PYTHON, "-c", YESTERDAY)
+    assert done.returncode == 0, done.stderr
+    world.do("systemctl", "start", ARCHIVE)
+    assert world.fact("Result", ARCHIVE) == "success", log(world)
+    (file,) = world.do("ls", "-l", "/var/lib/robot-bridge-archive").splitlines()[1:]
+    assert " robot-bridge robot-bridge " in file and file.endswith(".parquet")
 
 
 LINK = "robot-bridge-link@phones"
