@@ -29,6 +29,7 @@ from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
 from ..storage.database import Database
 from ..storage.dialects import sqlite_file_of
+from ..storage.owner_fence import FencedError
 from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
 
@@ -229,8 +230,8 @@ class StopWriter:
     async def write_owed(self) -> None:
         """Store the Aborts that could not be stored before.
 
-        A robot whose Abort is refused, or fails for a reason nobody foresaw, is left with a bare one. What
-        fails otherwise is tried again by the next call.
+        A robot whose Abort is refused, or fails for a reason nobody foresaw, is left with a bare one; one
+        that another gateway has by now is left to that. What fails otherwise is tried again by the next call.
 
         :raises StoreError: when the database cannot be used.
         """
@@ -241,10 +242,13 @@ class StopWriter:
             failed = await self._halve(sorted(robots), partial(self._issue, stop))
             for robot in robots:
                 error = failed.get(robot)
-                if error is None or await self._is_left_bare(robot, error):
+                if error is None or await self._is_settled(robot, error):
                     self._owed.pop(robot, None)
 
-    async def _is_left_bare(self, robot: str, error: Exception) -> bool:
+    async def _is_settled(self, robot: str, error: Exception) -> bool:
+        if isinstance(error, FencedError):
+            # The gateway that has the robot by now knows of the stop, and sends it that Abort.
+            return True
         if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
             return False
         if robot not in self._have_bare and await self._halve([robot], self._send_bare):

@@ -384,14 +384,33 @@ def test_targets_of_robots_of_two_gateways_are_sent_together(pair, name):
     assert robot == name and "site" in reason
 
 
+@contextlib.contextmanager
+def storing_no_command_of(robot, bridge):
+    """Within, whoever stores a command of the robot is kept waiting; other robots' are stored."""
+    with contextlib.closing(DatabaseClient(bridge.database)) as client:
+        client.sql(
+            "create function hold_back() returns trigger language plpgsql as "
+            "'begin perform pg_advisory_xact_lock(42); return new; end'"
+        )
+        client.sql(
+            "create trigger hold_back before insert on commands for each row "
+            f"when (new.robot = '{robot}') execute function hold_back()"
+        )
+        client.sql("select pg_advisory_lock(42)")
+        try:
+            yield
+        finally:
+            client.sql("select pg_advisory_unlock(42)")
+            client.sql("drop trigger hold_back on commands")
+            client.sql("drop function hold_back")
+
+
 def test_targets_are_not_sent_again_when_a_gateway_dies_over_them(pair, name):
     """The one that takes its robots over sends none that the other one may have sent."""
     pair.robot(pair.a, name)
     here, desk = pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0)), desk_at(pair.b)
     desk.wait_for_robots(name, f"{name}-b")
-    with contextlib.closing(DatabaseClient(pair.b.database)) as client:
-        client.sql("begin")
-        client.sql("lock table commands in exclusive mode")
+    with storing_no_command_of(name, pair.b):
         id = desk.begin("set_positions", targets(name, f"{name}-b"))
         begun = "select begun_by from relayed_requests where robot = ? and begun_by is not null"
         wait_until(lambda: pair.b.sql(begun, name))

@@ -19,6 +19,7 @@ from robot_bridge.gateway.commands import service as book_module
 from robot_bridge.gateway.commands.persistence import write_late
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.model.events import CommandChanged
+from robot_bridge.gateway.storage.owner_fence import FencedError
 from robot_bridge.gateway.storage.repositories import emergency_stops, requests
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories import robots as stored_robots
@@ -431,6 +432,17 @@ async def test_robots_are_told_whatever_else_goes_wrong(driven, caplog):
     failed = [record.getMessage().partition(" failed;")[0] for record in caplog.records]
     assert "noting an emergency stop" in failed
     assert "sending an emergency stop over open connections" in failed
+
+
+@ON_ONE
+async def test_a_robot_that_another_gateway_has_by_now_is_left_to_that(driven, monkeypatch):
+    async def fenced(*_):
+        raise FencedError("connected to another gateway by now")
+
+    writer = driven.fleet.emergency._writer
+    monkeypatch.setattr(writer._book, "issue", fenced)
+    assert (await stop(driven)).stored
+    assert not writer.is_owing
 
 
 @ON_ONE

@@ -214,6 +214,8 @@ def test_why_a_robot_does_not_drive_is_told(desk, robot, odd, words):
 
 def test_a_robot_without_actions_drives_to_what_is_published(desk, robot, nodes):
     name = robot(*FAST, "--odd", "no-actions")
+    # Its topics are found one by one.
+    desk.until(lambda: "targets" in (desk.robots[name].get("abilities") or ""), 20)
     desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "reached", 8)
     assert events(nodes, name, "goal pose")[0]["points"] == [[25.0, 8.0]]
