@@ -175,7 +175,7 @@ def outlast_a_cut(
 
     desk.wait_for_step(f"go-{driving}", "reached", 60)
     (ended,) = wait_until(lambda: happened(stopped, "goal ended"), 60)
-    assert ended["status"] == 5, "it was not canceled"
+    assert ended["status"] == 5, f"it was not canceled: {ended}"
     for name in names:
         desk.until(lambda name=name: desk.robots[name]["state"] == "fresh", 60)
     # What was sent off is taken back, should it have come out of the line after all.
