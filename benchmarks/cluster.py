@@ -173,6 +173,8 @@ class Fleet:
         process.send_signal(signal.SIGCONT)
 
     def _lose_nats(self) -> float:
+        # The database that was killed before is recovered from by then.
+        self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
         with self._without_nats():
             time.sleep(NATS_AWAY)
         seconds: float = self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)

@@ -34,7 +34,7 @@ STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
 """Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
 MOST_WAITING = 256
 """messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
-RETRY_S, NATS_RETRY_S = 1.0, 0.25
+RETRY_S, NATS_RETRY_S = 1.0, 0.1
 """seconds from one attempt to connect to the next."""
 CONNECTED_LOOK_S = 0.2
 """seconds after which a connection is looked at that did not say that it was lost."""

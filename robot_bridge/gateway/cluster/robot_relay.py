@@ -17,6 +17,7 @@ import numpy.typing as npt
 from ...core.messages.robots import SendPos
 from ...core.messages.validation import LONGEST_STATUS, one_line
 from ..model.robots import DescribedElsewhere, ReportedElsewhere, Robot, Robots
+from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership
 from .messages import (
@@ -58,13 +59,15 @@ class PositionRelay:
         self._revision = -1
         self._told_all_at, self._was_cut_off = -math.inf, True
         self._newest: dict[str, float] = {}
+        self._asked = asyncio.Event()
         exchange.subscribe(PositionBatch, self._take)
         exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
         """Tell until cancelled."""
         while True:
-            await asyncio.sleep(POSITION_TICK_S)
+            await wait_at_most(self._asked, POSITION_TICK_S)
+            self._asked.clear()
             self.send_changes()
 
     def send_changes(self) -> None:
@@ -100,6 +103,7 @@ class PositionRelay:
     def _woken(self, wake: Wake) -> None:
         if wake.what == "positions":
             self._told_all_at = -math.inf
+            self._asked.set()
 
     def _take(self, batch: PositionBatch) -> None:
         now = self._membership.database_time()
