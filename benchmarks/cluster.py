@@ -132,8 +132,10 @@ class Fleet:
             stops["one other gateway is frozen"] = [
                 self._stop_while(self._frozen(OTHERS[-1]), without=[OTHERS[-1]]) for _ in range(STOPS)
             ]
-            stops["PostgreSQL is dead"] = [self._stop_while(self._without_database()) for _ in range(STOPS)]
             recovered["NATS killed, and back after some seconds"] = [self._lose_nats() for _ in range(ROUNDS)]
+            # Last of those: gateways have to catch up after it.
+            stops["PostgreSQL is dead"] = [self._stop_while(self._without_database()) for _ in range(STOPS)]
+            self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
             recovered["a gateway killed"] = [self._lose_gateway()]
         return Run(watched, cpu, memory, commands, stops, recovered)
 
@@ -173,8 +175,6 @@ class Fleet:
         process.send_signal(signal.SIGCONT)
 
     def _lose_nats(self) -> float:
-        # The database that was killed before is recovered from by then.
-        self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
         with self._without_nats():
             time.sleep(NATS_AWAY)
         seconds: float = self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
