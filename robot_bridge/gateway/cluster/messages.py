@@ -304,8 +304,8 @@ class Exchange:
 
     @property
     def connected(self) -> bool:
-        """Whether some bus is connected, as far as is known."""
-        return any(bus.connected for bus in self._buses)
+        """Whether the first bus is connected, as far as is known: all that is not urgent goes over that."""
+        return self._buses[0].connected
 
     def heard(self) -> list[str]:
         """Return the other gateways that said something of late."""

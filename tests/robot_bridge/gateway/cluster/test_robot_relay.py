@@ -31,7 +31,8 @@ class Place:
 
     def __init__(self):
         self.bus, self.robots = Bus(), Robots()
-        self.exchange = Exchange("b", b"k" * 32, [self.bus])
+        # The second one carries what is urgent alone.
+        self.exchange = Exchange("b", b"k" * 32, [self.bus, Bus()])
         membership = SimpleNamespace(database_time=lambda: 1000.0, clock_offset=0.0)
         self.relay = PositionRelay(self.robots, membership, self.exchange)
         self.robots.ready("r1", 1, "yard", 1000.0)
