@@ -32,6 +32,22 @@ from .messages import (
     in_batches,
 )
 
+
+class NewestBatches:
+    """Tells of batches whether they count: what is older than ``old_s``, or overtaken, does not."""
+
+    def __init__(self, old_s: float) -> None:
+        self._old_s = old_s
+        self._newest: dict[str, float] = {}
+
+    def accept(self, batch: PositionBatch | DetailBatch, now: float) -> bool:
+        """Return whether ``batch`` counts at ``now``, by the database's clock; it is the newest then."""
+        if abs(now - batch.t) > self._old_s or batch.t < self._newest.get(batch.gw, -math.inf):
+            return False
+        self._newest[batch.gw] = batch.t
+        return True
+
+
 # --- Where robots are: what changed goes out in columns ---
 
 POSITION_TICK_S = 0.2
@@ -58,7 +74,7 @@ class PositionRelay:
         self._most = LARGEST_NOTIFICATION // (4 * COLUMNS + 1 + NAME_BYTES) if small else MOST_ROBOTS
         self._revision = -1
         self._told_all_at, self._was_cut_off = -math.inf, True
-        self._newest: dict[str, float] = {}
+        self._newest = NewestBatches(POSITION_OLD_S)
         self._asked = asyncio.Event()
         exchange.subscribe(PositionBatch, self._take)
         exchange.subscribe(Wake, self._woken)
@@ -106,11 +122,8 @@ class PositionRelay:
             self._asked.set()
 
     def _take(self, batch: PositionBatch) -> None:
-        now = self._membership.database_time()
-        age = now - batch.t
-        if abs(age) > POSITION_OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
+        if not self._newest.accept(batch, self._membership.database_time()):
             return
-        self._newest[batch.gw] = batch.t
         wall = batch.t - self._membership.clock_offset
         for name, row, flags in zip(batch.names, batch.table().tolist(), batch.flags, strict=True):
             x, y, theta, v, pose_age, age_of = row
@@ -180,7 +193,7 @@ class DetailRelay:
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
         self._told: dict[str, _Facts] = {}
         self._told_all_at = -math.inf
-        self._newest: dict[str, float] = {}
+        self._newest = NewestBatches(DETAIL_OLD_S)
         exchange.subscribe(DetailBatch, self._take)
 
     async def run(self) -> None:
@@ -213,10 +226,8 @@ class DetailRelay:
             self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
 
     def _take(self, batch: DetailBatch) -> None:
-        age = self._membership.database_time() - batch.t
-        if abs(age) > DETAIL_OLD_S or batch.t < self._newest.get(batch.gw, -math.inf):
+        if not self._newest.accept(batch, self._membership.database_time()):
             return
-        self._newest[batch.gw] = batch.t
         for one in batch.robots:
             described = DescribedElsewhere(
                 one.battery, one.status, one.doubt, one.latency, one.paths, one.abilities, one.magic
