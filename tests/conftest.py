@@ -339,6 +339,14 @@ def deal_out(items):
             items += waiting.popleft() if len(waiting) % 2 else waiting.pop()
 
 
+@pytest.fixture
+def qgis_show_map_off(request) -> None:
+    """Show no map, in place of pytest-qgis, which has each test make and remove a folder for it.
+
+    That it asks for ``request`` has pytest-qgis tidy up what layers a test has.
+    """
+
+
 @pytest.fixture(scope="session")
 def root() -> Path:
     """The repository's root, which is the plugin's folder."""
