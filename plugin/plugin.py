@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsApplication, QgsProject
 
-from .expressions.functions import ExpressionFunctions
-from .expressions.robot_snapshot import SnapshotHolder
+from .expressions import ExpressionFunctions, SnapshotHolder
 from .layers.road_surfaces import SurfaceStore
 from .processing.provider import FleetProvider
 from .ui.errors import Part, remove_all
@@ -74,7 +73,7 @@ class FleetPlugin:
         from .admin.recordings import RecordingsAction
         from .admin.robot_removal import RobotRemoval
         from .admin.site_choice import SiteChoiceAction
-        from .expressions.robot_snapshot import ExpressionUpdater
+        from .expressions import ExpressionUpdater
         from .help import HelpActions
         from .layers.live_layers import LiveLayers
         from .layers.role_editor.roles_dialog import RolesAction
