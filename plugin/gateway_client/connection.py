@@ -13,6 +13,7 @@ from ...robot_bridge.core.clock import Clock, steady_time
 from ...robot_bridge.core.gateway_addresses import DESK_PACE, FleetGateways, GatewayAddresses
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
+from ..ui.vendored import websocket_library
 from .connection_status import (
     TOO_LARGE,
     ConnectionPhase,
@@ -24,7 +25,6 @@ from .connection_status import (
 )
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
-from .websocket_library import websocket_library
 
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
