@@ -21,8 +21,7 @@ from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in
 from .audit import AuditJournal, SessionRow
-from .client_connection import ClientConnection, Identity
-from .rate_limit import RateLimit
+from .client_connection import ClientConnection, Identity, RateLimit
 
 # --- Who is connected now, how many there are of each sort, and how a connection is ended ---
 
