@@ -59,9 +59,9 @@ from ..model.request_handlers import Answering
 from ..model.robots import Robots
 from ..monitoring import wait_at_most
 from ..storage.database import Database
-from ..storage.owner_fence import FencedError
 from ..storage.repositories import commands, relayed
 from ..storage.repositories.relayed import NewRequest, TakenRequest
+from ..storage.repositories.robots import FencedError
 from .bus import STOP
 from .membership import Membership
 from .messages import AbortCall, Exchange, Wake

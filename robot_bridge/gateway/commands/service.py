@@ -19,9 +19,9 @@ from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
-from ..storage.owner_fence import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from ..storage.repositories import commands
 from ..storage.repositories.commands import StoredCommand
+from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from . import persistence
 from .active_command import (
     ABORTED,

@@ -50,8 +50,8 @@ from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
 from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.owner_fence import SOLE_FENCE, FencedError
 from ..storage.repositories import robots as stored_robots
+from ..storage.repositories.robots import SOLE_FENCE, FencedError
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
 from ..trajectories.recording import TrajectoryRecorder, TrajectoryWriter

@@ -43,8 +43,8 @@ from ..model import task_queue
 from ..model.request_handlers import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
-from ..storage.owner_fence import OwnerFence
 from ..storage.repositories import commands, queues, records
+from ..storage.repositories.robots import OwnerFence
 from . import task_life
 from .registry import QueueContext, again_if_moved
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest

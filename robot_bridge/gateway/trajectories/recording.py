@@ -21,9 +21,9 @@ from ..model.arrival import standing
 from ..model.request_handlers import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
-from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories import trajectories
+from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, TrajectoryQuery, pack
 from ..storage.rows import Row
 
