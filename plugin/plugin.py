@@ -70,9 +70,7 @@ class FleetPlugin:
     def _open_desk(self, iface: QgisInterface, project: QgsProject):
         # Only here, for qgis_process.
         from .admin.accounts_dialog import AccountsAction
-        from .admin.recordings import RecordingsAction
-        from .admin.robot_removal import RobotRemoval
-        from .admin.site_choice import SiteChoiceAction
+        from .admin.supervision import RecordingsAction, RobotRemoval, SiteChoiceAction
         from .expressions import ExpressionUpdater
         from .help import HelpActions
         from .layers.live_layers import LiveLayers

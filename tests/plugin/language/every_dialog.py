@@ -14,9 +14,12 @@ from fleet_supervisor.plugin.admin.accounts_dialog import (
     RenewTokenDialog,
     confirm_revocation,
 )
-from fleet_supervisor.plugin.admin.recordings import RecordingsDialog
-from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
-from fleet_supervisor.plugin.admin.site_choice import SiteChoiceDialog, confirm_site_choice
+from fleet_supervisor.plugin.admin.supervision import (
+    RecordingsDialog,
+    RemovalDialog,
+    SiteChoiceDialog,
+    confirm_site_choice,
+)
 from fleet_supervisor.plugin.admin.token_dialog import TokenDialog
 from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
 from fleet_supervisor.plugin.help import START, HelpWindow
