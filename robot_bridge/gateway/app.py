@@ -52,7 +52,7 @@ from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
-from .model.request_handlers import Answering, RequestHandlers
+from .model.events import Answering, RequestHandlers
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention

@@ -28,7 +28,7 @@ from ...protocol import openapi
 from ...protocol.codec import decode_desk_request
 from ..auth.port import http_response
 from ..fleet.service import Fleet
-from ..model.request_handlers import RequestHandlers
+from ..model.events import RequestHandlers
 from ..monitoring import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
 from ..site.site_maps import SiteMaps
 from ..storage.schema import rr, sa

@@ -43,7 +43,7 @@ from ..auth.client_connection import ClientConnection
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..fleet.views import ViewWatch
-from ..model.request_handlers import Answering
+from ..model.events import Answering
 
 # --- The order of requests, and what one overtakes ---
 

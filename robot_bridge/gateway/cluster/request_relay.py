@@ -55,7 +55,7 @@ from ...core.messages.roads import ResolveConflict
 from ...core.messages.robots import Abort
 from ...core.messages.validation import MessageError
 from ...protocol.codec import decode_desk_request
-from ..model.request_handlers import Answering
+from ..model.events import Answering
 from ..model.robots import Robots
 from ..monitoring import wait_at_most
 from ..storage.database import Database

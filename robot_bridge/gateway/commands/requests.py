@@ -23,7 +23,7 @@ from ...core.messages.json_values import to_json
 from ...core.messages.robots import COMMANDS, Abort, SetPath
 from ...core.messages.validation import MessageError, check_crs
 from ...protocol.codec import decode_command
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
 from ..storage.database import Database

@@ -22,8 +22,7 @@ from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, Emergen
 from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops

@@ -44,8 +44,7 @@ from ...core.messages.robots import Observed, SendImage, SetObject
 from ...core.messages.validation import MessageError
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
 from ...core.sites.settings import SiteSettings
-from ..model.events import EventBus, ObservationChanged
-from ..model.request_handlers import Encoded, handles
+from ..model.events import Encoded, EventBus, ObservationChanged, handles
 from ..model.robots import Robot, Robots
 from ..site.places import Ground, check_places
 from ..storage.database import Database

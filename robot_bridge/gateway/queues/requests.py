@@ -40,7 +40,7 @@ from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
 from ..model import task_queue
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
 from ..storage.repositories import commands, queues, records

@@ -36,8 +36,7 @@ from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..model.arrival import Point
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests

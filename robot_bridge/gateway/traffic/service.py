@@ -32,8 +32,7 @@ from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Point
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..model.robots import Robots
 from ..monitoring import Steps
 from ..site.places import ServedSite, route_in_site_frame

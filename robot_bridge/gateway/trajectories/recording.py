@@ -18,7 +18,7 @@ from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import robots as stored_robots
