@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QColor, QCursor, QIcon, QKeyEvent
 from qgis.PyQt.QtWidgets import QAction, QToolTip
 
 from ....robot_bridge.core.messages.roads import RouteReport
-from ....robot_bridge.core.roads.centrelines import Surface
+from ....robot_bridge.core.roads.network import Surface
 from ...control.fleet_controller import FleetController
 from ...control.messages import MessageBar
 from ...control.pending_command import ROUTE, PendingCommand, Point

@@ -22,8 +22,14 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RoadsCancelledError
-from ....robot_bridge.core.roads.centrelines import DEFAULT_SPEED, Centrelines, centrelines
-from ....robot_bridge.core.roads.network import CancelCheck, Network, build_network
+from ....robot_bridge.core.roads.network import (
+    DEFAULT_SPEED,
+    CancelCheck,
+    Centrelines,
+    Network,
+    build_network,
+    centrelines,
+)
 from ....robot_bridge.core.roads.network_checks import RoadFinding, repaired_network
 from ....robot_bridge.core.roads.path_smoothing import Driving
 from ....robot_bridge.core.roads.routes import REACH, Restrictions, Router

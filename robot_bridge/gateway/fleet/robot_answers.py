@@ -24,12 +24,12 @@ from ...core.messages.robots import (
     SetPosIni,
 )
 from ...core.messages.safety import RobotState
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
 from ..model.arrival import Planner, remaining_path
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite
 from ..storage.database import Database

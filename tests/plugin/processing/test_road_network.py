@@ -7,8 +7,7 @@ from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, k
 from fleet_supervisor.plugin.processing.algorithms.find_route import FindRoute, GraphEngine
 from fleet_supervisor.robot_bridge.core.errors import NoRouteError
 from fleet_supervisor.robot_bridge.core.roads import network as noding
-from fleet_supervisor.robot_bridge.core.roads.centrelines import centrelines
-from fleet_supervisor.robot_bridge.core.roads.network import build_network
+from fleet_supervisor.robot_bridge.core.roads.network import build_network, centrelines
 from fleet_supervisor.robot_bridge.core.roads.routes import Router
 from qgis.core import (
     QgsProcessingContext,
