@@ -36,8 +36,7 @@ from .messages import (
     robot_topic,
 )
 from .pending_command import ROUTE, PendingCommand, PendingCommandModel, Point, in_brief
-from .request_tracker import RequestSender, RequestTracker
-from .roads import RoadStatus
+from .request_tracker import RequestSender, RequestTracker, RoadStatus
 from .route_queries import RouteQuery, TargetRoutes
 from .sending import CommandSender
 from .validation import CommandChecks, ValidationRunner

@@ -13,7 +13,6 @@ from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.positions import AlarmLimits
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic
-from ..control.roads import RoutePreferencesDialog
 from ..gateway_client.connection_status import ConnectionPhase
 from ..layers.road_surfaces import SurfaceStore
 from ..map.live_view import LiveView
@@ -23,7 +22,7 @@ from ..map.reported_layers import RoadLayers, StandingCones
 from ..map.site_project import ProjectMatch
 from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
-from ..map.tools.route_tool import RouteTool
+from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
 from ..settings.connections import KnownGateways
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all

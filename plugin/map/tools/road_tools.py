@@ -18,8 +18,7 @@ from ....robot_bridge.core.roads.network import Surface
 from ...control.fleet_controller import FleetController
 from ...control.messages import MessageBar
 from ...control.pending_command import ROUTE, PendingCommand, Point
-from ...control.roads import SHORTEST, RoutePreferences
-from ...control.route_queries import RouteQuestion, route_in_words
+from ...control.route_queries import SHORTEST, RoutePreferences, RouteQuestion, route_in_words
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
 from ...ui.actions import ICONS
 from ...ui.errors import FleetError, MapTransformError, NotSentError
