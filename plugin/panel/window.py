@@ -23,7 +23,7 @@ from ..map.site_project import ProjectMatch
 from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
-from ..settings.connections import KnownGateways
+from ..settings.profile import KnownGateways
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr

@@ -36,7 +36,7 @@ from ..help import CONNECTIONS, show_help
 from ..ui.dialogs import file_field, file_to_read, file_to_write
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count
-from .connections import (
+from .profile import (
     TITLE,
     BadConnectionError,
     Connections,
@@ -44,8 +44,9 @@ from .connections import (
     TokenStore,
     connections_in,
     connections_text,
+    export_path,
+    exports_folder,
 )
-from .preferences import export_path, exports_folder
 
 GOOD, BAD = "✔", "✘"
 

@@ -30,8 +30,8 @@ from fleet_supervisor.plugin.panel.alarms.rules import Thresholds
 from fleet_supervisor.plugin.panel.command_sources import CoordinatesDialog
 from fleet_supervisor.plugin.panel.emergency import ClearDialog
 from fleet_supervisor.plugin.panel.pending_command_panel import OverrideDialog
-from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsDialog
+from fleet_supervisor.plugin.settings.profile import Connections, GatewayConnection
 from fleet_supervisor.plugin.ui.language import tr
 from fleet_supervisor.robot_bridge.core.messages.administration import (
     NewToken,

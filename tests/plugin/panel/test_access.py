@@ -14,7 +14,7 @@ from fleet_supervisor.plugin.gateway_client.connection_status import (
     OperatorCredentials,
 )
 from fleet_supervisor.plugin.panel.connection_panel import AccessFields
-from fleet_supervisor.plugin.settings.connections import TokenStore
+from fleet_supervisor.plugin.settings.profile import TokenStore
 from fleet_supervisor.plugin.ui.errors import AddressError
 from fleet_supervisor.robot_bridge.core.messages.commands import AbortAll, Send
 from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
