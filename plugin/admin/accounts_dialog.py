@@ -22,8 +22,8 @@ from ...robot_bridge.core.messages.administration import (
     SetRole,
     TokenState,
 )
+from ...robot_bridge.core.messages.base import Role
 from ...robot_bridge.core.messages.json_values import new_token, open_session, operators_report
-from ...robot_bridge.core.messages.operator_requests import Role
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS

@@ -11,6 +11,7 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.messages.base import is_robot_name
 from ...robot_bridge.core.messages.json_values import to_json
 from ...robot_bridge.core.messages.positions import (
     MOST_ALWAYS,
@@ -20,7 +21,6 @@ from ...robot_bridge.core.messages.positions import (
     Subscribe,
     View,
 )
-from ...robot_bridge.core.messages.validation import is_robot_name
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..gateway_client.protocol import VIEWS_FROM

@@ -20,9 +20,9 @@ from ..core.errors import (
     StoreError,
 )
 from ..core.json_decoder import DecodingError, decode_json, has_few_brackets
+from ..core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, refuse_unknown_keys, unknown_keys
 from ..core.messages.commands import Send
 from ..core.messages.json_values import to_json
-from ..core.messages.operator_requests import DESK_REQUESTS, DeskRequest
 from ..core.messages.robots import (
     ANSWERS,
     COMMANDS,
@@ -36,7 +36,6 @@ from ..core.messages.robots import (
     SendPos,
 )
 from ..core.messages.safety import EmergencyStop
-from ..core.messages.validation import MessageError, refuse_unknown_keys, unknown_keys
 from . import jsonrpc
 
 log = logging.getLogger(__name__)

@@ -6,16 +6,17 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
-from .operator_requests import DeskRequest, Role
-from .safety import EmergencyReport, check_reason
-from .validation import (
+from .base import (
     LONGEST_OPERATOR,
+    DeskRequest,
     MessageError,
+    Role,
     check_expires_in,
     check_finite,
     check_robot_name,
     usable_addresses,
 )
+from .safety import EmergencyReport, check_reason
 
 # --- The connection of an operator: what is served here, and who you are ---
 

@@ -7,16 +7,19 @@ from enum import Enum
 from typing import Any
 
 from ..errors import RefusedError
-from .operator_requests import DeskRequest, Done, Priority, Role
-from .safety import check_override, check_reason
-from .validation import (
+from .base import (
+    DeskRequest,
+    Done,
     MessageError,
+    Priority,
+    Role,
     check_command_id,
     check_crs,
     check_expires_in,
     check_finite,
     check_robot_name,
 )
+from .safety import check_override, check_reason
 
 
 class CommandState(str, Enum):

@@ -6,9 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
-from .operator_requests import DeskRequest, Priority, Role
+from .base import (
+    DeskRequest,
+    MessageError,
+    Priority,
+    Role,
+    Texts,
+    check_crs,
+    check_finite,
+    check_robot_name,
+    check_texts,
+)
 from .safety import check_reason
-from .validation import MessageError, Texts, check_crs, check_finite, check_robot_name, check_texts
 
 # --- What operators ask about roads: a route to look at, a road to be closed, robots in each other's way
 

@@ -21,8 +21,8 @@ from websockets.http11 import Request, Response
 
 from ...core.errors import BridgeError, CrsError, RefusedError
 from ...core.messages.administration import SiteReport
+from ...core.messages.base import MessageError
 from ...core.messages.safety import RobotState
-from ...core.messages.validation import MessageError
 from ...core.sites.frame import lonlat_of
 from ...protocol import openapi
 from ...protocol.codec import decode_desk_request

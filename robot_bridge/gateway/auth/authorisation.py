@@ -14,7 +14,7 @@ from websockets.http11 import Request, Response
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError, counted
-from ...core.messages.operator_requests import Role
+from ...core.messages.base import Role
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol.credentials import AccessError
 from ..storage.database import Database

@@ -14,7 +14,7 @@ from sqlalchemy import Connection
 
 from ...core.errors import StoreError, listed_names
 from ...core.logs import log_and_continue
-from ...core.messages.operator_requests import DeskRequest
+from ...core.messages.base import DeskRequest
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import gateways, relayed
 from ..storage.repositories import robots as stored_robots

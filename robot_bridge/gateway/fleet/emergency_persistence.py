@@ -23,8 +23,8 @@ from sqlalchemy.exc import ProgrammingError
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
+from ...core.messages.base import MessageError, check_command_id
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
-from ...core.messages.validation import MessageError, check_command_id
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
 from ..storage.database import Database

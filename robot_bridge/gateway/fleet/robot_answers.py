@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_unforeseen
+from ...core.messages.base import Done
 from ...core.messages.commands import CommandState, SendMap
-from ...core.messages.operator_requests import Done
 from ...core.messages.roads import GetSurface, SetSurface
 from ...core.messages.robots import (
     Answer,

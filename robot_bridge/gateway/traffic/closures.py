@@ -17,6 +17,7 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
+from ...core.messages.base import MessageError
 from ...core.messages.commands import AbortTask, CommandReport
 from ...core.messages.json_values import to_json
 from ...core.messages.queues import QueueTask
@@ -30,7 +31,6 @@ from ...core.messages.roads import (
     RoadClosed,
 )
 from ...core.messages.robots import Command, SetPath, SetPosEnd, path_to_end
-from ...core.messages.validation import MessageError
 from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.admin.token_dialog import day_and_time
 from fleet_supervisor.robot_bridge.core.messages.administration import TokenState
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from qgis.PyQt.QtWidgets import QAction, QToolButton
 
 from tests.plugin.admin.accounts_desk import BUTTONS, CHANGES, MADE_AT

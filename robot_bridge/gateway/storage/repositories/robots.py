@@ -12,7 +12,7 @@ from sqlalchemy import Connection, delete, func, select, update
 
 from ....core.errors import StoreError
 from ....core.json_decoder import decode_json
-from ....core.messages.operator_requests import DeskRequest
+from ....core.messages.base import DeskRequest
 from ....core.messages.robots import Abort, SendPos
 from ....core.messages.safety import PathDeclaration
 from ...model.robots import Robot

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.gateway.model.events import RequestHandlers
 from robot_bridge.protocol.codec import decode_desk_request
 
