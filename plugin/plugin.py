@@ -76,11 +76,10 @@ class FleetPlugin:
         from .layers.live_layers import LiveLayers
         from .layers.role_editor.roles_dialog import RolesAction
         from .locator import RobotLocator
-        from .map.site_project import SiteDropHandler
         from .map.tools.road_tools import SurfaceAction
         from .observations.observation_dock import ObservationsAction
         from .options_page import OptionsFactory
-        from .panel.window import MENU, FleetWindow, WindowAlarms
+        from .panel.window import MENU, FleetWindow, SiteDropHandler, WindowAlarms
         from .planning.layouts.layout_tool import LayoutAction
         from .planning.plan_dock import PlansAction
         from .replay.replay_dock import ReplayAction

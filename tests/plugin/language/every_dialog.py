@@ -12,6 +12,7 @@ from fleet_supervisor.plugin.admin.accounts_dialog import (
     ChangeRoleDialog,
     NewAccountDialog,
     RenewTokenDialog,
+    TokenDialog,
     confirm_revocation,
 )
 from fleet_supervisor.plugin.admin.supervision import (
@@ -20,7 +21,6 @@ from fleet_supervisor.plugin.admin.supervision import (
     SiteChoiceDialog,
     confirm_site_choice,
 )
-from fleet_supervisor.plugin.admin.token_dialog import TokenDialog
 from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
 from fleet_supervisor.plugin.help import START, HelpWindow
 from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
@@ -39,7 +39,7 @@ from fleet_supervisor.robot_bridge.core.messages.administration import (
     SiteOffer,
     TokenState,
 )
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 from qgis.core import QgsProject
 from qgis.PyQt.QtWidgets import QDialog
