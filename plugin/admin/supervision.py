@@ -25,14 +25,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages.administration import (
-    ChooseSite,
-    GetSites,
-    PlaybackReport,
-    RemoveRobots,
-    SetPlayback,
-    SiteOffer,
-)
+from ...robot_bridge.core.messages import administration
 from ...robot_bridge.core.messages.json_values import sites_report
 from ...robot_bridge.core.messages.safety import RobotState
 from ..control.fleet_controller import FleetController
@@ -61,18 +54,20 @@ class SiteModel(TextModel):
         super().__init__(SITE_COLUMNS, site_cells, parent)
 
 
-def site_cells(offer: SiteOffer) -> tuple[str, ...]:
+def site_cells(offer: administration.SiteOffer) -> tuple[str, ...]:
     """Return what the columns show of a site."""
     version = "–" if offer.version is None else str(offer.version)
     return offer.name or "–", offer.site, version, state_in_words(offer)
 
 
-def state_in_words(offer: SiteOffer) -> str:
+def state_in_words(offer: administration.SiteOffer) -> str:
     """Return whether a site is served, or can be, or why not."""
     return SERVED if offer.served else offer.refusal or READY
 
 
-def confirm_site_choice(offer: SiteOffer, parent: QWidget, then: Callable[[], object]) -> QMessageBox:
+def confirm_site_choice(
+    offer: administration.SiteOffer, parent: QWidget, then: Callable[[], object]
+) -> QMessageBox:
     """Say what serving a site means for robots; ``then`` is done when it is to be."""
     name = offer.name or offer.site
     texts = (
@@ -113,12 +108,12 @@ class SiteChoiceDialog(SupervisorDialog):
         self._lay_out()
 
     def _ask_rows(self) -> None:
-        self._listing.ask(GetSites(), SITE_LIST, self._take_sites)
+        self._listing.ask(administration.GetSites(), SITE_LIST, self._take_sites)
 
-    def _key(self, row: SiteOffer) -> str:
+    def _key(self, row: administration.SiteOffer) -> str:
         return row.site
 
-    def _can_change(self, row: SiteOffer) -> bool:
+    def _can_change(self, row: administration.SiteOffer) -> bool:
         return not row.served and row.refusal is None
 
     def _take_sites(self, result: dict[str, Any]) -> None:
@@ -130,10 +125,10 @@ class SiteChoiceDialog(SupervisorDialog):
         offer = self.selected()
         self._open(confirm_site_choice(offer, self, lambda: self._serve(offer)))
 
-    def _serve(self, offer: SiteOffer) -> None:
+    def _serve(self, offer: administration.SiteOffer) -> None:
         name = offer.name or offer.site
         self._ask(
-            ChooseSite(offer.site),
+            administration.ChooseSite(offer.site),
             tr("Serve {site}", site=name),
             lambda _result: self._changed(tr("{site} is served now.", site=name)),
         )
@@ -237,7 +232,7 @@ class RecordingsDialog(QDialog):
         name = self._link.currentText()
         words = tr("Recording of {link}", link=name)
         self._numbers.update({key: value for key, value in change.items() if key in self._numbers})
-        self._asking.ask(SetPlayback(name, **change), words, self._show)
+        self._asking.ask(administration.SetPlayback(name, **change), words, self._show)
 
     def _apply(self) -> None:
         """Send the numbers that were typed, as far as they are others than those reported or sent last."""
@@ -256,8 +251,8 @@ class RecordingsDialog(QDialog):
             self._change(place_s=float(self._place.sliderPosition()))
 
     def _show(self, result: dict[str, Any]) -> None:
-        names = PlaybackReport.__dataclass_fields__
-        report = PlaybackReport(**{name: result[name] for name in names})
+        names = administration.PlaybackReport.__dataclass_fields__
+        report = administration.PlaybackReport(**{name: result[name] for name in names})
         self._numbers = {"place_s": round(report.place_s, 1), "speed": report.speed}
         self._place.setMaximum(int(report.length_s))
         self._seconds.setMaximum(report.length_s)
@@ -459,7 +454,7 @@ class RobotRemoval:
 
     def _remove(self, robots: list[str], reason: str) -> None:
         words = tr("Remove {names}", names=_in_words(robots))
-        self._asking.ask(RemoveRobots(robots, reason or None), words, self._removed)
+        self._asking.ask(administration.RemoveRobots(robots, reason or None), words, self._removed)
 
     def _removed(self, result: dict[str, Any]) -> None:
         removed, kept = result["removed"], result["kept"]

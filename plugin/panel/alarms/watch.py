@@ -23,20 +23,9 @@ from ...layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr, tr_count
 from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps, UpdateScheduler
+from . import rules
 from .board import AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
-from .rules import (
-    Alarm,
-    AlarmChange,
-    AlarmEvent,
-    AlarmKind,
-    AlarmSnapshot,
-    Bools,
-    Floats,
-    Key,
-    Thresholds,
-    read_thresholds,
-    write_thresholds,
-)
+from .rules import Alarm, AlarmChange, AlarmEvent, AlarmKind, AlarmSnapshot, Bools, Floats, Key, Thresholds
 
 AROUND = np.array([(np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4])
 """Directions in which the margin is looked for."""
@@ -285,7 +274,7 @@ class AlarmWatch(QObject):
         self._unseen: set[Key] = set()
         """Alarms that have begun and that nobody was told of yet."""
         self._telling = CooperativeTask(self, ONE_STEP)
-        self.board = AlarmBoard(read_thresholds())
+        self.board = AlarmBoard(rules.read_thresholds())
         state.updated.connect(self._pulled)
         state.robots_removed.connect(self._drop)
 
@@ -333,7 +322,7 @@ class AlarmWatch(QObject):
 
     def set_limits(self, limits: Thresholds) -> None:
         """Judge by these settings from now on, in later sessions as well."""
-        write_thresholds(limits)
+        rules.write_thresholds(limits)
         self.board.set_limits(limits)
         self.changed.emit()
 

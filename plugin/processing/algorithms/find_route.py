@@ -26,15 +26,8 @@ from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.roads.path_smoothing import DensePath, dense_path
 from ....robot_bridge.core.roads.routes import Route, Router
 from ...ui.language import tr, tr_count, tr_page
-from ..common import road_sources
-from ..common.algorithm import (
-    FleetAlgorithm,
-    Parameters,
-    advanced,
-    enum_parameter,
-    fields_of,
-    shown_by_processing,
-)
+from ..common import algorithm, road_sources
+from ..common.algorithm import FleetAlgorithm, Parameters
 from ..common.outputs import fill_sink, line
 from ..common.parameters import point_in
 
@@ -152,8 +145,8 @@ class FindRoute(FleetAlgorithm):
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
         roads, tolerance, *others = road_sources.road_parameters()
-        ways = enum_parameter(BY, tr("Way"), WAYS, SHORTEST)
-        engine = advanced(enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC))
+        ways = algorithm.enum_parameter(BY, tr("Way"), WAYS, SHORTEST)
+        engine = algorithm.advanced(algorithm.enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC))
         for parameter in (
             roads,
             QgsProcessingParameterPoint(START, tr("Start")),
@@ -178,8 +171,8 @@ class FindRoute(FleetAlgorithm):
     def prepareAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        self._fields = fields_of(_ROUTE), fields_of(_PATH)
-        with shown_by_processing():
+        self._fields = algorithm.fields_of(_ROUTE), algorithm.fields_of(_PATH)
+        with algorithm.shown_by_processing():
             self._source = road_sources.RoadSource(self, parameters, context)
             self._keepouts = road_sources.KeepoutAreas(self, parameters, context)
         return True
@@ -187,7 +180,7 @@ class FindRoute(FleetAlgorithm):
     def processAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing(feedback):
+        with algorithm.shown_by_processing(feedback):
             wishes = road_sources.driving_options(self, parameters, context)
             reading = self._source.read(feedback)
             if reading is None:

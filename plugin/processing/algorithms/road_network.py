@@ -15,14 +15,9 @@ from qgis.core import (
     QgsWkbTypes,
 )
 
+from ....robot_bridge.core.roads import network_checks
 from ....robot_bridge.core.roads.network import Network
-from ....robot_bridge.core.roads.network_checks import (
-    REPAIRED,
-    RoadFinding,
-    RoadFindingKind,
-    count_by_kind,
-    find_road_defects,
-)
+from ....robot_bridge.core.roads.network_checks import RoadFinding, RoadFindingKind
 from ...ui.language import tr, tr_count, tr_page
 from ..common import road_sources
 from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
@@ -235,7 +230,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             network = road_sources.network_as_drawn(reading, feedback)
             if network is None:
                 return {}
-            findings = find_road_defects(network, tolerance)
+            findings = network_checks.find_road_defects(network, tolerance)
             feedback.setProgress(90)
             kind = QgsWkbTypes.Type.Point
             sink, source = self.parameterAsSink(
@@ -244,7 +239,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             rows = [_row(finding, reading.features) for finding in findings]
             if not fill_sink(sink, self._fields, rows, feedback):
                 return {}
-        counts = count_by_kind(findings)
+        counts = network_checks.count_by_kind(findings)
         for name, count in counts.items():
             if count:
                 feedback.pushInfo(f"{name}: {count}")
@@ -262,7 +257,7 @@ class CheckRoadNetwork(FleetAlgorithm):
 def _row(finding: RoadFinding, features: list[int]):
     values = [
         finding.kind.value,
-        int(finding.kind in REPAIRED),
+        int(finding.kind in network_checks.REPAIRED),
         features[finding.road],
         # People know features, not the numbers of roads.
         finding.in_words(features),
