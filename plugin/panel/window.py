@@ -34,10 +34,9 @@ from ..settings.profile import KnownGateways
 from ..ui.actions import Actions
 from ..ui.errors import FleetError, Part, remove_all
 from ..ui.language import tr, tr_count
-from .alarms.alarm_bar import AlarmBar
 from .alarms.alarm_panel import AlarmPanel
 from .alarms.board import alarm_colour
-from .alarms.watch import AlarmWatch
+from .alarms.watch import AlarmBar, AlarmWatch
 from .dock import FleetDock
 from .emergency import ClearDialog, EmergencyKey
 from .pending_command_panel import PendingCommandActions
