@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
-from fleet_supervisor.plugin.processing.algorithms.find_route import FindRoute, GraphEngine
+from fleet_supervisor.plugin.processing.algorithms.road_network import FindRoute
+from fleet_supervisor.plugin.processing.common.road_sources import GraphEngine
 from fleet_supervisor.robot_bridge.core.errors import NoRouteError
 from fleet_supervisor.robot_bridge.core.roads import network as noding
 from fleet_supervisor.robot_bridge.core.roads.network import build_network, centrelines
