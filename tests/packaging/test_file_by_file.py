@@ -1,4 +1,4 @@
-"""Files of tests that a worker reads in when their turn comes: the outcome is that of reading all in first."""
+"""Files of tests that a worker reads in when their turn comes: the outcome is as if all were read in first."""
 
 from __future__ import annotations
 

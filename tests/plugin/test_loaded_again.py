@@ -11,7 +11,6 @@ from qgis.gui import QgsGui
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QThread
 from qgis.PyQt.QtWidgets import QApplication, QLineEdit
 
-
 TIMES = 3
 """What is left of one time is there at the second, and what that leaves at the third."""
 

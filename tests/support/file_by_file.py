@@ -91,7 +91,7 @@ class Worker:
         self._order = order
 
     def pytest_pycollect_makemodule(self, module_path, parent):
-        # What is open in the folder of the file before ends with that file: this one may have no test to do it.
+        # What is open in the folder of the file before ends with that: this one may have no test to do it.
         session, name = parent.session, os.path.relpath(module_path, parent.config.rootpath)
         return File.from_parent(session, name=name, nodeid=name, path=module_path, folder=parent)
 
@@ -113,7 +113,7 @@ class Worker:
             return None
         session, tests = item.session, item.tests()
         place = session.items.index(item)
-        for test, following in zip(tests, [*tests[1:], nextitem]):
+        for test, following in zip(tests, [*tests, nextitem][1:], strict=True):
             # xdist looks there for what it is told of.
             session.items[place] = test
             test.ihook.pytest_runtest_protocol(item=test, nextitem=following)
@@ -124,6 +124,6 @@ class Worker:
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self):
-        """Look once for what is to be removed, and no more: pytest and Python look six times at all modules."""
+        """Look once for what is to be removed: pytest and Python look six times at all that is not frozen."""
         gc.collect()
         gc.freeze()

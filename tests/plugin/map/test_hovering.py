@@ -56,7 +56,7 @@ def test_the_card_is_whole_and_leaves_the_place_of_a_tools_tip_free(
         assert cards(viewport) == []
         at = iface.pixel(*place)
         gateway.show(make_robot("r2", *place))
-        wait(lambda at=at: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r2", what="the robot being there")
+        wait(lambda at=at: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r2", what="the robot there")
         point_at(viewport, at)
         (card,) = [c for c in viewport.findChildren(QLabel, "fleet_hover_card") if c.isVisible()]
         assert viewport.rect().contains(card.geometry())
