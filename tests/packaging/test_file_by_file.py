@@ -1,4 +1,4 @@
-"""Files of tests that a worker reads in when their turn comes: the outcome is as if all were read in first."""
+"""Files of tests that a worker reads in when their turn comes: the outcome is as if all had been read in."""
 
 from __future__ import annotations
 
