@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import gc
 import itertools
 import json
 import threading
@@ -42,6 +43,13 @@ ORIGIN = (488000.0, 5190000.0)
 TOUR_OFFERED = "tour_offered"
 BAR_SIZE = (600, 40)
 """Pixels: the bar lies in no layout, and an item of QGIS 3.44 takes no more room than its bar has."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_outlives_qgis(qgis_app):
+    """Collect what lies about while QGIS is there: what is collected after it takes Python with it."""
+    yield
+    gc.collect()
 
 
 @pytest.fixture
