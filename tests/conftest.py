@@ -16,6 +16,7 @@ from zlib import crc32
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.support import file_by_file
 from tests.support.processes import Processes
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -163,6 +164,7 @@ def pytest_configure(config):
         # Whoever imports it all the same fails.
         sys.modules["qgis"] = sys.modules["osgeo"] = None
         settings.load_profile("core")
+    file_by_file.begin(config, deal_out)
 
 
 def pytest_ignore_collect(collection_path, config):
@@ -326,13 +328,23 @@ def deal_out(items):
     for item in items:
         files.setdefault(item.path, []).append(item)
     long = deque(filter(None, (files.pop(ROOT / "tests" / name, None) for name in LONG)))
-    waiting = deque(sorted(files.values(), key=len, reverse=True))
+    # A file that is not read in yet is one item, and the longer it is, the more tests it has.
+    by_tests = sorted(files.items(), key=lambda file: (len(file[1]), file[0].stat().st_size), reverse=True)
+    waiting = deque(tests for _, tests in by_tests)
     items.clear()
     while long or waiting:
         if long:
             items += long.popleft()
         if waiting:
             items += waiting.popleft() if len(waiting) % 2 else waiting.pop()
+
+
+@pytest.fixture
+def qgis_show_map_off(request) -> None:
+    """Show no map, in place of pytest-qgis, which has each test make and remove a folder for it.
+
+    That it asks for ``request`` has pytest-qgis tidy up what layers a test has.
+    """
 
 
 @pytest.fixture(scope="session")

@@ -175,21 +175,20 @@ def test_the_dialog_adds_to_the_route_when_that_is_in_hand(hand, dialog):
     assert list(hand.points) == [pytest.approx((40, 30), abs=0.3), pytest.approx((70, 55), abs=1e-6)]
 
 
-@pytest.mark.parametrize(
-    ("text", "crs", "why"),
-    [
-        ("{lon:.8f}, {lat:.8f}", "EPSG:4326", "two numbers swapped it is. Write latitude, longitude: "),
+def test_a_place_that_is_nowhere_near_the_site_cannot_be_set(dialog):
+    lat, lon = earth(70, 55)
+    for text, crs, why in (
+        (f"{lon:.8f}, {lat:.8f}", "EPSG:4326", "two numbers swapped it is. Write latitude, longitude: "),
         ("5190055 488070", "EPSG:32633", "swapped it is. Write x, y: 488070, 5190055."),
         ("48.2, 2.35", "EPSG:4326", "km outside the site Yard. Write latitude, longitude, and check"),
         ("48.2, 120", "EPSG:4326", "Yard"),
         ("70, 55", "EPSG:32633", "km outside the site Yard. Write x, y, and check the numbers"),
-    ],
-)
-def test_a_place_that_is_nowhere_near_the_site_cannot_be_set(dialog, text, crs, why):
-    lat, lon = earth(70, 55)
-    enter(dialog, text.format(lat=lat, lon=lon), crs)
-    assert why in told(dialog)
-    assert not dialog.findChild(QPushButton, "fleet_coordinates_set").isEnabled()
+    ):
+        enter(dialog, f"{lat:.8f}, {lon:.8f}", "EPSG:4326")
+        assert dialog.findChild(QPushButton, "fleet_coordinates_set").isEnabled()
+        enter(dialog, text, crs)
+        assert why in told(dialog)
+        assert not dialog.findChild(QPushButton, "fleet_coordinates_set").isEnabled(), text
 
 
 def test_a_place_beside_the_site_can_still_be_set_and_is_checked_as_any_other(hand, dialog):

@@ -48,18 +48,20 @@ def test_a_card_says_what_is_known_whichever_tool_is_in_hand(at_desk, viewport, 
     assert "task" not in text
 
 
-@pytest.mark.parametrize("place", [(50, 50), (90, 97), (115, 97), (115, 50), (50, 3)])
 def test_the_card_is_whole_and_leaves_the_place_of_a_tools_tip_free(
-    at_desk, viewport, gateway, iface, make_robot, wait, place
+    at_desk, viewport, gateway, iface, make_robot, wait
 ):
-    at = iface.pixel(*place)
-    gateway.show(make_robot("r2", *place))
-    wait(lambda: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r2", what="the robot being there")
-    point_at(viewport, at)
-    (card,) = [c for c in viewport.findChildren(QLabel, "fleet_hover_card") if c.isVisible()]
-    assert viewport.rect().contains(card.geometry())
-    tip = QRect(at + BESIDE, QSize(200, 60))
-    assert not card.geometry().intersects(tip) and not card.geometry().contains(at)
+    for place in ((50, 50), (90, 97), (115, 97), (115, 50), (50, 3)):
+        point_at(viewport, iface.pixel(20, 90))
+        assert cards(viewport) == []
+        at = iface.pixel(*place)
+        gateway.show(make_robot("r2", *place))
+        wait(lambda at=at: at_desk.view.overlay.robot_at(at.x(), at.y()) == "r2", what="the robot there")
+        point_at(viewport, at)
+        (card,) = [c for c in viewport.findChildren(QLabel, "fleet_hover_card") if c.isVisible()]
+        assert viewport.rect().contains(card.geometry())
+        tip = QRect(at + BESIDE, QSize(200, 60))
+        assert not card.geometry().intersects(tip) and not card.geometry().contains(at)
 
 
 def test_beside_all_robots_there_is_none(viewport, iface):

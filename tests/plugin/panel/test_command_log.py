@@ -91,20 +91,17 @@ def test_open_commands_at_a_glance(log, gateway, wait):
     assert summary([]) == "None open"
 
 
-@pytest.mark.parametrize(
-    ("whose", "which", "commands"),
-    [
+def test_filters_by_robot_and_by_how_it_went(log):
+    for whose, which, commands in (
         ("r1", CommandChoice.ALL, ["r1 · abort", "r1 · cone at 70.00, 55.00"]),
         ("r2", CommandChoice.OPEN, ["r2 · target at 20.00, 30.00"]),
         ("r2", CommandChoice.FAILED, ["r2 · route of 2 points"]),
         ("All robots", CommandChoice.FAILED, ["r2 · route of 2 points"]),
         ("r1", CommandChoice.FAILED, []),
-    ],
-)
-def test_filters_by_robot_and_by_how_it_went(log, whose, which, commands):
-    choose(log, "fleet_log_robot", whose)
-    choose(log, "fleet_log_filter", COMMAND_CHOICES[which])
-    assert [what for what, _ in rows(log)] == commands
+    ):
+        choose(log, "fleet_log_robot", whose)
+        choose(log, "fleet_log_filter", COMMAND_CHOICES[which])
+        assert [what for what, _ in rows(log)] == commands, (whose, which)
 
 
 def test_the_selected_robots_commands_follow_the_selection(log, at_desk):
@@ -144,17 +141,19 @@ def test_new_steps_appear_beneath_an_open_row_while_it_is_looked_at(log, gateway
 # --- the place on the map ---
 
 
-@pytest.mark.parametrize(("row", "place"), [(3, (70, 55)), (2, (90, 65)), (0, (20, 30))])
-@pytest.mark.parametrize("how", ["double click", "Enter"])
-def test_a_double_click_or_enter_goes_to_the_place(log, iface, row, place, how):
-    if how == "Enter":
-        log.view.setCurrentIndex(log.view.model().index(row, 1))
-        QTest.keyClick(log.view, Qt.Key.Key_Return)
-    else:
-        double_click(log, row)
-    centre = iface.canvas.extent().center()
-    assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx(place, abs=0.5)
-    assert iface.canvas.extent().height() < 80
+def press_enter(log, row):
+    log.view.setCurrentIndex(log.view.model().index(row, 1))
+    QTest.keyClick(log.view, Qt.Key.Key_Return)
+
+
+@pytest.mark.parametrize("go", [double_click, press_enter])
+def test_a_double_click_or_enter_goes_to_the_place(log, iface, go):
+    for row, place in ((3, (70, 55)), (2, (90, 65)), (0, (20, 30))):
+        iface.look_at(0, 0, 120, 100)
+        go(log, row)
+        centre = iface.canvas.extent().center()
+        assert (centre.x() - 488000, centre.y() - 5190000) == pytest.approx(place, abs=0.5)
+        assert iface.canvas.extent().height() < 80
 
 
 def test_the_button_goes_there_from_a_step_too_and_is_grey_without_a_place(log, iface):

@@ -56,11 +56,11 @@ def conflicts(at_desk):
     return at_desk
 
 
-@pytest.mark.parametrize("kind", ["head-on", "crossing", "following", "standing"])
-def test_each_kind_is_told_with_place_and_robots(conflicts, tell, kind):
-    tell(meeting("r1", "r2", kind))
-    (text,) = texts(conflicts)
-    assert text.endswith(f"r1 × r2: {kind} at 50, 40 m")
+def test_each_kind_is_told_with_place_and_robots(conflicts, tell):
+    kinds = ("head-on", "crossing", "following", "standing")
+    tell(*(meeting("r1", f"r{k}", kind) for k, kind in enumerate(kinds, start=2)))
+    ends = {text.partition("  ")[2] for text in texts(conflicts)}
+    assert ends == {f"r1 × r{k}: {kind} at 50, 40 m" for k, kind in enumerate(kinds, start=2)}
 
 
 def test_every_conflict_is_listed_with_who_waits(conflicts, tell):
