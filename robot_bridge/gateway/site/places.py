@@ -58,6 +58,10 @@ class ServedSite(Protocol):
         The same as before where nothing has changed, and the same keepouts where only the objects have.
         """
 
+    @property
+    def fences_at_hand(self) -> Fences | None:
+        """The same, None where it has to be made anew."""
+
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site, None where it is larger than the site allows; may take long."""
 

@@ -296,6 +296,12 @@ class SiteMaps:
             made = self._fences = (drawn, fences)
         return made[1]
 
+    @property
+    def fences_at_hand(self) -> Fences | None:
+        """The same where it is made, else None."""
+        made = self._fences
+        return made[1] if made is not None and made[0] is self._drawn else None
+
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site in the binary format, None where that is larger than allowed.
 
