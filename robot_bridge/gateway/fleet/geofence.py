@@ -291,7 +291,9 @@ class GeofenceWatch:
     async def _fences(self) -> Fences:
         """Return what robots must not be in; what has changed of that is made beside all other work."""
         # A thread costs more than what it is to find unchanged, five times a second.
-        fences = self._site.fences_at_hand or await asyncio.to_thread(self._site.fences)
+        fences = self._site.fences_at_hand
+        if fences is None:
+            fences = await asyncio.to_thread(self._site.fences)
         if fences is not self._fenced:
             # With other objects alone the publication's areas are the same, and so are the stays in them.
             if self._fenced is None or fences.keepouts is not self._fenced.keepouts:
