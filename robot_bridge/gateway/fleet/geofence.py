@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError
+from ...core.messages.base import MessageError
 from ...core.messages.commands import AbortTask
 from ...core.messages.json_values import to_json
 from ...core.messages.queues import PauseRobot
 from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, RobotState, StopAction, StopOutcome
-from ...core.messages.validation import MessageError
 from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
@@ -290,10 +290,7 @@ class GeofenceWatch:
 
     async def _fences(self) -> Fences:
         """Return what robots must not be in; what has changed of that is made beside all other work."""
-        # A thread costs more than what it is to find unchanged, five times a second.
-        fences = self._site.fences_at_hand
-        if fences is None:
-            fences = await asyncio.to_thread(self._site.fences)
+        fences = await asyncio.to_thread(self._site.fences)
         if fences is not self._fenced:
             # With other objects alone the publication's areas are the same, and so are the stays in them.
             if self._fenced is None or fences.keepouts is not self._fenced.keepouts:

@@ -15,7 +15,7 @@ from ...core.messages.queues import QueueTask
 from ...core.messages.records import ObservationReport
 from ...core.messages.roads import GetRoute
 from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd, SetPosIni
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.robotmap.model import EncodedMap
 from ...core.sites.fences import Fences
 from ...core.sites.settings import SiteSettings
@@ -57,10 +57,6 @@ class ServedSite(Protocol):
 
         The same as before where nothing has changed, and the same keepouts where only the objects have.
         """
-
-    @property
-    def fences_at_hand(self) -> Fences | None:
-        """The same, None where it has to be made anew."""
 
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site, None where it is larger than the site allows; may take long."""

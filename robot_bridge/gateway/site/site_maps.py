@@ -17,7 +17,7 @@ from ...core.errors import CrsError, MapBinaryError, RefusedError, RobotMapError
 from ...core.geometry import Track
 from ...core.messages.administration import SiteReport
 from ...core.messages.records import ObservationReport
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.roads.surface_index import NOWHERE
 from ...core.robotmap.binary import encode
 from ...core.robotmap.model import Border, EncodedMap, Obstacle, RobotMap, ShapeType, Window
@@ -295,12 +295,6 @@ class SiteMaps:
             fences = dataclasses.replace(drawn.site.fences, observed=observed)
             made = self._fences = (drawn, fences)
         return made[1]
-
-    @property
-    def fences_at_hand(self) -> Fences | None:
-        """The same where it is made, else None."""
-        made = self._fences
-        return made[1] if made is not None and made[0] is self._drawn else None
 
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site in the binary format, None where that is larger than allowed.
