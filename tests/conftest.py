@@ -271,6 +271,7 @@ def pytest_runtest_makereport(item):
 
 LONG = (
     "plugin/test_endurance.py",
+    "robot_bridge/gateway/fleet/crashes/test_crashes.py",
     "plugin/loop/test_roads.py",
     "robot_bridge/live/test_queues.py",
     "robot_bridge/links/ros2/test_ros2_live.py",
@@ -280,9 +281,7 @@ LONG = (
     "robot_bridge/gateway/cluster/test_plans_across.py",
     "plugin/loop/test_cone_plan.py",
     "plugin/language/test_room_for_words.py",
-    "robot_bridge/gateway/fleet/crashes/test_gateway_dies.py",
     "packaging/test_walkthrough.py",
-    "robot_bridge/gateway/fleet/crashes/test_transaction_fails.py",
     "plugin/loop/test_queue.py",
     "plugin/loop/test_linked_robots.py",
     "robot_bridge/cli/test_choosing_a_site.py",
@@ -309,7 +308,6 @@ LONG = (
     "robot_bridge/cli/test_trouble.py",
     "robot_bridge/cli/test_sole_gateway.py",
     "plugin/processing/test_qgis_process.py",
-    "robot_bridge/gateway/fleet/crashes/test_links_cut.py",
     "robot_bridge/gateway/storage/databases/test_servers_that_fail.py",
     "robot_bridge/live/test_geofence.py",
     "robot_bridge/live/test_emergency_stop.py",

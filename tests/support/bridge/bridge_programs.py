@@ -77,7 +77,7 @@ class Bridge:
             else ["--url", f"{self.address}/robot"]
         )
         where = ",".join(str(number) for number in pose)
-        fast = ["--speed", "5", "--turn-rate", "6", "--acceleration", "8", "--rate", "20"]
+        fast = ["--speed", "5", "--turn-rate", "6", "--acceleration", "8", "--rate", "10"]
         self._run(name, ["robot", *way, "--name", name, f"--pose={where}", *fast, *options])
         return self.process
 

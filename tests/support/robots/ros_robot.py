@@ -69,6 +69,8 @@ class Robot(Node):
         self.options = options
         self.x, self.y, self.theta, self.v = options.x, options.y, 0.0, 0.0
         self.points: list[tuple[float, float]] = []
+        self.braked = False
+        """Whether it stands because its stop service was called; its goal is open until somebody ends it."""
         self.driving = threading.Lock()
         self.moved_at = time.monotonic()
         self.newest: object = None
@@ -130,6 +132,7 @@ class Robot(Node):
     def execute(self, kind: Any, goal: Any, poses: Any):
         """Drive a goal to its end, as Nav2 does: a newer one takes its place."""
         self.newest = goal
+        self.braked = False
         self.points = [(pose.pose.position.x, pose.pose.position.y) for pose in poses]
         say("goal", kind=kind.__name__, id=bytes(goal.goal_id.uuid).hex(), points=self.points)
         result = kind.Result()
@@ -173,7 +176,7 @@ class Robot(Node):
         now = time.monotonic()
         left, self.moved_at = self.options.speed * (now - self.moved_at), now
         with self.driving:
-            points = ahead = self.points
+            points = ahead = [] if self.braked else self.points
             self.v = self.options.speed if points else 0.0
             while ahead and left > 0:
                 x, y = ahead[0]
@@ -251,6 +254,7 @@ class Robot(Node):
 
     def goal_came(self, pose: Any):
         """Drive to a target that came on a topic."""
+        self.braked = False
         self.points = [(pose.pose.position.x, pose.pose.position.y)]
         say("goal pose", points=self.points)
 
@@ -260,10 +264,10 @@ class Robot(Node):
             say("zero twist")
 
     def stop_called(self, _: Any, answer: Any):
-        """Stop."""
+        """Stop, and leave the goal open, as the brake of a robot does that Nav2 drives."""
         refuses = "stubborn" in self.options.odd
         say("stop", refuses=refuses)
-        self.points = self.points if refuses else []
+        self.braked = self.braked or not refuses
         answer.success, answer.message = not refuses, "the brake is stuck" if refuses else ""
         return answer
 

@@ -39,8 +39,8 @@ keepout_info = "/{{robot}}/keepout_info"
 speed_mask = "/{{robot}}/speed_mask"
 speed_info = "/{{robot}}/speed_info"
 """
-COARSE = "map_resolution_m = 0.5"
-"""Each robot reads three maps, which at 0.1 m have 25 times as many cells."""
+COARSE = "map_resolution_m = 2.0"
+"""Each robot reads three maps, which at 0.1 m have 400 times as many cells."""
 NUMBERS = itertools.count(1)
 SLOW, FAST = ("--speed", "0.5"), ("--speed", "10")
 
@@ -169,7 +169,7 @@ def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
 def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(robot, nodes, adapter):
     name = robot("--asks-map")
     told = wait_until(lambda: events(nodes, name, "map"), 30)
-    assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (400, 320, "map")
+    assert (told[0]["columns"], told[0]["rows"], told[0]["frame"]) == (100, 80, "map")
 
     # Each comes twice where the robot is declared twice: on a busy machine its servers are found one by one.
     def latest(event, key):
@@ -177,7 +177,7 @@ def test_the_map_of_the_site_comes_latched_with_masks_for_the_filters_of_nav2(ro
 
     wait_until(lambda: len(latest("mask", "name")) == 2 and len(latest("filter", "mask")) == 2, 40)
     masks = latest("mask", "name")
-    assert {(one["columns"], one["rows"]) for one in masks.values()} == {(400, 320)}
+    assert {(one["columns"], one["rows"]) for one in masks.values()} == {(100, 80)}
     assert masks["keepout"]["cells"] == {"road": 0, "excavation": 100}
     filters = latest("filter", "mask")
     assert filters[f"/{name}/keepout_mask"]["type"] == 0

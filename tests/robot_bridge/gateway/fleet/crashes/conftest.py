@@ -15,10 +15,11 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
-from tests.support.bridge.crash_play import DRIVE_ON, Play
+from tests.support.bridge.crash_play import DRIVE_ON, Moment, Play
 from tests.support.bridge.crash_scenarios import SCENARIOS
 from tests.support.bridge.mortal_database import Death
 
@@ -104,19 +105,47 @@ def moments(request):
     return moments
 
 
+class Undisturbed(NamedTuple):
+    """How a scenario goes when nothing happens: its transactions that write, and its turns."""
+
+    writing: list[int]
+    turns: int
+    stopped: Moment
+    resumed: Moment
+
+
+@pytest.fixture(scope="session")
+def known() -> dict[str, Undisturbed]:
+    """Of each scenario that has been played; each goes the same way each time."""
+    return {}
+
+
 @pytest.fixture
-def writing(play):
+def undisturbed(play, known):
+    """Return how a scenario goes when nothing happens: ``await undisturbed(scenario)``."""
+
+    async def undisturbed(scenario):
+        if scenario not in known:
+            alone = await play(scenario, Death(), DRIVE_ON)
+            writing = sorted(alone.death.writing)
+            known[scenario] = Undisturbed(writing, alone.turns, alone.stopped, alone.resumed)
+        return known[scenario]
+
+    return undisturbed
+
+
+@pytest.fixture
+def writing(undisturbed):
     """Return the numbers of the transactions that a scenario takes when nothing happens.
 
     Behind them the range of those at which each is worth a play: robots are stopped then.
     """
 
     async def writing(scenario):
-        undisturbed = Death()
-        played = await play(scenario, undisturbed, DRIVE_ON)
-        assert len(undisturbed.writing) > 10
-        assert 0 < played.stopped.transactions < played.resumed.transactions or scenario not in STOPS
-        until = played.resumed.transactions + STILL_ALL
-        return sorted(undisturbed.writing), range(played.stopped.transactions + 1, until + 1)
+        alone = await undisturbed(scenario)
+        assert len(alone.writing) > 10
+        assert 0 < alone.stopped.transactions < alone.resumed.transactions or scenario not in STOPS
+        until = alone.resumed.transactions + STILL_ALL
+        return alone.writing, range(alone.stopped.transactions + 1, until + 1)
 
     return writing
