@@ -420,7 +420,7 @@ def test_features_at_a_place_are_those_of_the_layers_and_of_the_filter(services)
         ('"robot" IS NULL', set()),
         ('NOT "robot" IS NULL', {"r1", "r2"}),
         ('"theta" >= -5 AND ( "theta" < 0.75 OR "v" = 0.5 )', {"r1", "r2"}),
-        ("\"seen_at\" > '2026-09-21' AND \"v\" = 1", {"r1", "r2"}),
+        ('"seen_at" > \'2026-09-21\' AND "v" = 1', {"r1", "r2"}),
         ("\"seen_at\" > '2026-09-22'", set()),
         ("\"robot\" = 'ő' OR \"link\" = '--'", set()),
     ],

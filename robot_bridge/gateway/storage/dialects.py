@@ -278,6 +278,8 @@ def _postgresql_limits(patience: float) -> Any:
 log = logging.getLogger(__name__)
 
 LOCK_PAUSE_S = 0.0005
+_DESCRIPTORS = Path("/proc/self/fd")
+"""The files that this process has open, where the system has that."""
 _GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
 
 
@@ -421,8 +423,25 @@ def _prepare(connection: Any, record: Any) -> None:
     # Some distributions have SQLite write zeros over what is deleted: the map of a city, page by page, for
     # which everybody else would wait.
     cursor.execute("PRAGMA secure_delete = FAST")
+    # Has SQLite open its index.
+    cursor.execute("PRAGMA schema_version").fetchone()
     cursor.close()
-    record.info["opened"] = _Opened.by(connection)
+    opened = record.info["opened"] = _Opened.by(connection)
+    if opened is not None:
+        _hold_room_of_index(Path(f"{opened.path}-shm"))
+
+
+def _hold_room_of_index(path: Path) -> None:
+    """Have the disk hold all of SQLite's index at ``path``, which lies in memory: a full one ends the process.
+
+    SQLite writes a byte of each 4 kB, which a file system of smaller blocks takes for that block alone. Its
+    own descriptor does it: to open and close another one would end its locks.
+    """
+    for name in _DESCRIPTORS.iterdir() if _DESCRIPTORS.is_dir() else ():
+        with contextlib.suppress(OSError):
+            if name.readlink() == path:
+                descriptor = int(name.name)
+                os.posix_fallocate(descriptor, 0, os.fstat(descriptor).st_size)
 
 
 def make_sqlite_file(path: Path) -> None:
