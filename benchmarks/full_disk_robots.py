@@ -18,10 +18,10 @@ from typing import Any
 
 from benchmarks.raw_websocket import TEXT, Peer, call, result
 
-COLUMNS, FIRST, APART, RADIUS = 10, (12.0, 12.0), 14.0, 5.0
+COLUMNS, FIRST, APART, RADIUS = 10, (12.0, 12.0), 14.0, 3.0
 """robots in a row; metres: the middle of the first circle, from one to the next, and the radius."""
-TURN = 0.1
-"""radians from one position to the next: half a metre, all of which are worth storing."""
+TURN = 0.2
+"""radians from one position to the next: more than half a metre, all of which are worth storing."""
 STANDS_S = 1.0
 ARRIVED_WITHIN = 120.0
 
@@ -128,7 +128,9 @@ class Crowd:
                 at, k, sees = due[0]
                 if at > now:
                     break
-                if sees:
+                if not self._open_anew(self._robots[k]):
+                    pass
+                elif sees:
                     self._robots[k].see()
                 else:
                     self._robots[k].drive(now)
@@ -156,8 +158,17 @@ class Crowd:
             self._poll.unregister(file)
             del self._by_file[file]
             robot.sock.close()
-            robot.open()
+
+    def _open_anew(self, robot: Robot) -> bool:
+        """Tell whether a robot is connected; one that is not tries it, at each of its positions."""
+        if robot.sock.fileno() < 0:
+            try:
+                robot.open()
+            except ConnectionError:
+                robot.sock.close()
+                return False
             self._add(robot)
+        return True
 
     def _seen(self) -> dict[str, Any]:
         robots = self._robots

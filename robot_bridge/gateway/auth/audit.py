@@ -291,9 +291,9 @@ class AuditJournal:
         self._batch = min(BATCH, 2 * self._batch)
 
     async def _is_given_up(self, error: StoreError) -> bool:
-        """Give up a piece that is refused, which must not keep back those after it; write that it is missing.
+        """Give up a piece that is refused, which must not keep back all after it; write that it is missing.
 
-        On a full disk it waits: there may be room for a smaller entry, but what is noted is not lost for that.
+        On a full disk it waits, though there may be room for a smaller one.
         """
         if not isinstance(error, DataRefusedError):
             return False

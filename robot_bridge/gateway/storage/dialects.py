@@ -432,8 +432,9 @@ def _prepare(connection: Any, record: Any) -> None:
 
 
 def _hold_room_of_index(path: Path) -> None:
-    """Have the disk hold all of SQLite's index at ``path``, which lies in memory: a full one ends the process.
+    """Have the disk hold all of SQLite's index at ``path``, which lies in memory.
 
+    Where it does not, the process ends when it writes there and the disk is full.
     SQLite writes a byte of each 4 kB, which a file system of smaller blocks takes for that block alone. Its
     own descriptor does it: to open and close another one would end its locks.
     """
