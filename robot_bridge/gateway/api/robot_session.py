@@ -171,7 +171,7 @@ class RobotSession:
         await self._settled()
         if large and self._admitted:
             self._fleet.refuse_large(self.robot, self._channel.name, str(error))
-        self._warn("frames", f"{self._who}: {error}")
+        self._warn(self._key_of("frames"), f"{self._who}: {error}")
         await self._channel.send(self._channel.error(error.id, error.code, str(error)))
 
     async def _settled(self) -> None:
