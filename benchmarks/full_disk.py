@@ -1,8 +1,9 @@
-"""The part on a full disk: a day by the gateway's clock, on which nothing can be stored."""
+"""The part on a full disk: hours by the gateway's clock, in which nothing can be stored."""
 
 from __future__ import annotations
 
 import contextlib
+import os
 import re
 import subprocess
 import sys
@@ -15,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import Connection, func, insert, select
+from websockets.exceptions import WebSocketException
 
 from benchmarks.clock import table
 from benchmarks.load import MALLOC, site_with_room
@@ -28,16 +30,18 @@ from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 from tests.support.faults.disk import DiskWithPower
 from tests.support.fleet import Served, serve
-from tests.support.operators import open_desk
+from tests.support.operators import Desk, open_desk
 from tests.support.processes import Processes
 from tests.support.wire import RefusedError
 
-FASTER = {"SQLite": 60.0, "PostgreSQL": 12.0}
+FASTER = {"SQLite": 80.0, "PostgreSQL": 12.0}
 """How much faster the gateway's clocks go than this machine's; a server's commits take its own time."""
-HOURS = {"SQLite": size(24.0, 1.0), "PostgreSQL": size(0.5, 0.4)}
+MINUTES = float(os.environ.get("MINUTES") or size(9.0, 1.0))
+"""of this machine's, with SQLite."""
+HOURS = {"SQLite": MINUTES * FASTER["SQLite"] / 60, "PostgreSQL": size(0.3, 0.2)}
 """by the gateway's clock, on a full disk."""
 MEGABYTES = {"SQLite": 48, "PostgreSQL": 256}
-ROBOTS, RATE, RATE_OF_ROBOTS = 50, 1.0, 3.0
+ROBOTS, RATE, RATE_OF_ROBOTS = 50, 0.5, 3.0
 """how many, how often each says where it is by the gateway's clock, and how often they do elsewhere here."""
 OBJECTS_EVERY, STOPS_EVERY, BACKUPS_EVERY = 600.0, 3600.0, 6 * 3600.0
 FIRST_STOP = 600.0
@@ -48,6 +52,7 @@ STOP_MS, HIGHER_MB, LINES_AN_HOUR = 1000.0, 25.0, 600.0
 """goals: milliseconds to the last robot; MB; lines of the log."""
 HANDSHAKE_S, STUCK_S = 60.0, 600.0
 """seconds by the gateway's clock in which a client has to answer."""
+ATTEMPTS = 10
 WARM_UP, HEARD_WITHIN, STORED_WITHIN = 10.0, 10.0, 120.0
 SETTLED_WITHIN = 300.0
 """seconds by the gateway's clock for retention and the last acknowledgements."""
@@ -116,7 +121,7 @@ class Seen:
 
 def measure(_data: Path) -> Part:
     """Live through the hours on each kind of database."""
-    heading, seen = "A day on a full disk", list[Seen]()
+    heading, seen = "A full disk", list[Seen]()
     try:
         if LIBRARY is None:
             raise StageError("libfaketime is not on this machine")
@@ -287,7 +292,7 @@ class _FullDisk:
         assert self._served is not None
         seen, stop, robot = self._seen, f"full-disk-{number:04d}", f"full-{number % ROBOTS:02d}"
         self._stops.append(stop)
-        with open_desk(self._served.address) as desk:
+        with self._desk() as desk:
             began = time.monotonic()
             with contextlib.suppress(RefusedError):
                 desk.ask("abort", {"command": f"abort-{number:08d}", "robot": robot})
@@ -312,6 +317,15 @@ class _FullDisk:
                 with contextlib.suppress(RefusedError):
                     desk.ask(method, params)
                     seen.wrong.append(f"{method} was not refused on a full disk, in stop {stop}")
+
+    def _desk(self) -> Desk:
+        """Return an operator's connection, when the gateway takes one."""
+        assert self._served is not None
+        for _ in range(ATTEMPTS):
+            with contextlib.suppress(OSError, WebSocketException):
+                return open_desk(self._served.address)
+            time.sleep(1.0)
+        raise StageError("the gateway takes no operator on a full disk")
 
     def _heard(self, since: float, robots: list[str], what: str) -> float:
         """Return the milliseconds until the last of ``robots`` heard of it."""
@@ -411,8 +425,17 @@ class _FullDisk:
     def _metrics(self) -> dict[str, float]:
         assert self._served is not None
         address = self._served.address.replace("ws", "http", 1)
-        with urllib.request.urlopen(f"{address}/metrics", timeout=30) as answer:
-            lines = [line for line in answer.read().decode().splitlines() if not line.startswith("#")]
+        for left in reversed(range(ATTEMPTS)):
+            # A machine that is busy is too slow for the fast clock's limits now and then.
+            try:
+                with urllib.request.urlopen(f"{address}/metrics", timeout=30) as answer:
+                    page = answer.read().decode()
+                break
+            except OSError:
+                if not left:
+                    raise
+                time.sleep(1.0)
+        lines = [line for line in page.splitlines() if not line.startswith("#")]
         return {name: float(value) for name, value in (line.rsplit(" ", 1) for line in lines)}
 
 
