@@ -39,6 +39,25 @@ def test_the_disk_holds_all_of_the_index_that_lies_in_memory(disk):
 
 
 @pytest.mark.parametrize("disk", [Disk], indirect=True)
+async def test_the_index_stays_when_the_disk_takes_no_commit(disk):
+    """A new one would have no room."""
+    database = Database(f"sqlite:///{disk.folder}/fleet.db")
+    await database.open()
+    index = Path(f"{disk.folder}/fleet.db-shm")
+    before, session = index.stat().st_ino, database.session
+    disk.fill()
+    for _ in range(3):
+        with pytest.raises(StoreError, match="disk is full"):
+            await database.run(add, "x" * 60, 900)
+    disk.free()
+    await database.run(add, "second")
+    assert database.session > session
+    assert index.stat().st_ino == before
+    await database.close()
+    assert not index.exists()
+
+
+@pytest.mark.parametrize("disk", [Disk], indirect=True)
 async def test_what_only_reads_succeeds_beside_what_cannot_be_written(disk):
     database = Database(f"sqlite:///{disk.folder}/fleet.db")
     await database.open()
