@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-from collections.abc import AsyncIterator, Coroutine, Iterator
+from collections.abc import AsyncIterator, Awaitable, Coroutine, Iterator
 from contextlib import AbstractAsyncContextManager, nullcontext
 from dataclasses import replace
 from typing import Any
@@ -37,6 +37,8 @@ _OTHERS = ("frames", "replies")
 """What else than calls of an operation is refused."""
 POSITION = jsonrpc.Call("SendPos", None)
 ANEW = "the robot has connected anew"
+MOST_DUE = 50
+"""things that a robot said and that are being stored; what comes then waits for them."""
 
 
 class RobotSessions:
@@ -87,7 +89,8 @@ class RobotSession:
         self._admitted = False
         self._delivery = Delivery(fleet, channel, robot)
         self._closing: asyncio.Task[None] | None = None
-        self._due: asyncio.Task[None] | None = None
+        self._due: set[asyncio.Task[None]] = set()
+        self._has_ended = False
         self._told_gateways: list[str] | None = None
 
     # --- what its connection asks of it -----------------------------------------------------------------
@@ -99,12 +102,13 @@ class RobotSession:
 
     def replace(self, reason: str = ANEW, *, again: bool = False) -> None:
         """Carry nothing more: the robot has connected again, or had better do so ``again``."""
-        self._delivery.end()
+        self.end()
         # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
         self._closing = asyncio.create_task(self._channel.release(reason, again=again))
 
     def end(self) -> None:
-        """Deliver nothing more: the channel is gone."""
+        """Deliver nothing more: the channel is gone. What is being stored goes on to its end."""
+        self._has_ended = True
         self._delivery.end()
 
     def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
@@ -117,7 +121,7 @@ class RobotSession:
 
     def ask_again(self) -> None:
         """Send in a moment what it has not acknowledged: a reply of it was not dealt with."""
-        if self._admitted:
+        if self._admitted and not self._has_ended:
             self._delivery.begin_later()
 
     def measure(self) -> None:
@@ -132,10 +136,10 @@ class RobotSession:
     # --- what comes in ------------------------------------------------------------------------------------
 
     def take_pose(self, pose: SendPos) -> bool:
-        """Take in a position at once; false where something must be waited for, and nothing was done."""
+        """Take in a position, at once; false from a robot that is not let in, and nothing was done."""
         if not self.listens():
             return False
-        rest: Coroutine[Any, Any, None] | Exception | None
+        rest: Awaitable[None] | Exception | None
         try:
             rest = self._fleet.take_pose(self.robot, self._channel.name, pose)
         except Exception as error:
@@ -145,26 +149,28 @@ class RobotSession:
         return True
 
     def listens(self) -> bool:
-        """Tell whether nothing has to be waited for before a position can be taken in."""
-        return self._admitted and self._closing is None and self._due is None
+        """Tell whether a position can be taken in: that waits for nothing that is being stored."""
+        return self._admitted and self._closing is None and len(self._due) < MOST_DUE
 
-    def follow_up(self, rest: Coroutine[Any, Any, None] | Exception) -> None:
-        """Store what a position brought about, or tell what is wrong with it; what comes after it waits."""
-        work = _failed(rest) if isinstance(rest, Exception) else rest
-        self._due = asyncio.create_task(self._store(work))
+    def follow_up(self, rest: Awaitable[None] | Exception) -> None:
+        """See to the end what a position brought about, or tell what is wrong with it."""
+        self._begin(self._answer(POSITION, self._outcome(rest)))
 
     async def receive_pose(self, pose: SendPos) -> None:
-        """Take in a position behind what is still to be stored."""
-        await self._settled()
-        await self._answer(POSITION, self._ask(pose, None))
+        """Take in a position that may be the first, or come from a robot that is not let in."""
+        if not self.take_pose(pose):
+            await self._settled()
+            await self._answer(POSITION, self._ask(pose, None))
 
     async def receive(self, message: jsonrpc.Call | jsonrpc.Reply) -> None:
-        """Deal with a call, or with the reply to one, behind what is still to be stored."""
-        await self._settled()
+        """Deal with a call, behind what is still to be stored, or begin to deal with the reply to one."""
         if isinstance(message, jsonrpc.Call):
+            await self._settled()
             await self._answer(message, self._receive_call(message))
         else:
-            await self._receive_reply(message)
+            while len(self._due) >= MOST_DUE:
+                await asyncio.wait(self._due, return_when=asyncio.FIRST_COMPLETED)
+            self._receive_reply(message)
 
     async def refuse_frame(self, error: jsonrpc.FrameError, *, large: bool = False) -> None:
         """Tell the robot that a frame cannot be read, and operators too where it was too ``large``."""
@@ -175,22 +181,26 @@ class RobotSession:
         await self._channel.send(self._channel.error(error.id, error.code, str(error)))
 
     async def _settled(self) -> None:
-        if self._due is not None:
-            await self._due
+        """Wait for what is being stored."""
+        if self._due:
+            await asyncio.wait(self._due)
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.create_task(self._while_connected(work))
+        self._due.add(task)
+        task.add_done_callback(self._due.discard)
+
+    async def _while_connected(self, work: Coroutine[Any, Any, None]) -> None:
+        with contextlib.suppress(ConnectionClosed):
+            await work
 
     @property
     def _who(self) -> str:
         return f"link {self._channel.name}: robot {self.robot!r}"
 
-    async def _store(self, rest: Coroutine[Any, Any, None]) -> None:
-        """Store what a position brought about; what comes after it waits."""
-        try:
-            with contextlib.suppress(ConnectionClosed):
-                await self._answer(POSITION, self._outcome(rest))
-        finally:
-            self._due = None
-
-    async def _outcome(self, rest: Coroutine[Any, Any, None]) -> RequestOutcome:
+    async def _outcome(self, rest: Awaitable[None] | Exception) -> RequestOutcome:
+        if isinstance(rest, Exception):
+            raise rest
         await rest
         return RequestOutcome(self.robot)
 
@@ -245,11 +255,23 @@ class RobotSession:
             self._sessions.admit(self)
         return outcome
 
-    async def _receive_reply(self, reply: jsonrpc.Reply) -> None:
+    def _receive_reply(self, reply: jsonrpc.Reply) -> None:
         if not self._admitted:
             return
+        storing: Awaitable[None] | Exception
         try:
-            await self._take_reply(reply)
+            if isinstance(reply.id, str):
+                self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
+                return
+            ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
+            storing = self._fleet.acknowledge(self.robot, self._channel.name, ack)
+        except Exception as error:
+            storing = error
+        self._begin(self._finish_reply(reply.id, storing))
+
+    async def _finish_reply(self, id: int | str | None, storing: Awaitable[None] | Exception) -> None:
+        try:
+            await self._outcome(storing)
         except DataRefusedError as error:
             # Asked again it would say the same again, and for ever.
             log.error("%s: %s; what it said is left out", self._who, error)
@@ -261,14 +283,7 @@ class RobotSession:
             self._warn(self._key_of("replies", error), f"{self._who}: {error}")
         except Exception:
             # There is no answer to an answer: what went wrong is between the log and whoever reads it.
-            self._note_unforeseen("replies", f"{self._who}, acknowledgement {reply.id}")
-
-    async def _take_reply(self, reply: jsonrpc.Reply) -> None:
-        if isinstance(reply.id, str):
-            self._fleet.emergency.answered(self.robot, reply.id, refused=reply.error is not None)
-            return
-        ack = OpAck(id=reply.id, ok=reply.error is None, reason=reply.error)
-        await self._fleet.receive(self.robot, self._channel.name, ack, None)
+            self._note_unforeseen("replies", f"{self._who}, acknowledgement {id}")
 
     def _warn(self, key: Key, line: str) -> None:
         """Count a refusal, and write it into the log unless it comes again and again."""
@@ -284,11 +299,6 @@ class RobotSession:
             return f"link {self._channel.name}:", "database"
         what = method if method in REQUESTS or method in _OTHERS else "unknown operations"
         return f"link {self._channel.name}:", "robot", repr(self.robot), what
-
-
-async def _failed(error: Exception) -> None:
-    """Raise what went wrong where every other error is told of."""
-    raise error
 
 
 # --- A robot's own WebSocket: JSON-RPC 2.0 with the operation codes of the paper as methods ---

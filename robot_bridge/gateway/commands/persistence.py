@@ -1,18 +1,21 @@
-"""Persistence of commands: transactions, locks of robots, and Aborts that wait for the database."""
+"""Persistence of commands: transactions, locks of robots, their order, Aborts that wait for the database."""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
 import dataclasses
-from collections.abc import AsyncIterator, Callable, Iterable, Mapping, Sequence
+import logging
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Mapping, Sequence
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
 
-from ...core.errors import RefusedError, UncertainError
+from ...core.errors import RefusedError, StoreError, UncertainError
+from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport
-from ...core.messages.robots import Abort, Answer, Command, SetPosIni
+from ...core.messages.robots import Abort, Answer, Command, SendPos, SetPosIni
 from ...protocol.codec import decode_answer
 from ..storage.database import Database
 from ..storage.owner_fence import SOLE_FENCE, OwnerFence
@@ -314,3 +317,107 @@ def _fenced(
 ) -> T:
     fence.check(connection, names)
     return work(connection, *arguments)
+
+
+# --- What a robot says of its commands, in its order: acknowledgements stored, positions judged behind them
+
+log = logging.getLogger(__name__)
+
+MOST_WAITING = 500
+"""that one robot said and that waits; from then on the oldest positions are left out."""
+
+
+class PositionJudge(Protocol):
+    """What judges the commands of robots by where they are."""
+
+    def judge(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Return what stores the commands that are done, None where none is."""
+
+    def lose_sight(self, robot: str) -> None:
+        """Note that nobody saw for a while where a robot drove."""
+
+
+class _Work(NamedTuple):
+    """Something that is stored, and who waits for it."""
+
+    work: Coroutine[Any, Any, Any]
+    future: asyncio.Future[Any]
+
+
+class RobotSequences:
+    """Does for each robot what it said in its order, though the database may take seconds for a part of it.
+
+    Only positions may wait here with nobody waiting for them: they are shown and recorded before they are
+    judged, and those who watch a robot do not wait for a database.
+    """
+
+    def __init__(self, judge: PositionJudge) -> None:
+        self._judge = judge
+        self._waiting: dict[str, deque[_Work | SendPos]] = {}
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def add_position(self, robot: str, pose: SendPos) -> bool:
+        """Have a position judged behind what is being done; false, where that is nothing."""
+        waiting = self._waiting.get(robot)
+        if waiting is None:
+            return False
+        if len(waiting) >= MOST_WAITING:
+            oldest = next((entry for entry in waiting if isinstance(entry, SendPos)), None)
+            if oldest is not None:
+                waiting.remove(oldest)
+            self._judge.lose_sight(robot)
+        waiting.append(pose)
+        return True
+
+    def add(self, robot: str, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
+        """Begin ``work`` now, or behind what is being done; it goes on when nobody waits for it any more."""
+        future: asyncio.Future[T] = asyncio.get_running_loop().create_future()
+        entry = _Work(work, future)
+        if (waiting := self._waiting.get(robot)) is not None:
+            waiting.append(entry)
+            return future
+        self._waiting[robot] = deque([entry])
+        task = asyncio.create_task(self._run(robot))
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        return future
+
+    async def _run(self, robot: str) -> None:
+        waiting = self._waiting[robot]
+        try:
+            while waiting:
+                entry = waiting.popleft()
+                if isinstance(entry, SendPos):
+                    await self._judge_position(robot, entry)
+                else:
+                    await _do(entry)
+        finally:
+            del self._waiting[robot]
+            for entry in waiting:
+                if isinstance(entry, _Work):
+                    entry.work.close()
+                    entry.future.cancel()
+
+    async def _judge_position(self, robot: str, pose: SendPos) -> None:
+        with log_and_continue(log, f"a position of robot {robot!r}"):
+            try:
+                if (work := self._judge.judge(robot, pose)) is not None:
+                    await work
+            except StoreError as error:
+                # Its command is open still, and judged by the next position.
+                log.warning("robot %r: %s", robot, error)
+
+
+async def _do(entry: _Work) -> None:
+    try:
+        result = await entry.work
+    except asyncio.CancelledError:
+        entry.future.cancel()
+        raise
+    except BaseException as error:
+        # Whatever it is: who waits would wait for ever.
+        if not entry.future.done():
+            entry.future.set_exception(error)
+    else:
+        if not entry.future.done():
+            entry.future.set_result(result)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import dataclasses
 import logging
-from collections.abc import Callable, Coroutine, Iterable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Mapping, Sequence
 from typing import Any
 
 from sqlalchemy import Connection
@@ -78,6 +78,7 @@ class CommandService(CommandReader):
         self._fence = fence
         self._held = persistence.RobotLocks(database, self, fence)
         self._turns = persistence.NamedLocks()
+        self._sequences = persistence.RobotSequences(self)
         self._late: set[tuple[str, int]] = set()
         self._unstored = persistence.UnstoredAborts()
 
@@ -154,15 +155,26 @@ class CommandService(CommandReader):
         if queued:
             await to_its_end(self._delivered(queued))
 
-    async def acknowledged(self, robot: str, ack: OpAck) -> float | None:
+    def acknowledge(self, robot: str, ack: OpAck) -> Awaitable[float | None]:
         """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
 
-        Return when the message was written into SA, if it was a command's and is acknowledged at first.
+        That is begun at once; positions that come before it is stored are judged behind it. Its result is
+        when the message was written into SA, if it was a command's and is acknowledged at first.
         """
-        return await to_its_end(self._acknowledged(robot, ack))
+        return self._sequences.add(robot, self._acknowledge(robot, ack))
 
-    def observe(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
-        """Judge the robot's acknowledged commands by where it is now.
+    def observe(self, robot: str, pose: SendPos) -> Awaitable[None] | None:
+        """Judge the robot's acknowledged commands by where it is now, behind what is being stored of it.
+
+        Return what stores those that are done, which has begun; None where none is, or that waits.
+        """
+        if self._sequences.add_position(robot, pose):
+            return None
+        work = self.judge(robot, pose)
+        return None if work is None else self._sequences.add(robot, work)
+
+    def judge(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+        """Judge the robot's acknowledged commands by ``pose``.
 
         Return what stores those that are done, to be awaited; None where none is.
         """
@@ -174,7 +186,7 @@ class CommandService(CommandReader):
             and not command.acknowledgement_waits
             and ((deviation := command.arrival.deviation(pose)) is not None or given_up_by(command, mine))
         ]
-        return to_its_end(self._all_done(done)) if done else None
+        return self._all_done(done) if done else None
 
     def with_open_commands(self, poses: Iterable[RobotPose]) -> list[RobotPose]:
         """Return the poses of robots that have open commands."""
@@ -193,19 +205,9 @@ class CommandService(CommandReader):
         for command in self._open.of(robot):
             command.lose_sight()
 
-    def rests(self, robot: str, pose: SendPos | None) -> Coroutine[Any, Any, None] | None:
-        """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do.
-
-        Return as :meth:`observe`.
-        """
-        done = [
-            (command, deviation, pose)
-            for command in self._open.of(robot)
-            if isinstance(command.arrival, PathArrival)
-            and (deviation := command.arrival.rests(pose)) is not None
-            and pose is not None
-        ]
-        return to_its_end(self._all_done(done)) if done else None
+    async def rests(self, robot: str, pose: SendPos | None) -> None:
+        """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do."""
+        await self._sequences.add(robot, self._rests(robot, pose))
 
     async def deliver_again(
         self,
@@ -255,7 +257,7 @@ class CommandService(CommandReader):
             what = f"a late acknowledgement of robot {robot!r}"
             refused = contextlib.suppress(DataRefusedError, FencedError)
             with log_and_continue(log, what, except_for=StoreError), refused:
-                await self.acknowledged(robot, OpAck(id=sa_id))
+                await self.acknowledge(robot, OpAck(id=sa_id))
             self._late.discard((robot, sa_id))
         driven = self._open.progress(DRIVEN_STEP)
         if driven:
@@ -341,7 +343,7 @@ class CommandService(CommandReader):
             now = self._clock.time()
             await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
 
-    async def _acknowledged(self, robot: str, ack: OpAck) -> float | None:
+    async def _acknowledge(self, robot: str, ack: OpAck) -> float | None:
         async with self._held.of([robot]):
             command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
             if command is None and ack.ok and ack.id is not None:
@@ -369,6 +371,16 @@ class CommandService(CommandReader):
         self._late.discard((robot, sa_id))
         if report is not None:
             self._events.publish(CommandChanged(report))
+
+    async def _rests(self, robot: str, pose: SendPos | None) -> None:
+        done = [
+            (command, deviation, pose)
+            for command in self._open.of(robot)
+            if isinstance(command.arrival, PathArrival)
+            and (deviation := command.arrival.rests(pose)) is not None
+            and pose is not None
+        ]
+        await self._all_done(done)
 
     async def _all_done(self, done: Sequence[tuple[ActiveCommand, float | None, SendPos]]) -> None:
         for command, deviation, pose in done:

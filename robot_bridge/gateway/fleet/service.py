@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 from collections import Counter
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -68,8 +68,8 @@ from .views import FleetViews
 
 log = logging.getLogger(__name__)
 
-Rest = tuple[str, Coroutine[Any, Any, None] | Exception]
-"""A robot, and what has to be stored since it said where it is, or what is wrong with that."""
+Rest = tuple[str, Awaitable[None] | Exception]
+"""A robot, and what is being stored since it said where it is, or what is wrong with that."""
 
 
 class Fleet:
@@ -299,16 +299,25 @@ class Fleet:
             if (rest := self._take_pose(robot, link, request, now, waited=waited)) is not None:
                 await rest
             return RequestOutcome(robot)
-        # Only driving sets a robot that said Stopped in motion.
-        stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
-        known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
-        self._saving.touch(robot)
+        if isinstance(request, OpAck):
+            await self._acknowledge(robot, link, request, now, waited=waited)
+            return RequestOutcome(robot)
+        known = self._hear(robot, link, request, now, waited=waited)
         answer, note = await self._deal_with(known, link, request, id)
         return RequestOutcome(
             robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer
         )
 
-    def take_pose(self, robot: str, link: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+    def acknowledge(self, robot: str, link: str, ack: OpAck) -> Awaitable[None]:
+        """Deal with an OpAck as :meth:`receive` does, at once but for what is returned, to be awaited.
+
+        That is its storing, behind that of what the robot acknowledged before. Positions go on meanwhile.
+        """
+        self.tally.requests[link, "OpAck"] += 1
+        self.robots.check_run(robot, ack.magic, link)
+        return self._acknowledge(robot, link, ack, self._clock.time())
+
+    def take_pose(self, robot: str, link: str, pose: SendPos) -> Awaitable[None] | None:
         """Deal with a position as :meth:`receive` does, at once but for what is returned, to be awaited.
 
         That is the storing of a command that the robot has carried out, nearly always None.
@@ -322,7 +331,7 @@ class Fleet:
     def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
         """Deal with positions of many robots, each named once, as :meth:`take_pose` does with that of one.
 
-        Return what is left for some: a coroutine to be awaited, or what is wrong with a position.
+        Return what is left for some: what is to be awaited, or what is wrong with a position.
         """
         now = self._clock.time()
         moved, others = self.robots.follow(poses, link, now, self._places.near())
@@ -419,17 +428,31 @@ class Fleet:
 
     # ---------------------------------------------------------------------------------------------------
 
+    def _hear(self, robot: str, link: str, request: Request, now: float, *, waited: bool = False) -> Robot:
+        """Note that a robot is there, and return it."""
+        # Only driving sets a robot that said Stopped in motion.
+        stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
+        known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
+        self._saving.touch(robot)
+        return known
+
+    def _acknowledge(
+        self, robot: str, link: str, ack: OpAck, now: float, *, waited: bool = False
+    ) -> Awaitable[None]:
+        known = self._hear(robot, link, ack, now, waited=waited)
+        if ack.reason is not None:
+            ack = replace(ack, reason=one_line(ack.reason, LONGEST_REFUSAL))
+        return self._measured(known, self._book.acknowledge(robot, ack))
+
+    async def _measured(self, robot: Robot, storing: Awaitable[float | None]) -> None:
+        self._measure(robot, await storing)
+
     async def _deal_with(
         self, robot: Robot, link: str, request: Request, id: int | None
     ) -> tuple[Answer | None, str]:
         """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
-        if isinstance(request, OpAck):
-            if request.reason is not None:
-                request = replace(request, reason=one_line(request.reason, LONGEST_REFUSAL))
-            self._measure(robot, await self._book.acknowledged(robot.name, request))
-        elif isinstance(request, Stopped):
-            if (rest := self._book.rests(robot.name, robot.pose if robot.located else None)) is not None:
-                await rest
+        if isinstance(request, Stopped):
+            await self._book.rests(robot.name, robot.pose if robot.located else None)
         elif isinstance(request, Observed):
             await self.observations.add(robot, link, request, id)
         elif isinstance(request, Question):
@@ -463,7 +486,7 @@ class Fleet:
 
     def _take_pose(
         self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
-    ) -> Coroutine[Any, Any, None] | None:
+    ) -> Awaitable[None] | None:
         unseen = self.robots.is_unseen(robot, now)
         if not self.robots.observe(robot, pose, link, now, waited=waited):
             return None
@@ -483,8 +506,8 @@ class Fleet:
 
 
 def _attempt(
-    take: Callable[..., Coroutine[Any, Any, None] | None], *arguments: Any
-) -> Coroutine[Any, Any, None] | Exception | None:
+    take: Callable[..., Awaitable[None] | None], *arguments: Any
+) -> Awaitable[None] | Exception | None:
     """Return what is left to be awaited, or what went wrong: that concerns one robot and no other."""
     try:
         return take(*arguments)

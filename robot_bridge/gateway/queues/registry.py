@@ -157,12 +157,13 @@ class QueueRegistry:
     @contextlib.asynccontextmanager
     async def holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
         """Hold the locks of some robots' queues, with these as they are stored."""
+        names = sorted(set(robots))
         async with contextlib.AsyncExitStack() as stack:
-            for robot in sorted(set(robots)):
+            for robot in names:
                 await stack.enter_async_context(self._locks.setdefault(robot, asyncio.Lock()))
                 if robot in self._doubtful:
                     await self._read_again(robot)
-            others = [robot for robot in robots if self._is_elsewhere(robot)]
+            others = [robot for robot in names if self._is_elsewhere(robot)]
             if others:
                 await self._read_elsewhere(others)
             yield

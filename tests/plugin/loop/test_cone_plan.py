@@ -232,7 +232,9 @@ def test_three_robots_place_a_lane_change_and_two_go_on_when_one_is_killed(
     impatient_loop, operator, planner, tmp_path
 ):
     loop = impatient_loop
-    robots = {name: loop.start_robot(name, pose, speed=8.0, rate=10) for name, pose in STARTS.items()}
+    # Who is to die drives slowly: it must not be at its third cone yet, where the others would come near it.
+    speeds = {"r1": 2.5, "r2": 8.0, "r3": 8.0}
+    robots = {name: loop.start_robot(name, STARTS[name], speed=speeds[name], rate=10) for name in STARTS}
     operator.connect_to(loop, list(STARTS))
     lane = {"vehicle_width": 1.7, "exit_length": 15, "cones_per_row": 2}
     layer = planner.place_layout("iso3888_1", lane, 12.0, 6.2)

@@ -158,7 +158,7 @@ def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_
     assert now.done == {"c1", "d1", "d2"} and now.lost == {"r1"}
     r2 = now.robots["r2"]
     # It finishes the cone that it is on: it is there then, with one of its four cones less for each.
-    assert (r2.x, r2.y, r2.aboard) == (120.0, 50.0, 2) and r2.ready_s >= 30
+    assert (r2.x, r2.y, r2.aboard) == (120.0, 50.0, 2)
     with_store = Driven((Store("depot", 100.0, 60.0),))
     with_store.tell("r1", [DONE, CURRENT], RobotState.LOST)
     with_store.tell("r2", [DONE, CURRENT])
@@ -168,6 +168,23 @@ def test_what_a_lost_robot_was_doing_and_what_waited_is_shared_out_and_the_rest_
     new = replan(with_store.plan, StraightTravel, now, Objective("distance", "preview"))
     cones = {one.robot.id: [s.id for s in one.stops if s.is_target] for one in new.robots}
     assert cones["r1"] == [] and sorted(cones["r2"]) == ["c2", "c3", "d3"] and new.robot("r1").lost
+
+
+@pytest.mark.parametrize("now_s", [3, 300], ids=["ahead of the plan", "behind it"])
+def test_a_robot_is_free_when_it_has_driven_what_is_left_of_its_way_not_when_the_plan_said(driven, now_s):
+    driven.tell("r2", [DONE, CURRENT])
+    stop = driven.plan.robot("r2").stops[1]
+    speed, works = driven.plan.robot("r2").robot.speed, stop.end_s - stop.begin_s
+    assert works > 0 and stop.path[:: len(stop.path) - 1] == ((110.0, 50.0), (120.0, 50.0))
+
+    def free_at(place):
+        now = situation_of(driven.plan, driven.progress, place, PlanProblem(), BEGAN + now_s, try_again=False)
+        return now.robots["r2"].ready_s - now_s
+
+    assert free_at({"r2": (114.0, 50.0)}) == pytest.approx(6 / speed + works)
+    assert free_at({"r2": (114.0, 53.0)}) == pytest.approx(9 / speed + works)
+    assert free_at({"r2": (120.0, 50.0)}) == pytest.approx(works)
+    assert free_at({}) == pytest.approx(max(stop.end_s - now_s, 0)), "where it is nobody knows"
 
 
 def test_a_cone_that_is_being_placed_is_in_the_way_of_what_is_left(driven):

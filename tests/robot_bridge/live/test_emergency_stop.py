@@ -124,6 +124,26 @@ def test_a_stop_reaches_robots_at_once_while_the_database_is_locked_and_is_store
     assert desk.wait_for_step("target-1", "aborted")
 
 
+def test_where_a_robot_is_waits_for_no_acknowledgement_and_is_judged_behind_it(bridge):
+    """Who made a stop while the database does not answer wants to see whether the robots stand."""
+    desk, robot = watch(bridge), bridge.robot("r1")
+    robot.plug_in(1)
+    desk.send("target-1", "r1", "SetPosEnd", x=9.0, y=9.0)
+    target = robot.wait_for("SetPosEnd")
+    desk.wait_for_step("target-1", "delivered")
+    with contextlib.closing(sqlite3.connect(bridge.file, isolation_level=None)) as hog:
+        hog.execute("begin immediate")
+        robot.say(target["id"])
+        for x in (7.0, 8.0, 9.0):
+            robot.tell("SendPos", {"x": x, "y": 9.0, "theta": 0.0, "v": 0.0})
+            desk.until(lambda x=x: desk.robots.get("r1", {}).get("x") == x)
+        assert desk.commands["target-1"]["state"] == "delivered"
+        hog.execute("rollback")
+    # It says no more where it is.
+    states = [step["state"] for step in desk.wait_for_step("target-1", "reached")["steps"]]
+    assert states[-2:] == ["acknowledged", "reached"]
+
+
 def test_an_abort_overtakes_what_waits_for_a_robot_that_reads_sql(bridge):
     desk = watch(bridge)
     bridge.sql("insert into rr (robot, op, params) values ('slow', 'Ready', '{\"magic\": 1}')")

@@ -13,7 +13,7 @@ from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.core.logs import IN_FULL, RepeatedLines
 from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.core.sites.settings_tables import LimitSettings
-from robot_bridge.gateway.api.robot_session import RobotConnection, RobotSessions
+from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
 from robot_bridge.gateway.api.robot_websockets import LinkConnection, WebSocketInterface
 from robot_bridge.gateway.api.shared_connection import LinkedRobotChannel
 from robot_bridge.gateway.fleet.outbox import RequestOutcome
@@ -59,6 +59,7 @@ def own(connection):
     fleet = SimpleNamespace(
         take_pose=fail,
         receive=fail_later,
+        acknowledge=fail,
         emergency=SimpleNamespace(answered=fail),
         tally=Counters(),
         repeated=RepeatedLines(),
@@ -81,9 +82,9 @@ async def test_a_position_in_which_something_goes_wrong_is_answered_with_the_num
 ):
     if at_once:
         assert own._take_at_once(POSITION)
-        await own.session._due
     else:
         await own._receive(POSITION)
+    await own.session._settled()
     (told,) = connection.sent
     assert told["error"]["code"] == jsonrpc.INTERNAL_ERROR
     assert NUMBER.match(told["error"]["message"])[1] == logged(caplog)
@@ -95,6 +96,7 @@ async def test_an_acknowledgement_in_which_something_goes_wrong_is_in_the_log_an
     own, connection, caplog, id
 ):
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
+    await own.session._settled()
     assert logged(caplog)
     assert f"robot 'r1', acknowledgement {id}" in caplog.text
     assert connection.sent == []
@@ -104,14 +106,15 @@ async def test_an_acknowledgement_in_which_something_goes_wrong_is_in_the_log_an
 async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_it_as_data(
     own, monkeypatch, error, again
 ):
-    async def receive(*_):
+    async def acknowledge(*_):
         raise error
 
     begun = []
-    own.session._fleet.receive = receive
+    own.session._fleet.acknowledge = acknowledge
     monkeypatch.setattr(own.session._delivery, "begin", lambda: begun.append("at once"))
     monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}}))
+    await own.session._settled()
     assert begun == again
 
 
@@ -119,7 +122,7 @@ async def test_a_full_disk_is_told_to_the_log_of_all_that_a_robot_says_together(
     async def receive(*_):
         raise StoreError("the disk is full")
 
-    own.session._fleet.receive = receive
+    own.session._fleet.receive = own.session._fleet.acknowledge = receive
     place = {"x": 1.0, "y": 2.0}
     for method, params in (
         ("SetObject", place | {"object": "cone"}),
@@ -128,7 +131,48 @@ async def test_a_full_disk_is_told_to_the_log_of_all_that_a_robot_says_together(
         for id in range(9):
             await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "method": method, "params": params}))
             await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
+    await own.session._settled()
     assert caplog.text.count("the disk is full") == IN_FULL
+
+
+async def test_nothing_is_sent_again_over_a_connection_that_has_ended(own, monkeypatch):
+    """What waits for the robot is its next connection's by then."""
+
+    async def acknowledge(*_):
+        raise StoreError("away")
+
+    own.session._fleet.acknowledge = acknowledge
+    begun = []
+    monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
+    await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "result": {}}))
+    own.session.end()
+    await own.session._settled()
+    assert begun == []
+
+
+async def test_a_robot_that_acknowledges_ever_more_waits_for_what_is_being_stored(own):
+    free, begun = asyncio.Event(), []
+
+    async def acknowledge(_robot, _link, ack):
+        begun.append(ack.id)
+        await free.wait()
+
+    own.session._fleet.acknowledge = acknowledge
+    own.session._fleet.take_pose = lambda *_: None
+
+    async def say(count):
+        for id in range(count):
+            await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
+
+    await say(10)
+    assert own._take_at_once(POSITION)
+    talking = asyncio.create_task(say(MOST_DUE))
+    await asyncio.sleep(0.01)
+    assert len(begun) == MOST_DUE and not talking.done() and not own._take_at_once(POSITION)
+    free.set()
+    await talking
+    await own.session._settled()
+    assert len(begun) == MOST_DUE + 10 and own._take_at_once(POSITION)
 
 
 async def test_a_robot_that_another_gateway_got_while_it_was_let_in_is_refused_and_says_ready_again(

@@ -104,7 +104,8 @@ def test_too_many_wrong_tokens_are_answered_shortly_and_leave_few_traces(bridge,
     began = time.monotonic()
     statuses = [refused(lambda: bridge.desk(**wrong))[0] for _ in range(40)]
     minutes = (time.monotonic() - began) / 60
-    assert statuses[-1] == 429
+    # One more is heard in six seconds: on a busy machine that may be the last.
+    assert 429 in statuses[-3:]
     assert statuses.count(401) <= 10 + 10 * minutes + 1
     # Whoever has a token that holds comes in all the same.
     assert bridge.desk(**ada).site["id"] == "sample"

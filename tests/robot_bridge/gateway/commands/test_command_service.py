@@ -83,10 +83,11 @@ async def test_a_rest_concerns_only_the_paths_of_the_robot_that_was_seen_on_them
     await drive(two, "path", "r2")
     for robot in ("r1", "r2"):
         await two.acknowledge_all(robot)
-    assert book.rests("r1", SendPos(50.0, 40.0, 0.0, 0.0)) is None
-    assert book.rests("r2", None) is None
-    assert book.rests("r2", START) is None
-    assert book.rests("nobody", START) is None
+    await book.rests("r1", SendPos(50.0, 40.0, 0.0, 0.0))
+    await book.rests("r2", None)
+    await book.rests("r2", START)
+    await book.rests("nobody", START)
+    assert await two.states() == {"target": "acknowledged", "path": "acknowledged"}
     book.lose_sight("r2")
     await two.at(24.0, 40.0, robot="r2", v=1.0)
     await two.at(20.0, 40.0, robot="r2")

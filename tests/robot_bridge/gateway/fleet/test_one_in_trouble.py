@@ -171,12 +171,12 @@ async def test_a_late_acknowledgement_in_trouble_is_forgotten_and_others_have_th
     book, taken = two.fleet._book, []
     monkeypatch.setattr(book, "_late", {("r1", 1), ("r2", 2), ("r1", 3)})
 
-    async def acknowledged(robot, ack):
+    async def acknowledge(robot, ack):
         if robot == "r1":
             raise error
         taken.append((robot, ack.id))
 
-    monkeypatch.setattr(book, "acknowledged", acknowledged)
+    monkeypatch.setattr(book, "acknowledge", acknowledge)
     await two.fleet.save()
     assert (taken, book._late) == ([("r2", 2)], set())
 
@@ -184,7 +184,7 @@ async def test_a_late_acknowledgement_in_trouble_is_forgotten_and_others_have_th
 async def test_a_late_acknowledgement_is_kept_while_the_database_is_away(two, monkeypatch):
     book = two.fleet._book
     monkeypatch.setattr(book, "_late", {("r1", 1)})
-    fail_once(monkeypatch, book, "acknowledged", StoreError("the disk is full"), bool)
+    fail_once(monkeypatch, book, "acknowledge", StoreError("the disk is full"), bool)
     with pytest.raises(StoreError, match="the disk is full"):
         await two.fleet.save()
     assert book._late == {("r1", 1)}

@@ -620,9 +620,9 @@ async def test_acknowledgements_that_came_too_late_wait_up_to_a_number_and_each_
     for sa_id in (4711, 4712):
         lose(driven, write_late, False, StoreError)
         with pytest.raises(StoreError):
-            await book.acknowledged("r1", OpAck(id=sa_id))
+            await book.acknowledge("r1", OpAck(id=sa_id))
     assert book._late == {("r1", 4711)}
-    await book.acknowledged("r1", OpAck(id=4711))
+    await book.acknowledge("r1", OpAck(id=4711))
     assert book._late == set()
 
 
