@@ -8,8 +8,7 @@ import numpy as np
 import pyogrio
 import shapely
 
-from robot_bridge.core.roads.centrelines import FORWARD, Centrelines, centrelines
-from robot_bridge.core.roads.network import Network, network_of
+from robot_bridge.core.roads.network import FORWARD, Centrelines, Network, centrelines, network_of
 
 
 def malta(data: Path, most: int | None = None) -> Centrelines:

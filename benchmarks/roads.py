@@ -179,7 +179,7 @@ def _rivals(network: Network) -> dict[str, tuple[Callable[[int, int], object], i
 def _graph_engine() -> type:
     """Return the plugin's engine, by the name that QGIS knows the plugin's package by."""
     register_plugin()
-    engine: type = importlib.import_module(f"{PACKAGE}.plugin.processing.algorithms.find_route").GraphEngine
+    engine: type = importlib.import_module(f"{PACKAGE}.plugin.processing.common.road_sources").GraphEngine
     return engine
 
 

@@ -15,7 +15,7 @@ from benchmarks.road_data import malta, track
 from benchmarks.road_rivals import start_qgis
 from benchmarks.surface_rivals import by_spatial_index, by_tree
 from benchmarks.trial import size
-from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.network import Surface
 from robot_bridge.core.roads.surface_generation import generate_surfaces, polygon_of, rings_of
 from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex, areas_of, surface_edges
 

@@ -10,7 +10,7 @@ from qgis.gui import QgisInterface, QgsLocatorWidget
 from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..robot_bridge.core.messages.safety import RobotState
-from .expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
+from .expressions import RobotSnapshot, SnapshotHolder
 from .gateway_client.robot_states import ROBOT_STATES
 from .ui.glyphs import StateIcons
 from .ui.language import tr

@@ -6,8 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from qgis.core import QgsApplication, QgsProject
 
-from .expressions.functions import ExpressionFunctions
-from .expressions.robot_snapshot import SnapshotHolder
+from .expressions import ExpressionFunctions, SnapshotHolder
 from .layers.road_surfaces import SurfaceStore
 from .processing.provider import FleetProvider
 from .ui.errors import Part, remove_all
@@ -71,19 +70,16 @@ class FleetPlugin:
     def _open_desk(self, iface: QgisInterface, project: QgsProject):
         # Only here, for qgis_process.
         from .admin.accounts_dialog import AccountsAction
-        from .admin.recordings import RecordingsAction
-        from .admin.robot_removal import RobotRemoval
-        from .admin.site_choice import SiteChoiceAction
-        from .expressions.robot_snapshot import ExpressionUpdater
+        from .admin.supervision import RecordingsAction, RobotRemoval, SiteChoiceAction
+        from .expressions import ExpressionUpdater
         from .help import HelpActions
         from .layers.live_layers import LiveLayers
         from .layers.role_editor.roles_dialog import RolesAction
         from .locator import RobotLocator
-        from .map.site_project import SiteDropHandler
         from .map.tools.road_tools import SurfaceAction
         from .observations.observation_dock import ObservationsAction
         from .options_page import OptionsFactory
-        from .panel.window import MENU, FleetWindow, WindowAlarms
+        from .panel.window import MENU, FleetWindow, SiteDropHandler, WindowAlarms
         from .planning.layouts.layout_tool import LayoutAction
         from .planning.plan_dock import PlansAction
         from .replay.replay_dock import ReplayAction

@@ -97,7 +97,7 @@ def _only_named() -> None:
 
 def _foreseen() -> tuple[type[Exception], ...]:
     """Return the families of errors whose text is for people."""
-    from .core.messages.validation import MessageError
+    from .core.messages.base import MessageError
     from .reference_robot.localisation.settings import ReferenceRobotError
 
     return (BridgeError, SiteError, RobotMapError, MessageError, ReferenceRobotError)

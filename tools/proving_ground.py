@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 import shapely
 
-from robot_bridge.core.roads.centrelines import GENERATED, Surface
+from robot_bridge.core.roads.network import GENERATED, Surface
 from robot_bridge.core.robotmap.outlines import Outlines
 from robot_bridge.core.sites.frame import SiteBounds, SiteFrame, projections
 from robot_bridge.core.sites.geopackage import Centreline

@@ -10,20 +10,9 @@ from qgis.gui import QgisInterface
 from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QComboBox, QLineEdit, QMessageBox, QWidget
 
-from ...robot_bridge.core.messages.administration import (
-    AddOperator,
-    GetOperators,
-    GetSessions,
-    OperatorReport,
-    Operators,
-    RevokeToken,
-    RotateToken,
-    SessionReport,
-    SetRole,
-    TokenState,
-)
+from ...robot_bridge.core.messages import administration
+from ...robot_bridge.core.messages.base import Role
 from ...robot_bridge.core.messages.json_values import new_token, open_session, operators_report
-from ...robot_bridge.core.messages.operator_requests import Role
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS
@@ -42,7 +31,7 @@ NOW = tr("connected now")
 class Account:
     """An account; ``is_own`` when this desk is connected with it, ``is_connected`` when any desk is."""
 
-    report: OperatorReport
+    report: administration.OperatorReport
     is_own: bool = False
     is_connected: bool = False
 
@@ -52,7 +41,9 @@ class Account:
 
 
 def read_accounts(
-    operators: Iterable[OperatorReport], sessions: Iterable[SessionReport], own: str
+    operators: Iterable[administration.OperatorReport],
+    sessions: Iterable[administration.SessionReport],
+    own: str,
 ) -> list[Account]:
     """Return the accounts in the order in which they are given; ``own`` is this desk's."""
     connected = {session.operator for session in sessions}
@@ -74,13 +65,13 @@ def account_cells(account: Account) -> tuple[str, ...]:
     return name, ROLES[report.role], day_and_time(report.created_at), seen, token_in_words(report)
 
 
-def token_in_words(report: OperatorReport) -> str:
+def token_in_words(report: administration.OperatorReport) -> str:
     """Return how an account's newest token stands."""
-    if report.token is TokenState.REVOKED:
+    if report.token is administration.TokenState.REVOKED:
         return tr("revoked {time}", time=day_and_time(report.revoked_at))
-    if report.token is TokenState.EXPIRED:
+    if report.token is administration.TokenState.EXPIRED:
         return tr("expired {time}", time=day_and_time(report.expires_at))
-    if report.token is TokenState.NONE:
+    if report.token is administration.TokenState.NONE:
         return tr("none")
     return until_in_words(report.expires_at)
 
@@ -239,7 +230,7 @@ class AccountsDialog(SupervisorDialog):
 
     def __init__(self, desk: FleetController, parent: QWidget):
         super().__init__(desk, AccountModel(), "fleet_accounts_dialog", tr("Accounts"), ACCOUNTS, parent)
-        self._sessions: list[SessionReport] = []
+        self._sessions: list[administration.SessionReport] = []
         self._tokens: list[TokenDialog] = []
         self._has_none = False
         for name, text, press, for_row in (
@@ -263,8 +254,8 @@ class AccountsDialog(SupervisorDialog):
     def _ask_rows(self) -> None:
         self._has_none = False
         # First: the accounts are shown with who is connected.
-        self._listing.ask(GetSessions(), LIST, self._take_sessions)
-        self._listing.ask(GetOperators(), LIST, self._take_operators)
+        self._listing.ask(administration.GetSessions(), LIST, self._take_sessions)
+        self._listing.ask(administration.GetOperators(), LIST, self._take_operators)
 
     def _key(self, row: Account) -> str:
         return row.name
@@ -275,7 +266,7 @@ class AccountsDialog(SupervisorDialog):
     def _take_operators(self, result: dict[str, Any]) -> None:
         self._show(operators_report(result))
 
-    def _show(self, found: Operators) -> None:
+    def _show(self, found: administration.Operators) -> None:
         self._show_rows(read_accounts(found.operators, self._sessions, self._desk.state.link.operator))
         self._has_none = not found.operators
         if found.operators:
@@ -295,7 +286,9 @@ class AccountsDialog(SupervisorDialog):
         question = NewAccountDialog(is_first, self)
         question.confirmed.connect(
             lambda name, role, seconds: self._ask_for_token(
-                AddOperator(name, role, seconds), tr("New account {operator}", operator=name), is_first
+                administration.AddOperator(name, role, seconds),
+                tr("New account {operator}", operator=name),
+                is_first,
             )
         )
         self._open(question)
@@ -305,7 +298,7 @@ class AccountsDialog(SupervisorDialog):
         question = RenewTokenDialog(account, self)
         question.confirmed.connect(
             lambda seconds: self._ask_for_token(
-                RotateToken(account.name, seconds),
+                administration.RotateToken(account.name, seconds),
                 tr("New token for {operator}", operator=account.name),
                 account.is_own,
             )
@@ -324,14 +317,14 @@ class AccountsDialog(SupervisorDialog):
 
     def _ask_for_revocation(self, account: Account) -> None:
         self._ask_for_change(
-            RevokeToken(account.name),
+            administration.RevokeToken(account.name),
             tr("Revoke {operator}", operator=account.name),
             tr("The token of {operator} is revoked.", operator=account.name),
         )
 
     def _ask_for_role(self, account: Account, role: Role) -> None:
         self._ask_for_change(
-            SetRole(account.name, role),
+            administration.SetRole(account.name, role),
             tr("Role of {operator}", operator=account.name),
             tr("{operator} is {role} now.", operator=account.name, role=ROLES[role]),
         )
@@ -339,7 +332,9 @@ class AccountsDialog(SupervisorDialog):
     def _ask_for_change(self, request: Any, words: str, done: str) -> None:
         self._ask(request, words, lambda _result: self._changed(done))
 
-    def _ask_for_token(self, request: AddOperator | RotateToken, words: str, ends_link: bool) -> None:
+    def _ask_for_token(
+        self, request: administration.AddOperator | administration.RotateToken, words: str, ends_link: bool
+    ) -> None:
         self._ask(request, words, lambda result: self._show_token(result, ends_link))
 
     def _show_token(self, result: dict[str, Any], ends_link: bool) -> None:

@@ -20,7 +20,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages.operator_requests import Role
+from ...robot_bridge.core.messages.base import Role
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, role_in_words

@@ -20,11 +20,11 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages.administration import NewToken
-from ...robot_bridge.core.messages.validation import is_loopback
+from ...robot_bridge.core.messages.base import is_loopback
 from ..gateway_client.connection_status import ROLES
 from ..ui.dialogs import WrappingLabel
 from ..ui.language import tr
-from ..vendored import vendored_package
+from ..ui.vendored import vendored_package
 
 
 def until_in_words(expires_at: float | None) -> str:

@@ -21,23 +21,10 @@ from ..layers.site_transform import SiteToCanvas
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from ..ui.scheduling import UpdateScheduler
-from .messages import (
-    EMERGENCY,
-    NO_DRAFT,
-    SELECTION,
-    Level,
-    LinkNotices,
-    MessageBoard,
-    MessageEndings,
-    ReportNotices,
-    SuspensionNotices,
-    Topic,
-    draft_topic,
-    robot_topic,
-)
+from . import messages
+from .messages import Level, LinkNotices, MessageBoard, MessageEndings, ReportNotices, SuspensionNotices
 from .pending_command import ROUTE, PendingCommand, PendingCommandModel, Point, in_brief
-from .request_tracker import RequestSender, RequestTracker
-from .roads import RoadStatus
+from .request_tracker import RequestSender, RequestTracker, RoadStatus
 from .route_queries import RouteQuery, TargetRoutes
 from .sending import CommandSender
 from .validation import CommandChecks, ValidationRunner
@@ -164,7 +151,9 @@ class FleetController(QObject):
         self.orders.retried.connect(self.messages.end)
         self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
         self.selection.changed.connect(self._endings.selection_changed)
-        self.sending.complained.connect(lambda text: self.messages.post(text, Level.WARNING, NO_DRAFT))
+        self.sending.complained.connect(
+            lambda text: self.messages.post(text, Level.WARNING, messages.NO_DRAFT)
+        )
         self.orders.accepted.connect(self.remarked)
         self.orders.slow.connect(self.failed)
         self.orders.settled.connect(self.settled)
@@ -245,7 +234,7 @@ class FleetController(QObject):
         if robot.became == "another way":
             self.remarked.emit(robot.text)
         else:
-            self.messages.post(robot.text, Level.ERROR, robot_topic(robot.robot))
+            self.messages.post(robot.text, Level.ERROR, messages.robot_topic(robot.robot))
 
     def _forget_robots(self) -> None:
         self._rules.forget_targets()
@@ -295,7 +284,7 @@ class FleetController(QObject):
     def _found(self, draft: PendingCommand) -> None:
         if draft.findings.faults:
             text = in_brief(draft.findings.faults)
-            self.messages.post(text, Level.WARNING, draft_topic(draft.place))
+            self.messages.post(text, Level.WARNING, messages.draft_topic(draft.place))
 
     # --- what the operator does ---
 
@@ -303,7 +292,7 @@ class FleetController(QObject):
         """Ask every selected robot to give up its task."""
         if not self.selection.robots:
             text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
-            self.messages.post(text, Level.WARNING, SELECTION)
+            self.messages.post(text, Level.WARNING, messages.SELECTION)
         for robot in self.selection.robots:
             self._try(lambda robot=robot: self.orders.abort(robot))
         self._give_up_drafting()
@@ -357,9 +346,9 @@ class FleetController(QObject):
             return False
         return True
 
-    def report_failure(self, text: str, *topics: Topic) -> None:
+    def report_failure(self, text: str, *topics: messages.Topic) -> None:
         """Say that something was not done, until one of ``topics`` is over."""
         stop = self.state.emergency
         if stop is not None and stop.in_force and STOPPED_BY in text:
-            topics = (*topics, EMERGENCY)
+            topics = (*topics, messages.EMERGENCY)
         self.messages.post(text, Level.ERROR, *topics)

@@ -10,7 +10,7 @@ from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QResizeEvent
-from qgis.PyQt.QtWidgets import QLabel, QSizePolicy
+from qgis.PyQt.QtWidgets import QAbstractButton, QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
 from ...robot_bridge.core.messages.administration import LinkReport, Links, Suspension, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState
@@ -405,3 +405,40 @@ class MessageLabel(QLabel):
         # Qt counts the least height that was set before among what the text takes.
         self.setMinimumHeight(0)
         self.setFixedHeight(self.heightForWidth(width))
+
+
+BROAD_TEXT = 360
+"""Pixels of text beside which its buttons stand; where that leaves less, they stand beneath it."""
+
+
+class NoticeBody(QWidget):
+    """Asks for no more than the width of its buttons, and takes what there is.
+
+    QGIS's bar makes the whole window as wide as what hangs in it wishes to be.
+    """
+
+    def __init__(self, text: QLabel, buttons: Sequence[QAbstractButton], parent: QWidget):
+        super().__init__(parent)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self._foot = QWidget()
+        row = QHBoxLayout(self._foot)
+        row.setContentsMargins(0, 0, 0, 0)
+        for button in buttons:
+            row.addWidget(button)
+        self._parts = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._parts.setContentsMargins(0, 0, 0, 0)
+        self._parts.addWidget(text, 1)
+        self._parts.addWidget(self._foot, 0, Qt.AlignmentFlag.AlignRight)
+
+    def sizeHint(self) -> QSize:
+        return QSize(self._foot.sizeHint().width(), super().sizeHint().height())
+
+    def minimumSizeHint(self) -> QSize:
+        return self.sizeHint()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        is_broad = self.width() >= BROAD_TEXT + self._foot.sizeHint().width()
+        direction = QBoxLayout.Direction.LeftToRight if is_broad else QBoxLayout.Direction.TopToBottom
+        if direction != self._parts.direction():
+            self._parts.setDirection(direction)

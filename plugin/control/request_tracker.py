@@ -11,7 +11,7 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages.commands import AbortAll, Send
 from ...robot_bridge.core.messages.json_values import to_json
-from ...robot_bridge.core.messages.roads import ResolveConflict
+from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ...robot_bridge.core.messages.robots import Abort
 from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from ..gateway_client.connection import ConnectionThread
@@ -21,7 +21,7 @@ from ..gateway_client.protocol import REPEAT_WITHIN
 from ..ui.errors import NotSentError
 from ..ui.language import tr, tr_count
 from .messages import Topic, conflict_topic, request_topic
-from .pending_command import TARGETS, PendingCommand
+from .pending_command import TARGETS, PendingCommand, Point
 
 SLOW_AFTER = 5.0
 
@@ -313,3 +313,56 @@ def topics_of(method: str, params: dict[str, Any]) -> tuple[Topic, ...]:
     about = (robot, other, what, params.get("closure", ""), params.get("observation", ""))
     topics = (request_topic(method, about),)
     return (*topics, conflict_topic(robot, other)) if method == ResolveConflict.method else topics
+
+
+# --- Closed roads and conflicts: what is asked about them ---
+
+
+class RoadStatus(QObject):
+    """What the gateway reports of roads, and what the operator asks about them."""
+
+    def __init__(self, state: FleetState, requests: RequestTracker, parent: QObject | None = None):
+        super().__init__(parent)
+        self._state, self._requests = state, requests
+        self.closures_changed = state.closures_changed
+
+    @property
+    def closures(self) -> tuple[ClosureReport, ...]:
+        """The roads that are closed."""
+        return self._state.closures
+
+    def close(self, place: Point, reach: float, reason: str, seconds: float | None) -> str:
+        """Ask for the road at ``place`` to be closed and return the closure's id.
+
+        :raises NotSentError: when that cannot be sent.
+        """
+        closure = str(uuid.uuid4())
+        request = CloseRoad(closure, *place, reason or None, seconds, reach)
+        self._requests.submit(
+            self._order(closure, request),
+            tr(
+                "Closing the road at {x:.1f}, {y:.1f} m",
+                x=place[0],
+                y=place[1],
+            ),
+        )
+        return closure
+
+    def open(self, closure: str) -> None:
+        """Ask for a closed road to be opened; raises NotSentError when that cannot be sent."""
+        self._requests.submit(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
+
+    def resolve(self, robot: str, other: str) -> None:
+        """Ask for ``robot`` to give way to ``other``; raises NotSentError when that cannot be sent."""
+        request = ResolveConflict(robot, other)
+        self._requests.submit(
+            self._order(str(uuid.uuid4()), request),
+            tr(
+                "{robot} gives way to {other}",
+                robot=robot,
+                other=other,
+            ),
+        )
+
+    def _order(self, key: str, request: CloseRoad | OpenRoad | ResolveConflict) -> OperatorRequest:
+        return OperatorRequest(key, request.method, to_json(request), self._state.clock.steady())

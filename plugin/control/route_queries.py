@@ -18,11 +18,41 @@ from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from .pending_command import CONE, ROUTE, Approach, ApproachKind, PendingCommand, PendingCommandModel, Point
 from .request_tracker import SLOW_AFTER, RequestSender
-from .roads import SHORTEST, RoutePreferences
 from .validation import ValidationRunner
 
 UNANSWERED_AFTER = 3.0
 """Seconds after which a question that follows the mouse is taken to be lost, so that the next is asked."""
+
+
+@dataclass(frozen=True)
+class RoutePreferences:
+    """The shortest way along all roads, unless something else is wanted.
+
+    ``surfaces`` names those that may be used, none of them: all. ``least_width`` is what a road must have,
+    in metres, beside the width of the site's robots. ``avoid_reserved`` leaves out the roads on which other
+    robots' tasks lead.
+    """
+
+    fastest: bool = False
+    surfaces: tuple[str, ...] = ()
+    least_width: float = 0.0
+    avoid_reserved: bool = False
+
+    def in_words(self) -> list[str]:
+        """Return what is wanted beyond the shortest way, a text for each."""
+        words = []
+        if self.fastest:
+            words.append(tr("the fastest way"))
+        if self.avoid_reserved:
+            words.append(tr("off the roads of other robots"))
+        if self.surfaces:
+            words.append(tr("only on {surfaces}", surfaces=", ".join(self.surfaces)))
+        if self.least_width:
+            words.append(tr("roads at least {metres:g} m wide", metres=self.least_width))
+        return words
+
+
+SHORTEST = RoutePreferences()
 
 
 @dataclass(frozen=True)

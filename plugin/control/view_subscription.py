@@ -11,16 +11,10 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.messages import positions
+from ...robot_bridge.core.messages.base import is_robot_name
 from ...robot_bridge.core.messages.json_values import to_json
-from ...robot_bridge.core.messages.positions import (
-    MOST_ALWAYS,
-    AlarmLimits,
-    FindRobots,
-    PositionForm,
-    Subscribe,
-    View,
-)
-from ...robot_bridge.core.messages.validation import is_robot_name
+from ...robot_bridge.core.messages.positions import AlarmLimits, FindRobots, PositionForm, Subscribe, View
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..gateway_client.protocol import VIEWS_FROM
@@ -136,7 +130,7 @@ class ViewSubscription(QObject):
         wanted = (*drafted, *self._selected, *self._found, *self._alarmed)
         # A gateway refuses the whole view for a name that can be no robot's.
         always = dict.fromkeys(filter(is_robot_name, wanted))
-        told = View(canvas, list(always)[:MOST_ALWAYS], alarms=self._limits)
+        told = View(canvas, list(always)[: positions.MOST_ALWAYS], alarms=self._limits)
         if self._asked is None or not _will_do(self._asked.bounds, canvas):
             return replace(told, bounds=_grown(canvas))
         renewed = replace(told, bounds=self._asked.bounds)

@@ -13,18 +13,11 @@ from ...robot_bridge.core.clock import Clock, steady_time
 from ...robot_bridge.core.gateway_addresses import DESK_PACE, FleetGateways, GatewayAddresses
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
-from .connection_status import (
-    TOO_LARGE,
-    ConnectionPhase,
-    ConnectionStatus,
-    OperatorCredentials,
-    check_address,
-    explain,
-    place_of,
-)
+from ..ui.vendored import websocket_library
+from . import connection_status
+from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
-from .websocket_library import websocket_library
 
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
@@ -114,9 +107,9 @@ class GatewayClient:
         except AddressError as error:
             return GatewayLinkError(str(error), final=True, wants_token=True)
         except Exception as error:
-            if getattr(getattr(error, "rcvd", None), "code", None) == TOO_LARGE:
+            if getattr(getattr(error, "rcvd", None), "code", None) == connection_status.TOO_LARGE:
                 self._protocol.hand_back_largest()
-            explained = explain(error, self._url, self._library.exceptions)
+            explained = connection_status.explain(error, self._url, self._library.exceptions)
             if explained is None:
                 raise
             return explained
@@ -194,7 +187,7 @@ class GatewayClient:
         if self._addresses.is_given:
             return ""
         given, name = self._addresses.given, self._protocol.names.get
-        here, there = place_of(self._url), name(given) or place_of(given)
+        here, there = connection_status.place_of(self._url), name(given) or connection_status.place_of(given)
         here = f"{own} ({here})" if (own := name(self._url)) else here
         if given in self._refusals:
             return tr("at {gateway}; {given} refuses this desk", gateway=here, given=there)
@@ -273,7 +266,7 @@ class ConnectionThread(QObject):
         :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
         :raises LibraryMissingError: when there is no WebSocket library.
         """
-        url = check_address(url)
+        url = connection_status.check_address(url)
         credentials = credentials or OperatorCredentials()
         credentials.check(url)
         library = websocket_library()

@@ -10,8 +10,7 @@ from types import ModuleType
 from typing import Any
 from urllib.parse import urlsplit
 
-from ...robot_bridge.core.messages.operator_requests import Role
-from ...robot_bridge.core.messages.validation import is_loopback
+from ...robot_bridge.core.messages.base import Role, is_loopback
 from ..ui.errors import AddressError, GatewayLinkError
 from ..ui.language import tr
 

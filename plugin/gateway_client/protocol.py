@@ -12,12 +12,12 @@ from ...robot_bridge.core.gateway_addresses import FleetGateways, GatewayAddress
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
 from ...robot_bridge.core.messages import json_values, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
+from ...robot_bridge.core.messages.base import LONGEST_OPERATOR, one_line
 from ...robot_bridge.core.messages.commands import GetCommands
 from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe, View
 from ...robot_bridge.core.messages.queues import GetQueue
 from ...robot_bridge.core.messages.roads import GetClosures
-from ...robot_bridge.core.messages.validation import LONGEST_OPERATOR, one_line
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in

@@ -8,15 +8,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
+from ...robot_bridge.core.messages import positions
 from ...robot_bridge.core.messages.json_values import fleet_view, robot_report
-from ...robot_bridge.core.messages.positions import (
-    POSITION_ALWAYS,
-    POSITION_FLAGS,
-    POSITION_NUMBERS,
-    POSITION_TEXTS,
-    FleetView,
-    RobotReport,
-)
+from ...robot_bridge.core.messages.positions import FleetView, RobotReport
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 
@@ -25,8 +19,8 @@ from ...robot_bridge.core.position_frame import split_frame
 # somebody looks at.
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
-WORDED = tuple(name for name in POSITION_TEXTS if name != "state")
-COLUMNS = (*POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
+WORDED = tuple(name for name in positions.POSITION_TEXTS if name != "state")
+COLUMNS = (*positions.POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
 """``state`` is an index into :data:`STATES`, ``received`` is on the monotonic clock, those of :data:`WORDED`
 are indices into the words of the table; NaN is what is not known."""
 AT = {name: column for column, name in enumerate(COLUMNS)}
@@ -240,7 +234,7 @@ def table_from_rows(
         raise KeyError("link or age of a robot")
     numbers = np.empty((len(COLUMNS), len(names)))
     words: dict[str | None, float] = {None: np.nan}
-    for name in POSITION_NUMBERS:
+    for name in positions.POSITION_NUMBERS:
         numbers[AT[name]] = _numbers_of(name, names, [values.get(name) for values in rows])
     for name in WORDED:
         numbers[AT[name]] = _places_of(name, names, [values.get(name) for values in rows], words)
@@ -252,11 +246,11 @@ def table_from_rows(
 
 
 def _numbers_of(name: str, names: list[str], values: list[Any]) -> npt.NDArray[np.float64]:
-    column = _as_numbers(values, may_miss=name not in POSITION_ALWAYS)
+    column = _as_numbers(values, may_miss=name not in positions.POSITION_ALWAYS)
     if column is not None:
         return column
     for robot, value in zip(names, values, strict=True):
-        if _as_numbers([value], may_miss=name not in POSITION_ALWAYS) is None:
+        if _as_numbers([value], may_miss=name not in positions.POSITION_ALWAYS) is None:
             raise ValueError(f"{name} of robot {robot} is {value!r}, not a finite number")
     raise AssertionError("each is a number by itself")
 
@@ -278,7 +272,7 @@ def _as_numbers(values: list[Any], *, may_miss: bool) -> npt.NDArray[np.float64]
 def _places_of(name: str, names: list[str], values: list[Any], words: dict[str | None, float]) -> list[float]:
     """Return the place of each text among ``words``, which grow by those that are new."""
     for robot, value in zip(names, values, strict=True):
-        if not isinstance(value, str) and (value is not None or name in POSITION_ALWAYS):
+        if not isinstance(value, str) and (value is not None or name in positions.POSITION_ALWAYS):
             raise ValueError(f"{name} of robot {robot} is {value!r}, not a text")
     # None is among them as well, so that a new word's place is one less than how many there are.
     return [words.setdefault(value, len(words) - 1) for value in values]
@@ -291,7 +285,7 @@ def _state_code(state: Any) -> int:
         raise ValueError(f"{state!r} is not a robot's state; known are {', '.join(_STATE_CODES)}") from None
 
 
-_KNOWN = {*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS}
+_KNOWN = {*positions.POSITION_NUMBERS, *positions.POSITION_FLAGS, *positions.POSITION_TEXTS}
 
 
 def table_from_frame(frame: bytes, received: float) -> RobotTable:
@@ -301,7 +295,7 @@ def table_from_frame(frame: bytes, received: float) -> RobotTable:
     :raises KeyError: when the head lacks something.
     """
     params, robots, columns, words, table = split_frame(frame)
-    missing = [name for name in POSITION_ALWAYS if name not in columns]
+    missing = [name for name in positions.POSITION_ALWAYS if name not in columns]
     if missing:
         raise KeyError(missing[0])
     numbers = np.full((len(COLUMNS), len(robots)), np.nan)
@@ -323,9 +317,9 @@ def _states(words: list[str]) -> list[float]:
 def _check_column(name: str, column: npt.NDArray[np.float64], robots: list[str], words: int) -> None:
     """Raise ValueError unless everything in ``column`` can be what it has to be."""
     wrong = np.isinf(column)
-    if name in POSITION_ALWAYS:
+    if name in positions.POSITION_ALWAYS:
         wrong |= np.isnan(column)
-    if name in POSITION_TEXTS:
+    if name in positions.POSITION_TEXTS:
         # What is NaN compares false.
         wrong |= (column < 0) | (column >= words) | (column > np.floor(column))
     if wrong.any():

@@ -11,16 +11,16 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsAbstractGeometry, QgsFeature, QgsFeedback, QgsGeometry, QgsPointXY
 
-from ...robot_bridge.core.roads.centrelines import (
+from ...robot_bridge.core.roads.network import (
     BACKWARD,
     BOTH,
     DEFAULT_SPEED,
     DRAWN,
     FORWARD,
     GENERATED,
+    Network,
     Surface,
 )
-from ...robot_bridge.core.roads.network import Network
 from ...robot_bridge.core.sites.geopackage import Area, Centreline
 from ..ui.language import tr
 from .geometry import (

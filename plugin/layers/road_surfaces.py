@@ -22,7 +22,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QObject, QThread, pyqtSignal
 
-from ...robot_bridge.core.roads.centrelines import Surface
+from ...robot_bridge.core.roads.network import Surface
 from ...robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...robot_bridge.core.sites.frame import utm_zone_of
 from ..ui.errors import FleetError, SiteCrsError

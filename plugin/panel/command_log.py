@@ -24,7 +24,7 @@ from ..gateway_client import command_cache
 from ..gateway_client.command_cache import command_in_words, place_of, requested_at
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import COMMAND_STATES, longest_word, name_order
-from ..settings.preferences import export_path
+from ..settings.profile import export_path
 from ..ui.dialogs import file_to_write
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count

@@ -29,8 +29,8 @@ from ..gateway_client.connection_status import (
     ConnectionStatus,
     OperatorCredentials,
 )
-from ..settings.connections import Connections, GatewayConnection, TokenStore
 from ..settings.connections_widget import ConnectionDialog, ConnectionsDialog
+from ..settings.profile import Connections, GatewayConnection, TokenStore
 from ..ui.actions import ICONS
 from ..ui.dialogs import file_field
 from ..ui.language import tr

@@ -22,7 +22,7 @@ from ...robot_bridge.core.messages.records import PlacementReport
 from ..control.fleet_controller import FleetController
 from ..control.messages import file_topic
 from ..layers.live_layers import MARK, live_layers
-from ..settings.preferences import export_path
+from ..settings.profile import export_path
 from ..ui.dialogs import file_to_write, push_button
 from ..ui.errors import FleetError
 from ..ui.language import time_of_day, tr, tr_count

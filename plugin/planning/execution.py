@@ -11,9 +11,9 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.assignment.plan import ConePlan, document_of
 from ...robot_bridge.core.messages import plans
+from ...robot_bridge.core.messages.base import MessageError
 from ...robot_bridge.core.messages.queues import GetQueue, QueueState, TaskState
 from ...robot_bridge.core.messages.records import MOST_PLACEMENTS, GetPlacements
-from ...robot_bridge.core.messages.validation import MessageError
 from ..control.fleet_controller import STOPPED_BY, FleetController
 from ..control.messages import PLAN_SENT, Level, Topic, plan_topic
 from ..control.pending_command import in_brief

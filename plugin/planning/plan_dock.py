@@ -33,20 +33,13 @@ from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import first_of, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
+from . import plan_texts
 from .as_placed import AsPlacedPage
 from .execution import PlanExecution, no_plans_here
 from .forms import RobotsForm, SettingsForm
 from .plan_editor import CollectionPlanner, PlanEditor
 from .plan_settings import PlanSettings, keep_settings, read_settings
-from .plan_texts import (
-    ReportedProgress,
-    before_sending,
-    method_text,
-    plan_summary,
-    plan_title,
-    problem_in_words,
-    stop_rows,
-)
+from .plan_texts import ReportedProgress
 from .plan_views import PlanLayers, PlanTree
 from .proposal import closed_in_words, meeting_in_words
 
@@ -164,7 +157,7 @@ class ExecutionBar(QWidget):
         self.by_itself.setEnabled(report is None)
         text, shown = self._in_words(report), driven.shown_plan
         self.text.setText(text)
-        self.text.setToolTip("\n".join([text, *([] if shown is None else [method_text(shown)])]))
+        self.text.setToolTip("\n".join([text, *([] if shown is None else [plan_texts.method_text(shown)])]))
         self.trouble.setText(self._wrong(report))
         self.trouble.set_text_style(WRONG_STYLE if self.trouble.text() else "")
 
@@ -199,11 +192,13 @@ class ExecutionBar(QWidget):
             draft = self._drafts.draft
             if draft is None:
                 return tr("No plan. Choose cones and robots, then Preview or Solve.")
-            return tr("Not sent yet: {summary}", summary=plan_summary(draft.plan))
+            return tr("Not sent yet: {summary}", summary=plan_texts.plan_summary(draft.plan))
         if report.state is PlanState.REPLANNING:
             return tr("What is left is being planned …")
         if report.state is PlanState.PROPOSED and driven.known.proposal is not None:
-            return tr("New plan, not sent yet: {summary}", summary=plan_summary(driven.known.proposal))
+            return tr(
+                "New plan, not sent yet: {summary}", summary=plan_texts.plan_summary(driven.known.proposal)
+            )
         count, done = report.cones, report.done
         if report.state is PlanState.FINISHED:
             return tr_count(count, "Done: {done} of 1 cone", "Done: {done} of %n cones", done=done)
@@ -227,7 +222,7 @@ class ExecutionBar(QWidget):
             )
         if report.state is PlanState.PROPOSED:
             return "; ".join(_against(report))
-        return problem_in_words(report.problems)
+        return plan_texts.problem_in_words(report.problems)
 
 
 def _against(report: PlanReport) -> list[str]:
@@ -326,7 +321,7 @@ class PlanDock(ActionDock):
         draft = self.drafts.draft
         if draft is None:
             return
-        text = before_sending(self._desk, draft)
+        text = plan_texts.before_sending(self._desk, draft)
         send = "fleet_plan_question_send", tr("Send")
         box = confirm(
             self, "fleet_plan_question", text, send, tr("Do not send"), lambda: self._try(self.driven.send)
@@ -356,7 +351,7 @@ class PlanDock(ActionDock):
         driven = self.driven
         known, shown = driven.known, driven.shown_plan
         progress = None if known is None else ReportedProgress(known.report, self._desk.state.placed_cones)
-        rows = {} if shown is None else stop_rows(shown, progress)
+        rows = {} if shown is None else plan_texts.stop_rows(shown, progress)
         began_at = None if progress is None else progress.began_at
         self.tree.show_plan(shown, rows, began_at, editable=known is None and not driven.busy)
         self.layers.show(shown, rows)
@@ -375,7 +370,7 @@ class PlanDock(ActionDock):
     def _show_choice(self) -> None:
         """List the plans that can be shown, with the one that is."""
         entries = [(tr("New plan"), None)]
-        entries += [(plan_title(one.report), one.plan) for one in self.driven.choice]
+        entries += [(plan_texts.plan_title(one.report), one.plan) for one in self.driven.choice]
         box = self.which
         if entries != [(box.itemText(k), box.itemData(k)) for k in range(box.count())]:
             box.clear()

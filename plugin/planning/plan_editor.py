@@ -18,10 +18,10 @@ from ...robot_bridge.core.assignment.plan import ConePlan
 from ...robot_bridge.core.assignment.progress import ConeFacts
 from ...robot_bridge.core.assignment.solver import AUTOMATIC, PREVIEW, Objective, assign
 from ...robot_bridge.core.errors import AssignmentError, MissingStoreError
+from ...robot_bridge.core.messages.base import MessageError
 from ...robot_bridge.core.messages.queues import QueueTask, TaskKind
 from ...robot_bridge.core.messages.records import CollectLayout
 from ...robot_bridge.core.messages.roads import ClosureReport
-from ...robot_bridge.core.messages.validation import MessageError
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult

@@ -30,9 +30,8 @@ from ...robot_bridge.core.assignment.plan import ConePlan
 from ...robot_bridge.core.assignment.progress import ClosedWay, ConeFacts
 from ...robot_bridge.core.errors import AssignmentCancelledError, AssignmentError, RoadsError
 from ...robot_bridge.core.messages.roads import ClosureReport
-from ...robot_bridge.core.roads.centrelines import centrelines
 from ...robot_bridge.core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
-from ...robot_bridge.core.roads.network import build_network
+from ...robot_bridge.core.roads.network import build_network, centrelines
 from ...robot_bridge.core.roads.routes import Router, stretch
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ...robot_bridge.core.sites.geopackage import road_lines

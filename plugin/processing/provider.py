@@ -12,11 +12,10 @@ from .algorithms.export_navigation_map import ExportNavigationMap
 from .algorithms.export_road_network import ExportRoadNetwork
 from .algorithms.export_robot_map import ExportRobotMap
 from .algorithms.export_robot_map_tiles import ExportRobotMapTiles
-from .algorithms.find_route import FindRoute
 from .algorithms.import_navigation_map import ImportNavigationMap
 from .algorithms.publish_site import PublishSite
 from .algorithms.read_robot_maps import CheckRobotMap, LoadRobotMap
-from .algorithms.road_network import BuildRoadNetwork, CheckRoadNetwork
+from .algorithms.road_network import BuildRoadNetwork, CheckRoadNetwork, FindRoute
 from .algorithms.road_surfaces import BuildRoadSurfaces, SurfaceAtPoint
 from .algorithms.trajectories import Trajectories
 

@@ -25,27 +25,15 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.files import replacement
+from ..gateway_client import connection_status
 from ..gateway_client.connection import ConnectionThread
-from ..gateway_client.connection_status import (
-    DEFAULT_URL,
-    ConnectionPhase,
-    ConnectionStatus,
-    OperatorCredentials,
-)
+from ..gateway_client.connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from ..help import CONNECTIONS, show_help
 from ..ui.dialogs import file_field, file_to_read, file_to_write
 from ..ui.errors import FleetError
 from ..ui.language import tr, tr_count
-from .connections import (
-    TITLE,
-    BadConnectionError,
-    Connections,
-    GatewayConnection,
-    TokenStore,
-    connections_in,
-    connections_text,
-)
-from .preferences import export_path, exports_folder
+from . import profile
+from .profile import BadConnectionError, Connections, GatewayConnection, TokenStore
 
 GOOD, BAD = "✔", "✘"
 
@@ -139,7 +127,7 @@ class ConnectionDialog(QDialog):
         self.setWindowTitle(tr("Edit connection") if connection.name else tr("New connection"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self._name = _line("fleet_connection_name", connection.name, tr("such as the site's name"))
-        self._url = _line("fleet_connection_url", connection.url, DEFAULT_URL)
+        self._url = _line("fleet_connection_url", connection.url, connection_status.DEFAULT_URL)
         self._operator = _line(
             "fleet_connection_operator", connection.operator, tr("who you are, in every log")
         )
@@ -191,7 +179,7 @@ class ConnectionDialog(QDialog):
 
     def _with_token(self, made: GatewayConnection, token: str) -> GatewayConnection:
         """Keep a token under the connection's name: several operators may have one for the same gateway."""
-        name = f"{TITLE}: {made.name}"
+        name = f"{profile.TITLE}: {made.name}"
         auth = self._store.write(self._store.id_of(name), name, made.url, token, made.operator)
         return replace(made, auth=auth)
 
@@ -315,7 +303,7 @@ class ConnectionsWidget(QWidget):
 
     def new(self) -> None:
         """Ask for a new connection."""
-        self._ask(GatewayConnection("", DEFAULT_URL))
+        self._ask(GatewayConnection("", connection_status.DEFAULT_URL))
 
     def edit(self) -> None:
         """Ask how the selected connection is to be."""
@@ -354,7 +342,7 @@ class ConnectionsWidget(QWidget):
     def read_file(self, file: str) -> None:
         """Keep the connections in ``file`` as well; of one name those in the file count."""
         try:
-            found = connections_in(Path(file).read_text(encoding="utf-8"), file)
+            found = profile.connections_in(Path(file).read_text(encoding="utf-8"), file)
         except (OSError, UnicodeDecodeError) as error:
             self._verdict.show_verdict(False, tr("{file} cannot be read: {error}", file=file, error=error))
             return
@@ -381,7 +369,7 @@ class ConnectionsWidget(QWidget):
         chosen = [one for one in self._connections.all() if one.name in names]
         try:
             with replacement(Path(file)) as made:
-                made.write_text(connections_text(chosen), encoding="utf-8")
+                made.write_text(profile.connections_text(chosen), encoding="utf-8")
         except OSError as error:
             self._verdict.show_verdict(False, tr("{file} cannot be written: {error}", file=file, error=error))
             return
@@ -403,12 +391,12 @@ class ConnectionsWidget(QWidget):
         dialog.open()
 
     def _choose_import(self) -> None:
-        file = file_to_read(self, tr("Import connections"), exports_folder(), FILTER)
+        file = file_to_read(self, tr("Import connections"), profile.exports_folder(), FILTER)
         if file:
             self.read_file(file)
 
     def _choose_export(self) -> None:
-        file = file_to_write(self, tr("Export connections"), export_path("connections.json"), FILTER)
+        file = file_to_write(self, tr("Export connections"), profile.export_path("connections.json"), FILTER)
         if file:
             self.write_file(QgsFileUtils.ensureFileNameHasExtension(file, ["json"]))
 

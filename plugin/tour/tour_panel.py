@@ -25,7 +25,7 @@ from qgis.PyQt.QtWidgets import (
 from ..control.messages import MessageLabel
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..panel.window import FleetWindow
-from ..settings.connections import GatewayConnection
+from ..settings.profile import GatewayConnection
 from ..ui.dialogs import push_button
 from ..ui.errors import FleetError
 from ..ui.glyphs import painting

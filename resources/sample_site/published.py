@@ -9,7 +9,7 @@ import numpy as np
 import shapely
 from plan import CRS, HEIGHT, ORIGIN, SITE_ID, SITE_NAME, WIDTH, Item, Plan
 
-from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.network import Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.robotmap.parametric_shapes import ramp_normal

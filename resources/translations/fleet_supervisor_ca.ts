@@ -267,77 +267,12 @@
             <translation>El rol de {operator} és {role}. Un altre rol val a partir de la petició següent, també en connexions obertes.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/recordings.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source> s</source>
             <translation> s</translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Link</source>
-            <translation>E&amp;nllaç</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Paused</source>
-            <translation>En &amp;pausa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Speed</source>
-            <translation>&amp;Velocitat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>From the &amp;beginning again at its end</source>
-            <translation>Torna a &amp;començar quan acaba</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>No link plays a recording at this gateway.</source>
-            <translation>Cap enllaç d'aquesta passarel·la no reprodueix un enregistrament.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Pl&amp;ace</source>
-            <translation>&amp;Lloc</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recording of {link}</source>
-            <translation>Enregistrament de {link}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings on the map</source>
-            <translation>Enregistraments al mapa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings that links play on the map: pause, speed, place</source>
-            <translation>Enregistraments que els enllaços reprodueixen al mapa: pausa, velocitat, lloc</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings…</source>
-            <translation>Enregistraments…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Seconds after the beginning</source>
-            <translation>Segons des del començament</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>The desk is not connected to a gateway. Press Connect first.</source>
-            <translation>La consola no està connectada a cap passarel·la. Premeu abans Connecta.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>{file}: {place} s of {length} s</source>
-            <translation>{file}: {place} s de {length} s</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were not removed: {why}</source>
             <translation>
                 <numerusform>%n robot no s'ha eliminat: {why}</numerusform>
@@ -345,91 +280,15 @@
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were removed: {names}</source>
             <translation>
                 <numerusform>%n robot eliminat: {names}</numerusform>
                 <numerusform>%n robots eliminats: {names}</numerusform>
             </translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>&amp;Robots</source>
-            <translation>&amp;Robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot is lost or offline.</source>
-            <translation>Cap robot no és perdut ni fora de línia.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot was removed: {why}</source>
-            <translation>No s'ha eliminat cap robot: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
-            <translation>Això no n'atura cap. Al que torni se li diu que avorti el que encara fa, i és un robot nou.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Others cannot be chosen here.</source>
-            <translation>Els altres no es poden triar aquí.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove</source>
-            <translation>Treu</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots that are gone?</source>
-            <translation>Voleu eliminar els robots que ja no hi són?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots…</source>
-            <translation>Elimina robots…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove {names}</source>
-            <translation>Elimina {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
-            <translation>Treu de totes les consoles els robots perduts o fora de línia; cal un supervisor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
-            <translation>Desapareixen de totes les consoles. El que hi ha a les seves cues s'elimina, les ordres que no han fet fallen; el que han fet continua desat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Why, for the log</source>
-            <translation>Per què, per al registre</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>all %n that are lost or offline</source>
-            <translation>
-                <numerusform>l'únic perdut o fora de línia (%n)</numerusform>
-                <numerusform>els %n perduts o fora de línia</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>the %n selected ones</source>
-            <translation>
-                <numerusform>el seleccionat (%n)</numerusform>
-                <numerusform>els %n seleccionats</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n sites</source>
             <translation>
                 <numerusform>%n recinte</numerusform>
@@ -437,87 +296,228 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Link</source>
+            <translation>E&amp;nllaç</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Paused</source>
+            <translation>En &amp;pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>&amp;Serve this site…</source>
             <translation>&amp;Serveix aquest recinte…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Speed</source>
+            <translation>&amp;Velocitat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
             <translation>Cada robot rep el mapa de {site} ({folder}), cada consola el mostra, i se serveix fins que se'n triï un altre, també si la passarel·la es torna a engegar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Folder</source>
             <translation>Carpeta</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>Torna a &amp;començar quan acaba</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Cap enllaç d'aquesta passarel·la no reprodueix un enregistrament.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Cap robot no és perdut ni fora de línia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
             <translation>Cap robot no s'atura: les ordres i les cues continuen en els mateixos metres, siguin quines siguin les vies i zones prohibides que el recinte nou hi té. Atureu abans els robots on això importi.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>No s'ha eliminat cap robot: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Això no n'atura cap. Al que torni se li diu que avorti el que encara fa, i és un robot nou.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Els altres no es poden triar aquí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recording of {link}</source>
+            <translation>Enregistrament de {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings on the map</source>
+            <translation>Enregistraments al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Enregistraments que els enllaços reprodueixen al mapa: pausa, velocitat, lloc</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings…</source>
+            <translation>Enregistraments…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove</source>
+            <translation>Treu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>Voleu eliminar els robots que ja no hi són?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots…</source>
+            <translation>Elimina robots…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove {names}</source>
+            <translation>Elimina {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Segons des del començament</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve this site</source>
             <translation>Serveix aquest recinte</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}</source>
             <translation>Servir {site}</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}?</source>
             <translation>Servir {site}?</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site</source>
             <translation>Recinte</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Sites</source>
             <translation>Recintes</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site…</source>
             <translation>Recinte…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>State</source>
             <translation>Estat</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Treu de totes les consoles els robots perduts o fora de línia; cal un supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>La consola no està connectada a cap passarel·la. Premeu abans Connecta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Desapareixen de totes les consoles. El que hi ha a les seves cues s'elimina, les ordres que no han fet fallen; el que han fet continua desat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Version</source>
             <translation>Versió</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which of the published sites the gateway serves; takes a supervisor</source>
             <translation>Quin dels recintes publicats serveix la passarel·la; cal un supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which site is served</source>
             <translation>Quin recinte se serveix</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Why, for the log</source>
+            <translation>Per què, per al registre</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>l'únic perdut o fora de línia (%n)</numerusform>
+                <numerusform>els %n perduts o fora de línia</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>can be chosen</source>
             <translation>es pot triar</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>served now</source>
             <translation>se serveix ara</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>el seleccionat (%n)</numerusform>
+                <numerusform>els %n seleccionats</numerusform>
+            </translation>
+        </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s de {length} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>{site} is served now.</source>
             <translation>Ara se serveix {site}.</translation>
         </message>
@@ -1356,6 +1356,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Tancament de la via a {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA D'EMERGÈNCIA</translation>
         </message>
@@ -1363,6 +1368,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA D'EMERGÈNCIA encara NO s'ha enviat: l'enllaç està tallat. S'envia quan torni; feu servir ara les parades d'emergència dels mateixos robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>Opening the road</source>
+            <translation>Obertura de la via</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1386,6 +1396,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} cedeix el pas a {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words} was NOT sent: {error}</source>
             <translation>{words}: NO s'ha enviat: {error}</translation>
         </message>
@@ -1406,96 +1421,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: la passarel·la no ha respost des de fa {seconds:g} s, així que potser no ha arribat. Es repeteix quan torna l'enllaç; mai no es fa dues vegades.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
-            <translation>Tancament de la via a {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Evita les vies per on s'han enviat altres robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Lead ways so</source>
-            <translation>Porta-ho així</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Opening the road</source>
-            <translation>Obertura de la via</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Surfaces</source>
-            <translation>Superfícies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Això val per a cada tram que es traci d'ara endavant, fins que es tanqui el QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Way</source>
-            <translation>Recorregut</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Ways on roads</source>
-            <translation>Camins per vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Width</source>
-            <translation>Amplada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>totes, o com ara: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>as wide as the robots are</source>
-            <translation>tan ampla com els robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>off the roads of other robots</source>
-            <translation>fora de les vies d'altres robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>only on {surfaces}</source>
-            <translation>només per {surfaces}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>roads at least {metres:g} m wide</source>
-            <translation>vies d'almenys {metres:g} m d'amplada</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest</source>
-            <translation>el més ràpid</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest way</source>
-            <translation>el camí més ràpid</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the shortest</source>
-            <translation>el més curt</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>{robot} gives way to {other}</source>
-            <translation>{robot} cedeix el pas a {other}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/robot_checks.py" />
@@ -1584,8 +1509,28 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
+            <source>off the roads of other robots</source>
+            <translation>fora de les vies d'altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>only on {surfaces}</source>
+            <translation>només per {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>vies d'almenys {metres:g} m d'amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
             <source>surface not known</source>
             <translation>superfície desconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>the fastest way</source>
+            <translation>el camí més ràpid</translation>
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
@@ -1668,67 +1613,67 @@
             <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;funció distance_to_robot&lt;/h3&gt; &lt;p&gt;Retorna a quina distància és un robot d'una entitat o d'una geometria, en metres del recinte.&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional; sense, la de l'entitat que es mira&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el SRC de la geometria, com ara 'EPSG:4326'; sense, el de la capa l'entitat de la qual es mira, o si no el del projecte&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; cert per a les entitats a prop del robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;La distància es mesura al pla del SRC del recinte; dins d'un polígon és 0. NULL si no se sap on és el robot, i mentre aquest QGIS no està connectat a cap passarel·la. Els llocs tenen com a màxim mig segon; una capa els mostra quan es dibuixa.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;funció road_surface&lt;/h3&gt; &lt;p&gt;Retorna la classe de la superfície de via en un lloc, com ara 'asphalt', o NULL on no n'hi ha.&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el lloc; x és l'est o la longitud, sigui quin sigui el SRC&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el nom o l'identificador d'una capa d'àrees; sense, totes les capes del projecte amb el paper de superfície de via&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el SRC del lloc, com ara 'EPSG:4326'; sense, el de la capa l'entitat de la qual es mira, o si no el del projecte&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; cert fora de la via&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;Un lloc a la vora és a la superfície. On les superfícies se superposen compta abans una de dibuixada que una de generada, i després la més petita abans que la més gran.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;funció robot_age&lt;/h3&gt; &lt;p&gt;Retorna els segons des de l'últim missatge d'un robot, segons el rellotge d'aquest ordinador.&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; cert quan fa més de 10 segons que calla&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;funció robot_battery&lt;/h3&gt; &lt;p&gt;Retorna com de plena és la bateria d'un robot, de 0 a 1.&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;funció robot_state&lt;/h3&gt; &lt;p&gt;Retorna fins a quin punt es pot confiar en el que se sap d'un robot: 'fresh' (actual), 'stale' (desactualitzat), 'lost' (perdut) o 'offline' (fora de línia).&lt;/p&gt; &lt;h4&gt;Sintaxi&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el seu nom, com al tauler Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Exemples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; cert per als robots que callen&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL si la passarel·la no ha parlat del robot, i mentre aquest QGIS no està connectat a cap. El que no se sap d'un robot també és NULL. Els valors tenen com a màxim mig segon; una capa els mostra quan es dibuixa.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
             <translation>crs {given!r} no és cap SRC que el QGIS conegui; escriviu un codi com ara 'EPSG:32633'</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
             <translation>cap capa del projecte no té el paper {role}; poseu-lo a Connectors &gt; Fleet Supervisor &gt; Papers de les capes, o anomeneu una capa com a tercer argument</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no vector layer of the project has the name or id {layer!r}</source>
             <translation>cap capa vectorial del projecte no té el nom o l'identificador {layer!r}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: the geometry has no place in {crs}</source>
             <translation>{function}: la geometria no té lloc a {crs}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
             <translation>{function}: x és {x!r} i y és {y!r}; doneu dos nombres</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
             <translation>{function}: {geometry!r} no és cap geometria; doneu-ne una, o una entitat que en tingui</translation>
         </message>
@@ -2249,16 +2194,6 @@
             <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>Falta el paquet de Python websockets, que necessita la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que el conté, o executeu 'python3 -m pip install websockets' amb el Python de QGIS, i reinicieu QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>El paquet de Python websockets {version} a {path} és massa antic per a la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que en conté un de més nou, o executeu 'python3 -m pip install "websockets&gt;={oldest}"' amb el Python de QGIS, i reinicieu QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/help.py" />
@@ -3421,29 +3356,6 @@
             <translation>fins a</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> Sense paper, perquè el tenen altres capes del projecte: {layers}. Connectors &gt; Fleet Supervisor &gt; Papers de les capes ho canvia.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>The site in {folder} is in the project already: {names}.</source>
-            <translation>El recinte de {folder} ja és al projecte: {names}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
-            <translation>Aquest projecte no és el del recinte {site}: les seves variables tenen un altre origen, SRC o rotació. Les comprovacions i les alarmes segueixen les capes d’aquest projecte: obriu el del recinte.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/site_project.py" />
-            <source>{site}: %n layers loaded.</source>
-            <translation>
-                <numerusform>{site}: %n capa carregada.</numerusform>
-                <numerusform>{site}: %n capes carregades.</numerusform>
-            </translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Close road</source>
             <translation>Tanca via</translation>
@@ -3585,13 +3497,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evita les vies per on s'han enviat altres robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Lead ways so</source>
+            <translation>Porta-ho així</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Surfaces</source>
+            <translation>Superfícies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
             <translation>La ruta del mapa és per a {robot}, però el seleccionat és {selected}. Envieu-la (Retorn) o cancel·leu-la (Esc) primer, o torneu a seleccionar {robot}.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Això val per a cada tram que es traci d'ara endavant, fins que es tanqui el QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Aquest és el primer vèrtex: se'n posa un altre davant d'un que ve després.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Way</source>
+            <translation>Recorregut</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Ways on roads</source>
+            <translation>Camins per vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Width</source>
+            <translation>Amplada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>totes, o com ara: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ampla com els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the fastest</source>
+            <translation>el més ràpid</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the shortest</source>
+            <translation>el més curt</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3785,8 +3752,33 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>&amp;Carpeta dels fitxers que s'escriuen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>&amp;Mida dels robots al mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>1 is as they come</source>
+            <translation>1 és la mida original</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Alarms</source>
             <translation>Alarmes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>Les fletxes mostren com està cada robot i es mouen amb cada posició. La capa mostra el que diu el seu estil, tan sovint com es torna a escriure; mentre no és al mapa hi ha fletxes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Com a màxim; a partir de la propera connexió. Menys descarreguen una xarxa lenta</translation>
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
@@ -3800,16 +3792,43 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>La capa de robots es torna a escriure &amp;cada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Map and files</source>
             <translation>Mapa i fitxers</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/panel/alarms/alarm_bar.py" />
-            <source>%n alarms</source>
-            <translation>
-                <numerusform>%n alarma</numerusform>
-                <numerusform>%n alarmes</numerusform>
-            </translation>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Posicions demanades, &amp;vegades per segon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Qui &amp;dibuixa els robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>La capa Robots (en directe): taula d'atributs, etiquetes, expressions. El mapa en viu va per una altra banda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>la capa Robots (en directe), amb el seu estil</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the live map: arrows</source>
+            <translation>el mapa en viu: fletxes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>your documents</source>
+            <translation>els vostres documents</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
@@ -4183,6 +4202,14 @@
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>{robot} is outside the site{where}</source>
             <translation>{robot} és fora del recinte{where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/alarms/watch.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n alarma</numerusform>
+                <numerusform>%n alarmes</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -5330,6 +5357,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Sense paper, perquè el tenen altres capes del projecte: {layers}. Connectors &gt; Fleet Supervisor &gt; Papers de les capes ho canvia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hi ha cap parada d'emergència en vigor.</translation>
         </message>
@@ -5337,6 +5369,24 @@
             <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Objectius i rutes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>El recinte de {folder} ja és al projecte: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Aquest projecte no és el del recinte {site}: les seves variables tenen un altre origen, SRC o rotació. Les comprovacions i les alarmes segueixen les capes d’aquest projecte: obriu el del recinte.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/window.py" />
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n capa carregada.</numerusform>
+                <numerusform>{site}: %n capes carregades.</numerusform>
+            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/as_placed.py" />
@@ -7316,109 +7366,6 @@
             <source>{tiles}, {segments}, {size} bytes</source>
             <translation>{tiles}, {segments}, {size} bytes</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>%n points</source>
-            <translation>
-                <numerusform>%n punt</numerusform>
-                <numerusform>%n punts</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Troba el camí entre dos llocs a prop de vies: cadascun es porta al punt més proper d'una via que es pot fer servir. Les vies tancades no es fan servir, les de sentit únic només en el seu sentit; les &lt;b&gt;superfícies&lt;/b&gt; (noms separats per comes) i una &lt;b&gt;amplada mínima&lt;/b&gt; restringeixen més el camí.&lt;/p&gt; &lt;p&gt;Les arestes que passen per un polígon de les &lt;b&gt;àrees per on no s'ha de circular&lt;/b&gt; són tancades; el que va per una vora no.&lt;/p&gt; &lt;p&gt;La &lt;b&gt;ruta&lt;/b&gt; té una línia per a cada tram de via, per ordre. El &lt;b&gt;camí&lt;/b&gt; és el que recorre un robot: punts separats com a màxim aquesta distància, cantonades arrodonides al radi de gir fins on ho permeten les amplades del robot i de la via. Les cantonades que queden més tancades es compten i s'anomenen al registre.&lt;/p&gt; &lt;p&gt;El &lt;b&gt;motor&lt;/b&gt; és RoutingKit o SciPy si el Python els té, si no el del QGIS; el registre i &lt;i&gt;ENGINE_USED&lt;/i&gt; diuen quin s'ha fet servir. Tots troben els mateixos camins.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Corners tighter than the robot turns</source>
-            <translation>Cantonades més tancades que el gir del robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine</source>
-            <translation>Motor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine that was used</source>
-            <translation>Motor utilitzat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
-            <translation>Troba el recorregut més curt o més ràpid pels eixos de via, i el camí que fa un robot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Goal</source>
-            <translation>Final</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Length of the route [m]</source>
-            <translation>Longitud de la ruta [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Path</source>
-            <translation>Camí</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Points of the path</source>
-            <translation>Punts del camí</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route</source>
-            <translation>Ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route on roads</source>
-            <translation>Ruta per vies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Start</source>
-            <translation>Inici</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
-            <translation>La cantonada a ({x:.2f}, {y:.2f}) és més tancada que el gir del robot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Time on the route [s]</source>
-            <translation>Temps de la ruta [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>fastest</source>
-            <translation>la més ràpida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>cap: només Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>shortest</source>
-            <translation>la més curta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>el més ràpid dels instal·lats</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
-        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
@@ -7681,6 +7628,14 @@
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n punt</numerusform>
+                <numerusform>%n punts</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>%n repairs</source>
             <translation>
                 <numerusform>%n reparació</numerusform>
@@ -7691,6 +7646,11 @@
             <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Comprova la xarxa que fan els eixos de via, i fa una capa de punts que mostren què és estrany, cadascun amb l'entitat que cal mirar. No es canvia res.&lt;/p&gt; &lt;p&gt;El que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;buit&lt;/b&gt; (gap), un extrem que s'atura dins de la tolerància d'una altra via; &lt;b&gt;excés&lt;/b&gt; (overshoot), un extrem que sobrepassa una via per menys que això; &lt;b&gt;duplicat&lt;/b&gt; (duplicate), un tram dibuixat dues vegades.&lt;/p&gt; &lt;p&gt;El que només poden jutjar les persones: &lt;b&gt;atzucac&lt;/b&gt; (dead end); &lt;b&gt;part desconnectada&lt;/b&gt; (disconnected part), vies connectades entre elles però no amb la part més llarga; &lt;b&gt;sentit únic&lt;/b&gt; (one-way), vies de les quals no es pot tornar a causa dels sentits.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Troba el camí entre dos llocs a prop de vies: cadascun es porta al punt més proper d'una via que es pot fer servir. Les vies tancades no es fan servir, les de sentit únic només en el seu sentit; les &lt;b&gt;superfícies&lt;/b&gt; (noms separats per comes) i una &lt;b&gt;amplada mínima&lt;/b&gt; restringeixen més el camí.&lt;/p&gt; &lt;p&gt;Les arestes que passen per un polígon de les &lt;b&gt;àrees per on no s'ha de circular&lt;/b&gt; són tancades; el que va per una vora no.&lt;/p&gt; &lt;p&gt;La &lt;b&gt;ruta&lt;/b&gt; té una línia per a cada tram de via, per ordre. El &lt;b&gt;camí&lt;/b&gt; és el que recorre un robot: punts separats com a màxim aquesta distància, cantonades arrodonides al radi de gir fins on ho permeten les amplades del robot i de la via. Les cantonades que queden més tancades es compten i s'anomenen al registre.&lt;/p&gt; &lt;p&gt;El &lt;b&gt;motor&lt;/b&gt; és RoutingKit o SciPy si el Python els té, si no el del QGIS; el registre i &lt;i&gt;ENGINE_USED&lt;/i&gt; diuen quin s'ha fet servir. Tots troben els mateixos camins.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7709,6 +7669,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>Cantonades més tancades que el gir del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Dead ends</source>
             <translation>Carrerons sense sortida</translation>
         </message>
@@ -7719,13 +7684,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine that was used</source>
+            <translation>Motor utilitzat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
             <translation>Troba forats, sobrepassaments, duplicats, carrerons sense sortida, parts separades i trampes de sentit únic als eixos de via.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Troba el recorregut més curt o més ràpid pels eixos de via, i el camí que fa un robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Gaps</source>
             <translation>Forats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Goal</source>
+            <translation>Final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Length of the route [m]</source>
+            <translation>Longitud de la ruta [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7754,6 +7744,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Path</source>
+            <translation>Camí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Points of the path</source>
+            <translation>Punts del camí</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Repairs</source>
             <translation>Reparacions</translation>
         </message>
@@ -7764,8 +7764,58 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route</source>
+            <translation>Ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route on roads</source>
+            <translation>Ruta per vies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Divideix els eixos de via on es troben, passa per sobre i per sota als ponts, i repara si es demana.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Start</source>
+            <translation>Inici</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>La cantonada a ({x:.2f}, {y:.2f}) és més tancada que el gir del robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Time on the route [s]</source>
+            <translation>Temps de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>fastest</source>
+            <translation>la més ràpida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>none: plain Python</source>
+            <translation>cap: només Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>shortest</source>
+            <translation>la més curta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>the fastest that is installed</source>
+            <translation>el més ràpid dels instal·lats</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, trobada per {engine}; inici a {off_start:.2f} m i final a {off_goal:.2f} m de la via</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
@@ -9101,71 +9151,6 @@
             <source>the last hour</source>
             <translation>la darrera hora</translation>
         </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>Choose a file that Export wrote.</source>
-            <translation>Trieu un fitxer que hagi escrit Exporta.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
-            <translation>El QGIS no ha donat el testimoni que desa: no se n'ha donat la contrasenya mestra. Premeu Connecta i introduïu-la, o introduïu el testimoni a Accés.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
-            <translation>El QGIS no ha desat el testimoni: no se n'ha donat la contrasenya mestra. El testimoni es fa servir ara i s'haurà de tornar a introduir la propera vegada.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
-            <translation>L'autenticació {config} és del mètode {method}, que les passarel·les no coneixen. Trieu-ne una del mètode {wanted} amb el testimoni com a contrasenya.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
-            <translation>L'autenticació {config} que anomena la connexió no és en aquest QGIS. Editeu la connexió i trieu-ne una altra, o introduïu el testimoni.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The connection has no name. Give it one, such as the site's.</source>
-            <translation>La connexió no té nom. Doneu-n'hi un, com ara el del recinte.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
-            <translation>Aquest QGIS no desa autenticació (les seves opcions diuen per què, a Autenticació): introduïu el testimoni a Accés.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} has no list named connections. {choose}</source>
-            <translation>{source} no té cap llista anomenada connections. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} holds no connections to gateways. {choose}</source>
-            <translation>{source} no conté connexions a passarel·les. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is not JSON: {error}. {choose}</source>
-            <translation>{source} no és JSON: {error}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
-            <translation>{source} és de la versió {found}; aquest connector llegeix la versió {version}. Actualitzeu el connector.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
-            <translation>{source}: la connexió {number} no és un conjunt de textos anomenats {keys}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number}: {error}</source>
-            <translation>{source}: connexió {number}: {error}</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>%n connections from {file}.</source>
@@ -9338,64 +9323,69 @@
             <translation>{site} ({crs}) respon.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Folder for files that are written</source>
-            <translation>&amp;Carpeta dels fitxers que s'escriuen</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Trieu un fitxer que hagi escrit Exporta.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Size of robots on the map</source>
-            <translation>&amp;Mida dels robots al mapa</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>El QGIS no ha donat el testimoni que desa: no se n'ha donat la contrasenya mestra. Premeu Connecta i introduïu-la, o introduïu el testimoni a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>1 is as they come</source>
-            <translation>1 és la mida original</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>El QGIS no ha desat el testimoni: no se n'ha donat la contrasenya mestra. El testimoni es fa servir ara i s'haurà de tornar a introduir la propera vegada.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
-            <translation>Les fletxes mostren com està cada robot i es mouen amb cada posició. La capa mostra el que diu el seu estil, tan sovint com es torna a escriure; mentre no és al mapa hi ha fletxes</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>L'autenticació {config} és del mètode {method}, que les passarel·les no coneixen. Trieu-ne una del mètode {wanted} amb el testimoni com a contrasenya.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>At most; from the next connection on. Fewer spare a slow network</source>
-            <translation>Com a màxim; a partir de la propera connexió. Menys descarreguen una xarxa lenta</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>L'autenticació {config} que anomena la connexió no és en aquest QGIS. Editeu la connexió i trieu-ne una altra, o introduïu el testimoni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Layer of robots written anew &amp;every</source>
-            <translation>La capa de robots es torna a escriure &amp;cada</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>La connexió no té nom. Doneu-n'hi un, com ara el del recinte.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Positions asked for, &amp;times a second</source>
-            <translation>Posicions demanades, &amp;vegades per segon</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Aquest QGIS no desa autenticació (les seves opcions diuen per què, a Autenticació): introduïu el testimoni a Accés.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Robots are &amp;drawn by</source>
-            <translation>Qui &amp;dibuixa els robots</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} no té cap llista anomenada connections. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>La capa Robots (en directe): taula d'atributs, etiquetes, expressions. El mapa en viu va per una altra banda</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} no conté connexions a passarel·les. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the layer Robots (live), in its style</source>
-            <translation>la capa Robots (en directe), amb el seu estil</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} no és JSON: {error}. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the live map: arrows</source>
-            <translation>el mapa en viu: fletxes</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} és de la versió {found}; aquest connector llegeix la versió {version}. Actualitzeu el connector.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>your documents</source>
-            <translation>els vostres documents</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: la connexió {number} no és un conjunt de textos anomenats {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: connexió {number}: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/tour/practice_fleet.py" />
@@ -9816,6 +9806,16 @@
             <location filename="../../plugin/ui/tables.py" />
             <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
             <translation>{file} no s'ha escrit ({why}). Trieu una altra carpeta, o tanqueu el fitxer on sigui obert.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Falta el paquet de Python websockets, que necessita la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que el conté, o executeu 'python3 -m pip install websockets' amb el Python de QGIS, i reinicieu QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>El paquet de Python websockets {version} a {path} és massa antic per a la connexió amb la passarel·la. Instal·leu el connector des del zip publicat, que en conté un de més nou, o executeu 'python3 -m pip install "websockets&gt;={oldest}"' amb el Python de QGIS, i reinicieu QGIS.</translation>
         </message>
     </context>
 </TS>

@@ -267,77 +267,12 @@
             <translation>El rol de {operator} es {role}. Otro rol vale a partir de la siguiente petición, también en conexiones abiertas.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/recordings.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source> s</source>
             <translation> s</translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Link</source>
-            <translation>E&amp;nlace</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Paused</source>
-            <translation>En &amp;pausa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Speed</source>
-            <translation>&amp;Velocidad</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>From the &amp;beginning again at its end</source>
-            <translation>Vuelve a &amp;empezar al acabar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>No link plays a recording at this gateway.</source>
-            <translation>Ningún enlace de esta pasarela reproduce una grabación.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Pl&amp;ace</source>
-            <translation>&amp;Lugar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recording of {link}</source>
-            <translation>Grabación de {link}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings on the map</source>
-            <translation>Grabaciones en el mapa</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings that links play on the map: pause, speed, place</source>
-            <translation>Grabaciones que los enlaces reproducen en el mapa: pausa, velocidad, lugar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings…</source>
-            <translation>Grabaciones…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Seconds after the beginning</source>
-            <translation>Segundos desde el comienzo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>The desk is not connected to a gateway. Press Connect first.</source>
-            <translation>La consola no está conectada a ninguna pasarela. Pulse antes Conectar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>{file}: {place} s of {length} s</source>
-            <translation>{file}: {place} s de {length} s</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were not removed: {why}</source>
             <translation>
                 <numerusform>%n robot no se ha eliminado: {why}</numerusform>
@@ -345,91 +280,15 @@
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were removed: {names}</source>
             <translation>
                 <numerusform>%n robot eliminado: {names}</numerusform>
                 <numerusform>%n robots eliminados: {names}</numerusform>
             </translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>&amp;Robots</source>
-            <translation>&amp;Robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot is lost or offline.</source>
-            <translation>Ningún robot está perdido ni fuera de línea.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot was removed: {why}</source>
-            <translation>No se ha eliminado ningún robot: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
-            <translation>Eso no detiene a ninguno. Al que vuelva se le dice que aborte lo que aún haga, y es un robot nuevo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Others cannot be chosen here.</source>
-            <translation>Los demás no se pueden elegir aquí.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove</source>
-            <translation>Quitar</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots that are gone?</source>
-            <translation>¿Eliminar los robots que ya no están?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots…</source>
-            <translation>Eliminar robots…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove {names}</source>
-            <translation>Eliminar {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
-            <translation>Quita de todas las consolas los robots perdidos o fuera de línea; requiere un supervisor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
-            <translation>Desaparecen de todas las consolas. Lo que hay en sus colas se elimina, las órdenes que no han hecho fallan; lo que hicieron sigue guardado.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Why, for the log</source>
-            <translation>Por qué, para el registro</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>all %n that are lost or offline</source>
-            <translation>
-                <numerusform>el único perdido o fuera de línea (%n)</numerusform>
-                <numerusform>los %n perdidos o fuera de línea</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>the %n selected ones</source>
-            <translation>
-                <numerusform>el seleccionado (%n)</numerusform>
-                <numerusform>los %n seleccionados</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n sites</source>
             <translation>
                 <numerusform>%n recinto</numerusform>
@@ -437,87 +296,228 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Link</source>
+            <translation>E&amp;nlace</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Paused</source>
+            <translation>En &amp;pausa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>&amp;Serve this site…</source>
             <translation>&amp;Servir este recinto…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Speed</source>
+            <translation>&amp;Velocidad</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
             <translation>Cada robot recibe el mapa de {site} ({folder}), cada consola lo muestra, y se sirve hasta que se elija otro, también si la pasarela se vuelve a arrancar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Folder</source>
             <translation>Carpeta</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>Vuelve a &amp;empezar al acabar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Ningún enlace de esta pasarela reproduce una grabación.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Ningún robot está perdido ni fuera de línea.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
             <translation>Ningún robot se detiene: las órdenes y las colas siguen en los mismos metros, sean cuales sean las vías y zonas prohibidas que el recinto nuevo tenga allí. Detenga antes los robots donde eso importe.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>No se ha eliminado ningún robot: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Eso no detiene a ninguno. Al que vuelva se le dice que aborte lo que aún haga, y es un robot nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Los demás no se pueden elegir aquí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recording of {link}</source>
+            <translation>Grabación de {link}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings on the map</source>
+            <translation>Grabaciones en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Grabaciones que los enlaces reproducen en el mapa: pausa, velocidad, lugar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings…</source>
+            <translation>Grabaciones…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove</source>
+            <translation>Quitar</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>¿Eliminar los robots que ya no están?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots…</source>
+            <translation>Eliminar robots…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove {names}</source>
+            <translation>Eliminar {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Segundos desde el comienzo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve this site</source>
             <translation>Servir este recinto</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}</source>
             <translation>Servir {site}</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}?</source>
             <translation>¿Servir {site}?</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site</source>
             <translation>Recinto</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Sites</source>
             <translation>Recintos</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site…</source>
             <translation>Recinto…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>State</source>
             <translation>Estado</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Quita de todas las consolas los robots perdidos o fuera de línea; requiere un supervisor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>La consola no está conectada a ninguna pasarela. Pulse antes Conectar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Desaparecen de todas las consolas. Lo que hay en sus colas se elimina, las órdenes que no han hecho fallan; lo que hicieron sigue guardado.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Version</source>
             <translation>Versión</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which of the published sites the gateway serves; takes a supervisor</source>
             <translation>Cuál de los recintos publicados sirve la pasarela; hace falta un supervisor</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which site is served</source>
             <translation>Qué recinto se sirve</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Why, for the log</source>
+            <translation>Por qué, para el registro</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>el único perdido o fuera de línea (%n)</numerusform>
+                <numerusform>los %n perdidos o fuera de línea</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>can be chosen</source>
             <translation>se puede elegir</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>served now</source>
             <translation>se sirve ahora</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>el seleccionado (%n)</numerusform>
+                <numerusform>los %n seleccionados</numerusform>
+            </translation>
+        </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s de {length} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>{site} is served now.</source>
             <translation>Ahora se sirve {site}.</translation>
         </message>
@@ -1356,6 +1356,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Cierre de la vía en {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>PARADA DE EMERGENCIA</translation>
         </message>
@@ -1363,6 +1368,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>La PARADA DE EMERGENCIA aún NO se ha enviado: el enlace está caído. Se envía en cuanto vuelva; use ahora las paradas de emergencia de los propios robots.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>Opening the road</source>
+            <translation>Apertura de la vía</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1386,6 +1396,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} cede el paso a {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words} was NOT sent: {error}</source>
             <translation>{words}: NO se envió: {error}</translation>
         </message>
@@ -1406,96 +1421,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: la pasarela no ha respondido desde hace {seconds:g} s, así que quizá no haya llegado. Se repite cuando vuelve el enlace; nunca se hace dos veces.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
-            <translation>Cierre de la vía en {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Evitar las vías por las que se han enviado otros robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Lead ways so</source>
-            <translation>Llevar así</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Opening the road</source>
-            <translation>Apertura de la vía</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Surfaces</source>
-            <translation>Superficies</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Esto vale para cada tramo que se trace a partir de ahora, hasta que se cierre QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Way</source>
-            <translation>Recorrido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Ways on roads</source>
-            <translation>Caminos por vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Width</source>
-            <translation>Anchura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>todas, o como: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>as wide as the robots are</source>
-            <translation>tan ancha como los robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>off the roads of other robots</source>
-            <translation>fuera de las vías de otros robots</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>only on {surfaces}</source>
-            <translation>solo por {surfaces}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>roads at least {metres:g} m wide</source>
-            <translation>vías de al menos {metres:g} m de ancho</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest</source>
-            <translation>el más rápido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest way</source>
-            <translation>el camino más rápido</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the shortest</source>
-            <translation>el más corto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>{robot} gives way to {other}</source>
-            <translation>{robot} cede el paso a {other}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/robot_checks.py" />
@@ -1584,8 +1509,28 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
+            <source>off the roads of other robots</source>
+            <translation>fuera de las vías de otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>only on {surfaces}</source>
+            <translation>solo por {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>vías de al menos {metres:g} m de ancho</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
             <source>surface not known</source>
             <translation>superficie desconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>the fastest way</source>
+            <translation>el camino más rápido</translation>
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
@@ -1668,67 +1613,67 @@
             <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;función distance_to_robot&lt;/h3&gt; &lt;p&gt;Devuelve a qué distancia está un robot de un objeto espacial o de una geometría, en metros del recinto.&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional; sin ella, la del objeto espacial que se mira&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el SRC de la geometría, como 'EPSG:4326'; sin él, el de la capa cuyo objeto espacial se mira, o si no el del proyecto&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; verdadero para los objetos espaciales cerca del robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notas&lt;/h4&gt; &lt;p&gt;La distancia se mide en el plano del SRC del recinto; dentro de un polígono es 0. NULL si no se sabe dónde está el robot, y mientras este QGIS no está conectado a ninguna pasarela. Los lugares tienen como máximo medio segundo; una capa los muestra cuando se dibuja.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;función road_surface&lt;/h3&gt; &lt;p&gt;Devuelve la clase de la superficie de vía en un lugar, como 'asphalt', o NULL donde no hay ninguna.&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;el lugar; x es el este o la longitud, sea cual sea el SRC&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el nombre o el identificador de una capa de áreas; sin ella, todas las capas del proyecto con el papel de superficie de vía&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;opcional, el SRC del lugar, como 'EPSG:4326'; sin él, el de la capa cuyo objeto espacial se mira, o si no el del proyecto&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; verdadero fuera de la vía&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notas&lt;/h4&gt; &lt;p&gt;Un lugar en el borde está en la superficie. Donde las superficies se superponen cuenta antes una dibujada que una generada, y después la menor antes que la mayor.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;función robot_age&lt;/h3&gt; &lt;p&gt;Devuelve los segundos desde el último mensaje de un robot, según el reloj de este ordenador.&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; verdadero cuando lleva más de 10 segundos callado&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;función robot_battery&lt;/h3&gt; &lt;p&gt;Devuelve lo llena que está la batería de un robot, de 0 a 1.&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;función robot_state&lt;/h3&gt; &lt;p&gt;Devuelve hasta qué punto se puede confiar en lo que se sabe de un robot: 'fresh' (actual), 'stale' (desactualizado), 'lost' (perdido) u 'offline' (fuera de línea).&lt;/p&gt; &lt;h4&gt;Sintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentos&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;su nombre, como en el panel Flota&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Ejemplos&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; verdadero para los robots que callan&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h4&gt;Notas&lt;/h4&gt; &lt;p&gt;NULL si la pasarela no ha hablado del robot, y mientras este QGIS no está conectado a ninguna. Lo que no se sabe de un robot también es NULL. Los valores tienen como máximo medio segundo; una capa los muestra cuando se dibuja.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
             <translation>crs {given!r} no es un SRC que QGIS conozca; escriba un código como 'EPSG:32633'</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
             <translation>ninguna capa del proyecto tiene el papel {role}; póngalo en Complementos &gt; Fleet Supervisor &gt; Papeles de las capas, o nombre una capa como tercer argumento</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no vector layer of the project has the name or id {layer!r}</source>
             <translation>ninguna capa vectorial del proyecto tiene el nombre o el identificador {layer!r}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: the geometry has no place in {crs}</source>
             <translation>{function}: la geometría no tiene lugar en {crs}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
             <translation>{function}: x es {x!r} e y es {y!r}; dé dos números</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
             <translation>{function}: {geometry!r} no es una geometría; dé una, o un objeto espacial que la tenga</translation>
         </message>
@@ -2249,16 +2194,6 @@
             <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>Falta el paquete de Python websockets, que necesita la conexión con la pasarela. Instale el complemento desde el zip publicado, que lo contiene, o ejecute 'python3 -m pip install websockets' con el Python de QGIS, y reinicie QGIS.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>El paquete de Python websockets {version} en {path} es demasiado antiguo para la conexión con la pasarela. Instale el complemento desde el zip publicado, que contiene uno más nuevo, o ejecute 'python3 -m pip install "websockets&gt;={oldest}"' con el Python de QGIS, y reinicie QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/help.py" />
@@ -3421,29 +3356,6 @@
             <translation>hasta</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> Sin papel, porque lo tienen otras capas del proyecto: {layers}. Complementos &gt; Fleet Supervisor &gt; Papeles de las capas lo cambia.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>The site in {folder} is in the project already: {names}.</source>
-            <translation>El recinto de {folder} ya está en el proyecto: {names}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
-            <translation>Este proyecto no es el del recinto {site}: sus variables tienen otro origen, SRC o rotación. Las comprobaciones y las alarmas siguen las capas de este proyecto: abra el del recinto.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/site_project.py" />
-            <source>{site}: %n layers loaded.</source>
-            <translation>
-                <numerusform>{site}: %n capa cargada.</numerusform>
-                <numerusform>{site}: %n capas cargadas.</numerusform>
-            </translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Close road</source>
             <translation>Cerrar vía</translation>
@@ -3585,13 +3497,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Evitar las vías por las que se han enviado otros robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Lead ways so</source>
+            <translation>Llevar así</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Surfaces</source>
+            <translation>Superficies</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
             <translation>La ruta del mapa es para {robot}, pero el seleccionado es {selected}. Envíela (Intro) o cancélela (Esc) primero, o vuelva a seleccionar {robot}.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Esto vale para cada tramo que se trace a partir de ahora, hasta que se cierre QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Este es el primer vértice: se pone otro delante de uno que viene después.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Way</source>
+            <translation>Recorrido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Ways on roads</source>
+            <translation>Caminos por vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Width</source>
+            <translation>Anchura</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>todas, o como: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>as wide as the robots are</source>
+            <translation>tan ancha como los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the fastest</source>
+            <translation>el más rápido</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the shortest</source>
+            <translation>el más corto</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3785,8 +3752,33 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>&amp;Carpeta de los archivos que se escriben</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>&amp;Tamaño de los robots en el mapa</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>1 is as they come</source>
+            <translation>1 es el tamaño original</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Alarms</source>
             <translation>Alarmas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>Las flechas muestran cómo está cada robot y se mueven con cada posición. La capa muestra lo que dice su estilo, tan a menudo como se vuelve a escribir; mientras no está en el mapa hay flechas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Como máximo; desde la próxima conexión. Menos alivian una red lenta</translation>
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
@@ -3800,16 +3792,43 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>La capa de robots se reescribe &amp;cada</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Map and files</source>
             <translation>Mapa y archivos</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/panel/alarms/alarm_bar.py" />
-            <source>%n alarms</source>
-            <translation>
-                <numerusform>%n alarma</numerusform>
-                <numerusform>%n alarmas</numerusform>
-            </translation>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Posiciones pedidas, &amp;veces por segundo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Quién &amp;dibuja los robots</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>La capa Robots (en vivo): tabla de atributos, etiquetas, expresiones. El mapa en vivo va por su cuenta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>la capa Robots (en vivo), con su estilo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the live map: arrows</source>
+            <translation>el mapa en vivo: flechas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>your documents</source>
+            <translation>sus documentos</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
@@ -4183,6 +4202,14 @@
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>{robot} is outside the site{where}</source>
             <translation>{robot} está fuera del recinto{where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/alarms/watch.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n alarma</numerusform>
+                <numerusform>%n alarmas</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -5330,6 +5357,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Sin papel, porque lo tienen otras capas del proyecto: {layers}. Complementos &gt; Fleet Supervisor &gt; Papeles de las capas lo cambia.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>No hay ninguna parada de emergencia en vigor.</translation>
         </message>
@@ -5337,6 +5369,24 @@
             <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Objetivos y rutas</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>El recinto de {folder} ya está en el proyecto: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Este proyecto no es el del recinto {site}: sus variables tienen otro origen, SRC o rotación. Las comprobaciones y las alarmas siguen las capas de este proyecto: abra el del recinto.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/window.py" />
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n capa cargada.</numerusform>
+                <numerusform>{site}: %n capas cargadas.</numerusform>
+            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/as_placed.py" />
@@ -7316,109 +7366,6 @@
             <source>{tiles}, {segments}, {size} bytes</source>
             <translation>{tiles}, {segments}, {size} bytes</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>%n points</source>
-            <translation>
-                <numerusform>%n punto</numerusform>
-                <numerusform>%n puntos</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Encuentra el camino entre dos lugares cerca de vías: cada uno se lleva al punto más cercano de una vía que se puede usar. Las vías cerradas no se usan, las de sentido único solo en su sentido; las &lt;b&gt;superficies&lt;/b&gt; (nombres separados por comas) y una &lt;b&gt;anchura mínima&lt;/b&gt; restringen más el camino.&lt;/p&gt; &lt;p&gt;Las aristas que pasan por un polígono de las &lt;b&gt;áreas por donde no se debe circular&lt;/b&gt; están cerradas; lo que va por un borde no.&lt;/p&gt; &lt;p&gt;La &lt;b&gt;ruta&lt;/b&gt; tiene una línea para cada tramo de vía, por orden. El &lt;b&gt;camino&lt;/b&gt; es lo que recorre un robot: puntos separados como máximo esa distancia, esquinas redondeadas al radio de giro hasta donde lo permiten las anchuras del robot y de la vía. Las esquinas que quedan más cerradas se cuentan y se nombran en el registro.&lt;/p&gt; &lt;p&gt;El &lt;b&gt;motor&lt;/b&gt; es RoutingKit o SciPy si Python los tiene, si no el de QGIS; el registro y &lt;i&gt;ENGINE_USED&lt;/i&gt; dicen cuál se usó. Todos encuentran los mismos caminos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Corners tighter than the robot turns</source>
-            <translation>Esquinas más cerradas que el giro del robot</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine</source>
-            <translation>Motor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine that was used</source>
-            <translation>Motor utilizado</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
-            <translation>Encuentra el recorrido más corto o más rápido por los ejes de vía, y el camino que hace un robot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Goal</source>
-            <translation>Final</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Length of the route [m]</source>
-            <translation>Longitud de la ruta [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Path</source>
-            <translation>Camino</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Points of the path</source>
-            <translation>Puntos del camino</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route</source>
-            <translation>Ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route on roads</source>
-            <translation>Ruta por vías</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Start</source>
-            <translation>Inicio</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
-            <translation>La esquina en ({x:.2f}, {y:.2f}) es más cerrada que el giro del robot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Time on the route [s]</source>
-            <translation>Tiempo de la ruta [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>fastest</source>
-            <translation>la más rápida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>ninguno: solo Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>shortest</source>
-            <translation>la más corta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>el más rápido de los instalados</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
-        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
@@ -7681,6 +7628,14 @@
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n punto</numerusform>
+                <numerusform>%n puntos</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>%n repairs</source>
             <translation>
                 <numerusform>%n reparación</numerusform>
@@ -7691,6 +7646,11 @@
             <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Comprueba la red que hacen los ejes de vía, y hace una capa de puntos que muestran qué es extraño, cada uno con el objeto espacial que hay que mirar. No se cambia nada.&lt;/p&gt; &lt;p&gt;Lo que repara &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt;: &lt;b&gt;hueco&lt;/b&gt; (gap), un extremo que se detiene dentro de la tolerancia de otra vía; &lt;b&gt;exceso&lt;/b&gt; (overshoot), un extremo que sobrepasa una vía por menos que eso; &lt;b&gt;duplicado&lt;/b&gt; (duplicate), un tramo dibujado dos veces.&lt;/p&gt; &lt;p&gt;Lo que solo pueden juzgar las personas: &lt;b&gt;callejón sin salida&lt;/b&gt; (dead end); &lt;b&gt;parte desconectada&lt;/b&gt; (disconnected part), vías conectadas entre sí pero no con la parte más larga; &lt;b&gt;sentido único&lt;/b&gt; (one-way), vías de las que no se puede volver a causa de los sentidos.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Encuentra el camino entre dos lugares cerca de vías: cada uno se lleva al punto más cercano de una vía que se puede usar. Las vías cerradas no se usan, las de sentido único solo en su sentido; las &lt;b&gt;superficies&lt;/b&gt; (nombres separados por comas) y una &lt;b&gt;anchura mínima&lt;/b&gt; restringen más el camino.&lt;/p&gt; &lt;p&gt;Las aristas que pasan por un polígono de las &lt;b&gt;áreas por donde no se debe circular&lt;/b&gt; están cerradas; lo que va por un borde no.&lt;/p&gt; &lt;p&gt;La &lt;b&gt;ruta&lt;/b&gt; tiene una línea para cada tramo de vía, por orden. El &lt;b&gt;camino&lt;/b&gt; es lo que recorre un robot: puntos separados como máximo esa distancia, esquinas redondeadas al radio de giro hasta donde lo permiten las anchuras del robot y de la vía. Las esquinas que quedan más cerradas se cuentan y se nombran en el registro.&lt;/p&gt; &lt;p&gt;El &lt;b&gt;motor&lt;/b&gt; es RoutingKit o SciPy si Python los tiene, si no el de QGIS; el registro y &lt;i&gt;ENGINE_USED&lt;/i&gt; dicen cuál se usó. Todos encuentran los mismos caminos.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7709,6 +7669,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>Esquinas más cerradas que el giro del robot</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Dead ends</source>
             <translation>Callejones sin salida</translation>
         </message>
@@ -7719,13 +7684,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine that was used</source>
+            <translation>Motor utilizado</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
             <translation>Encuentra huecos, sobrepasos, duplicados, callejones sin salida, partes separadas y trampas de sentido único en los ejes de vía.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Encuentra el recorrido más corto o más rápido por los ejes de vía, y el camino que hace un robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Gaps</source>
             <translation>Huecos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Goal</source>
+            <translation>Final</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Length of the route [m]</source>
+            <translation>Longitud de la ruta [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7754,6 +7744,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Path</source>
+            <translation>Camino</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Points of the path</source>
+            <translation>Puntos del camino</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Repairs</source>
             <translation>Reparaciones</translation>
         </message>
@@ -7764,8 +7764,58 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route</source>
+            <translation>Ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route on roads</source>
+            <translation>Ruta por vías</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Divide los ejes de vía donde se encuentran, pasa por encima y por debajo en los puentes, y repara si se pide.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Start</source>
+            <translation>Inicio</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>La esquina en ({x:.2f}, {y:.2f}) es más cerrada que el giro del robot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Time on the route [s]</source>
+            <translation>Tiempo de la ruta [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>fastest</source>
+            <translation>la más rápida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>none: plain Python</source>
+            <translation>ninguno: solo Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>shortest</source>
+            <translation>la más corta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>the fastest that is installed</source>
+            <translation>el más rápido de los instalados</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, encontrada por {engine}; inicio a {off_start:.2f} m y final a {off_goal:.2f} m de la vía</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
@@ -9101,71 +9151,6 @@
             <source>the last hour</source>
             <translation>la última hora</translation>
         </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>Choose a file that Export wrote.</source>
-            <translation>Elija un archivo que haya escrito Exportar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
-            <translation>QGIS no dio el testigo que guarda: no se dio su contraseña maestra. Pulse Conectar e introdúzcala, o introduzca el testigo en Acceso.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
-            <translation>QGIS no guardó el testigo: no se dio su contraseña maestra. El testigo se usa ahora y habrá que introducirlo otra vez la próxima vez.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
-            <translation>La autenticación {config} es del método {method}, que las pasarelas no conocen. Elija una del método {wanted} con el testigo como contraseña.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
-            <translation>La autenticación {config} que nombra la conexión no está en este QGIS. Edite la conexión y elija otra, o introduzca el testigo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The connection has no name. Give it one, such as the site's.</source>
-            <translation>La conexión no tiene nombre. Dele uno, como el del recinto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
-            <translation>Este QGIS no guarda autenticación (sus opciones dicen por qué, en Autenticación): introduzca el testigo en Acceso.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} has no list named connections. {choose}</source>
-            <translation>{source} no tiene ninguna lista llamada connections. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} holds no connections to gateways. {choose}</source>
-            <translation>{source} no contiene conexiones a pasarelas. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is not JSON: {error}. {choose}</source>
-            <translation>{source} no es JSON: {error}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
-            <translation>{source} es de la versión {found}; este complemento lee la versión {version}. Actualice el complemento.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
-            <translation>{source}: la conexión {number} no es un conjunto de textos llamados {keys}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number}: {error}</source>
-            <translation>{source}: conexión {number}: {error}</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>%n connections from {file}.</source>
@@ -9338,64 +9323,69 @@
             <translation>{site} ({crs}) responde.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Folder for files that are written</source>
-            <translation>&amp;Carpeta de los archivos que se escriben</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Elija un archivo que haya escrito Exportar.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Size of robots on the map</source>
-            <translation>&amp;Tamaño de los robots en el mapa</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>QGIS no dio el testigo que guarda: no se dio su contraseña maestra. Pulse Conectar e introdúzcala, o introduzca el testigo en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>1 is as they come</source>
-            <translation>1 es el tamaño original</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>QGIS no guardó el testigo: no se dio su contraseña maestra. El testigo se usa ahora y habrá que introducirlo otra vez la próxima vez.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
-            <translation>Las flechas muestran cómo está cada robot y se mueven con cada posición. La capa muestra lo que dice su estilo, tan a menudo como se vuelve a escribir; mientras no está en el mapa hay flechas</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>La autenticación {config} es del método {method}, que las pasarelas no conocen. Elija una del método {wanted} con el testigo como contraseña.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>At most; from the next connection on. Fewer spare a slow network</source>
-            <translation>Como máximo; desde la próxima conexión. Menos alivian una red lenta</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>La autenticación {config} que nombra la conexión no está en este QGIS. Edite la conexión y elija otra, o introduzca el testigo.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Layer of robots written anew &amp;every</source>
-            <translation>La capa de robots se reescribe &amp;cada</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>La conexión no tiene nombre. Dele uno, como el del recinto.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Positions asked for, &amp;times a second</source>
-            <translation>Posiciones pedidas, &amp;veces por segundo</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Este QGIS no guarda autenticación (sus opciones dicen por qué, en Autenticación): introduzca el testigo en Acceso.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Robots are &amp;drawn by</source>
-            <translation>Quién &amp;dibuja los robots</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} no tiene ninguna lista llamada connections. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>La capa Robots (en vivo): tabla de atributos, etiquetas, expresiones. El mapa en vivo va por su cuenta</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} no contiene conexiones a pasarelas. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the layer Robots (live), in its style</source>
-            <translation>la capa Robots (en vivo), con su estilo</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} no es JSON: {error}. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the live map: arrows</source>
-            <translation>el mapa en vivo: flechas</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} es de la versión {found}; este complemento lee la versión {version}. Actualice el complemento.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>your documents</source>
-            <translation>sus documentos</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: la conexión {number} no es un conjunto de textos llamados {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: conexión {number}: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/tour/practice_fleet.py" />
@@ -9816,6 +9806,16 @@
             <location filename="../../plugin/ui/tables.py" />
             <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
             <translation>{file} no se escribió ({why}). Elija otra carpeta, o cierre el archivo donde esté abierto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Falta el paquete de Python websockets, que necesita la conexión con la pasarela. Instale el complemento desde el zip publicado, que lo contiene, o ejecute 'python3 -m pip install websockets' con el Python de QGIS, y reinicie QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>El paquete de Python websockets {version} en {path} es demasiado antiguo para la conexión con la pasarela. Instale el complemento desde el zip publicado, que contiene uno más nuevo, o ejecute 'python3 -m pip install "websockets&gt;={oldest}"' con el Python de QGIS, y reinicie QGIS.</translation>
         </message>
     </context>
 </TS>

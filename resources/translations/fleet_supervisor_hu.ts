@@ -266,252 +266,252 @@
             <translation>{operator} szerepe: {role}. Másik szerep a következő kéréstől érvényes, a nyitott kapcsolatokon is.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/recordings.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source> s</source>
             <translation> s</translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Link</source>
-            <translation>&amp;Kapcsolat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Paused</source>
-            <translation>&amp;Szünetel</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>&amp;Speed</source>
-            <translation>Se&amp;besség</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>From the &amp;beginning again at its end</source>
-            <translation>A végén elölről &amp;kezdi</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>No link plays a recording at this gateway.</source>
-            <translation>Ennél az átjárónál egy kapcsolat sem játszik le felvételt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Pl&amp;ace</source>
-            <translation>&amp;Hely</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recording of {link}</source>
-            <translation>{link} felvétele</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings on the map</source>
-            <translation>Felvételek a térképen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings that links play on the map: pause, speed, place</source>
-            <translation>Felvételek, amelyeket kapcsolatok a térképen lejátszanak: szünet, sebesség, hely</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Recordings…</source>
-            <translation>Felvételek…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>Seconds after the beginning</source>
-            <translation>Másodperc a kezdettől</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>The desk is not connected to a gateway. Press Connect first.</source>
-            <translation>A kezelőpult nincs átjáróhoz kapcsolva. Előbb nyomja meg a Kapcsolódás gombot.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/recordings.py" />
-            <source>{file}: {place} s of {length} s</source>
-            <translation>{file}: {place} s / {length} s</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were not removed: {why}</source>
             <translation>
                 <numerusform>%n robot nem lett eltávolítva: {why}</numerusform>
             </translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n robots were removed: {names}</source>
             <translation>
                 <numerusform>%n robot eltávolítva: {names}</numerusform>
             </translation>
         </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>&amp;Robots</source>
-            <translation>&amp;Robotok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot is lost or offline.</source>
-            <translation>Egy robot sem elveszett vagy offline.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>No robot was removed: {why}</source>
-            <translation>Egy robot sem lett eltávolítva: {why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
-            <translation>Ez egyik robotot sem állítja meg. Amelyik visszatér, utasítást kap, hogy szakítsa meg, amit még csinál, és új robotnak számít.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Others cannot be chosen here.</source>
-            <translation>Mások itt nem választhatók.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove</source>
-            <translation>Eltávolítás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots that are gone?</source>
-            <translation>Eltávolítja az eltűnt robotokat?</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove robots…</source>
-            <translation>Robotok eltávolítása…</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Remove {names}</source>
-            <translation>Eltávolítás: {names}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
-            <translation>Elveszett vagy offline robotok levétele minden kezelőpultról; felügyelő kell hozzá</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
-            <translation>Minden kezelőpultról eltűnnek. A várólistájuk kiürül, az el nem végzett parancsaik meghiúsulnak; amit elvégeztek, tárolva marad.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>Why, for the log</source>
-            <translation>Miért, a naplóhoz</translation>
-        </message>
         <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>all %n that are lost or offline</source>
-            <translation>
-                <numerusform>mind a(z) %n elveszett vagy offline</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/robot_removal.py" />
-            <source>the %n selected ones</source>
-            <translation>
-                <numerusform>a kijelölt %n</numerusform>
-            </translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>%n sites</source>
             <translation>
                 <numerusform>%n telephely</numerusform>
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Link</source>
+            <translation>&amp;Kapcsolat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Paused</source>
+            <translation>&amp;Szünetel</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Robots</source>
+            <translation>&amp;Robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>&amp;Serve this site…</source>
             <translation>E telephely &amp;kiszolgálása…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>&amp;Speed</source>
+            <translation>Se&amp;besség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Every robot is sent the map of {site} ({folder}), every desk shows it, and it is served until another one is chosen, also by a gateway that is started anew.</source>
             <translation>Minden robot megkapja {site} ({folder}) térképét, minden kezelőpult ezt mutatja, és addig ezt szolgálja ki az átjáró, újraindítva is, amíg másikat nem választanak.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Folder</source>
             <translation>Mappa</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>From the &amp;beginning again at its end</source>
+            <translation>A végén elölről &amp;kezdi</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No link plays a recording at this gateway.</source>
+            <translation>Ennél az átjárónál egy kapcsolat sem játszik le felvételt.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot is lost or offline.</source>
+            <translation>Egy robot sem elveszett vagy offline.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>No robot is stopped: commands and queues go on in the same metres, whatever roads and keepouts the new site has there. Stop robots first where that matters.</source>
             <translation>Egyik robot sem áll meg: a parancsok és várólisták ugyanazokban a méterekben folytatódnak, bármilyen utak és tiltott területek vannak ott az új telephelyen. Ahol ez számít, előbb állítsa meg a robotokat.</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>No robot was removed: {why}</source>
+            <translation>Egy robot sem lett eltávolítva: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>None is stopped by that. One that comes back is told to abort what it still does, and is a new robot.</source>
+            <translation>Ez egyik robotot sem állítja meg. Amelyik visszatér, utasítást kap, hogy szakítsa meg, amit még csinál, és új robotnak számít.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Others cannot be chosen here.</source>
+            <translation>Mások itt nem választhatók.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Pl&amp;ace</source>
+            <translation>&amp;Hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recording of {link}</source>
+            <translation>{link} felvétele</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings on the map</source>
+            <translation>Felvételek a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings that links play on the map: pause, speed, place</source>
+            <translation>Felvételek, amelyeket kapcsolatok a térképen lejátszanak: szünet, sebesség, hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Recordings…</source>
+            <translation>Felvételek…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove</source>
+            <translation>Eltávolítás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots that are gone?</source>
+            <translation>Eltávolítja az eltűnt robotokat?</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove robots…</source>
+            <translation>Robotok eltávolítása…</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Remove {names}</source>
+            <translation>Eltávolítás: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Seconds after the beginning</source>
+            <translation>Másodperc a kezdettől</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve this site</source>
             <translation>Kiszolgálás</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}</source>
             <translation>Kiszolgálás: {site}</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Serve {site}?</source>
             <translation>Ezt szolgálja ki: {site}?</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site</source>
             <translation>Telephely</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Sites</source>
             <translation>Telephelyek</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Site…</source>
             <translation>Telephely…</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>State</source>
             <translation>Állapot</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Take robots that are lost or offline off every desk; takes a supervisor</source>
+            <translation>Elveszett vagy offline robotok levétele minden kezelőpultról; felügyelő kell hozzá</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>The desk is not connected to a gateway. Press Connect first.</source>
+            <translation>A kezelőpult nincs átjáróhoz kapcsolva. Előbb nyomja meg a Kapcsolódás gombot.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>They go from every desk. What is in their queues is removed, what they were told and have not done has failed; what they did stays stored.</source>
+            <translation>Minden kezelőpultról eltűnnek. A várólistájuk kiürül, az el nem végzett parancsaik meghiúsulnak; amit elvégeztek, tárolva marad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Version</source>
             <translation>Verzió</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which of the published sites the gateway serves; takes a supervisor</source>
             <translation>Melyik közzétett telephelyet szolgálja ki az átjáró; felügyelő kell hozzá</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>Which site is served</source>
             <translation>Melyik telephelyet szolgálja ki</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>Why, for the log</source>
+            <translation>Miért, a naplóhoz</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>all %n that are lost or offline</source>
+            <translation>
+                <numerusform>mind a(z) %n elveszett vagy offline</numerusform>
+            </translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>can be chosen</source>
             <translation>választható</translation>
         </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
             <source>served now</source>
             <translation>most ezt szolgálja ki</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>the %n selected ones</source>
+            <translation>
+                <numerusform>a kijelölt %n</numerusform>
+            </translation>
+        </message>
         <message>
-            <location filename="../../plugin/admin/site_choice.py" />
+            <location filename="../../plugin/admin/supervision.py" />
+            <source>{file}: {place} s of {length} s</source>
+            <translation>{file}: {place} s / {length} s</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/admin/supervision.py" />
             <source>{site} is served now.</source>
             <translation>Most ezt szolgálja ki: {site}.</translation>
         </message>
@@ -1349,6 +1349,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
+            <translation>Út lezárása itt: {x:.1f}, {y:.1f} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP</source>
             <translation>VÉSZLEÁLLÍTÁS</translation>
         </message>
@@ -1356,6 +1361,11 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>EMERGENCY STOP is NOT sent yet: the link is down. It is sent as soon as that is back; use the robots' own emergency stops now.</source>
             <translation>A VÉSZLEÁLLÍTÁS MÉG NINCS elküldve: a kapcsolat megszakadt. Elmegy, amint visszatér; most használja a robotok saját vészleállítóit.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
+            <source>Opening the road</source>
+            <translation>Út megnyitása</translation>
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
@@ -1379,6 +1389,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/request_tracker.py" />
+            <source>{robot} gives way to {other}</source>
+            <translation>{robot} elsőbbséget ad ennek: {other}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/request_tracker.py" />
             <source>{words} was NOT sent: {error}</source>
             <translation>{words}: NEM lett elküldve: {error}</translation>
         </message>
@@ -1398,96 +1413,6 @@
             <location filename="../../plugin/control/request_tracker.py" />
             <source>{words}: the gateway has not answered for {seconds:g} s, so it may not have arrived. It is repeated when the link is back; it is never done twice.</source>
             <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Ha a kapcsolat helyreáll, megismétlődik; kétszer sosem hajtódik végre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Closing the road at {x:.1f}, {y:.1f} m</source>
-            <translation>Út lezárása itt: {x:.1f}, {y:.1f} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Keep off roads on which other robots are sent</source>
-            <translation>Kerülje el az utakat, amelyeken más robotok vannak úton</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Lead ways so</source>
-            <translation>Így vezessen</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Opening the road</source>
-            <translation>Út megnyitása</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Surfaces</source>
-            <translation>Felületek</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
-            <translation>Ez minden ezután vezetett szakaszra érvényes, a QGIS bezárásáig.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Way</source>
-            <translation>Út</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Ways on roads</source>
-            <translation>Útvonalak utakon</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>Width</source>
-            <translation>Szélesség</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>all, or such as: asphalt, concrete</source>
-            <translation>mind, vagy például: asphalt, concrete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>as wide as the robots are</source>
-            <translation>amilyen szélesek a robotok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>off the roads of other robots</source>
-            <translation>más robotok útjait elkerülve</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>only on {surfaces}</source>
-            <translation>csak ezeken: {surfaces}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>roads at least {metres:g} m wide</source>
-            <translation>legalább {metres:g} m széles utakon</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest</source>
-            <translation>a leggyorsabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the fastest way</source>
-            <translation>a leggyorsabb útvonal</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>the shortest</source>
-            <translation>a legrövidebb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/roads.py" />
-            <source>{robot} gives way to {other}</source>
-            <translation>{robot} elsőbbséget ad ennek: {other}</translation>
         </message>
         <message>
             <location filename="../../plugin/control/robot_checks.py" />
@@ -1576,8 +1501,28 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
+            <source>off the roads of other robots</source>
+            <translation>más robotok útjait elkerülve</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>only on {surfaces}</source>
+            <translation>csak ezeken: {surfaces}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>roads at least {metres:g} m wide</source>
+            <translation>legalább {metres:g} m széles utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
             <source>surface not known</source>
             <translation>ismeretlen felület</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/route_queries.py" />
+            <source>the fastest way</source>
+            <translation>a leggyorsabb útvonal</translation>
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
@@ -1660,67 +1605,67 @@
             <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function distance_to_robot&lt;/h3&gt; &lt;p&gt;Returns how far a robot is from a feature or a geometry, in metres of the site.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional; without it, that of the feature that is looked at&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the geometry, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; true of features near the robot&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;The distance is measured in the plane of the site's CRS; in a polygon it is 0. NULL stands for a robot whose place is not known, and while this QGIS is connected to no gateway. Places are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;distance_to_robot függvény&lt;/h3&gt; &lt;p&gt;Visszaadja, milyen messze van egy robot egy elemtől vagy geometriától, a telephely métereiben.&lt;/p&gt; &lt;h4&gt;Szintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;distance_to_robot(robot, [geometry], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentumok&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;a neve, ahogy a Flotta panelen áll&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;geometry&lt;/i&gt;&lt;/td&gt;&lt;td&gt;nem kötelező; nélküle a vizsgált elemé&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;nem kötelező, a geometria vetülete, például 'EPSG:4326'; nélküle azé a rétegé, amelynek elemét vizsgáljuk, különben a projekté&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Példák&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1')&lt;/code&gt; &amp;rarr; 12.3&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1', make_point(16.8438, 46.8804), 'EPSG:4326')&lt;/code&gt; &amp;rarr; 104.6&lt;/li&gt; &lt;li&gt;&lt;code&gt;distance_to_robot('r1') &amp;lt; 5&lt;/code&gt; &amp;rarr; igaz a robothoz közeli elemekre&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Megjegyzések&lt;/h4&gt; &lt;p&gt;A távolság a telephely vetületének síkjában értendő; poligonon belül 0. NULL, ha a robot helye nem ismert, és amíg ez a QGIS egy átjáróhoz sem kapcsolódik. A helyek legfeljebb fél másodpercesek; egy réteg akkor mutatja őket, amikor kirajzolódik.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function road_surface&lt;/h3&gt; &lt;p&gt;Returns the class of the road surface at a place, such as 'asphalt', or NULL where there is none.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;the place; x is the easting or the longitude, whatever the CRS&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the name or id of a layer of areas; without it, all layers of the project with the role road surface&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;optional, the CRS of the place, such as 'EPSG:4326'; without it, that of the layer whose feature is looked at, else that of the project&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; true off the road&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;A place on an edge is on the surface. Where surfaces lie on one another a drawn one counts before a generated one, then the smaller before the larger.&lt;/p&gt;</source>
             <translation>&lt;h3&gt;road_surface függvény&lt;/h3&gt; &lt;p&gt;Visszaadja egy hely útfelületének osztályát, például 'asphalt', vagy NULL, ahol nincs.&lt;/p&gt; &lt;h4&gt;Szintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;road_surface(x, y, [layer], [crs])&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentumok&lt;/h4&gt; &lt;table&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;x, y&lt;/i&gt;&lt;/td&gt;&lt;td&gt;a hely; x a keleti koordináta vagy a hosszúság, bármi is a vetület&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;layer&lt;/i&gt;&lt;/td&gt;&lt;td&gt;nem kötelező, egy területréteg neve vagy azonosítója; nélküle a projekt minden útfelület szerepű rétege&lt;/td&gt;&lt;/tr&gt; &lt;tr&gt;&lt;td&gt;&lt;i&gt;crs&lt;/i&gt;&lt;/td&gt;&lt;td&gt;nem kötelező, a hely vetülete, például 'EPSG:4326'; nélküle azé a rétegé, amelynek elemét vizsgáljuk, különben a projekté&lt;/td&gt;&lt;/tr&gt; &lt;/table&gt; &lt;h4&gt;Példák&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y)&lt;/code&gt; &amp;rarr; 'asphalt'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface(16.8438, 46.8804, crs:='EPSG:4326')&lt;/code&gt; &amp;rarr; 'slippery'&lt;/li&gt; &lt;li&gt;&lt;code&gt;road_surface($x, $y, 'Road surfaces') IS NULL&lt;/code&gt; &amp;rarr; igaz az úton kívül&lt;/li&gt; &lt;/ul&gt; &lt;h4&gt;Megjegyzések&lt;/h4&gt; &lt;p&gt;A peremen lévő hely a felületen van. Ahol felületek fedik egymást, a rajzolt előbbre való a generáltnál, azután a kisebb a nagyobbnál.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_age&lt;/h3&gt; &lt;p&gt;Returns the seconds since a robot's last message, by this computer's clock.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; true once it has been silent for more than 10 seconds&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;robot_age függvény&lt;/h3&gt; &lt;p&gt;Visszaadja, hány másodperce jött egy robot utolsó üzenete, e számítógép órája szerint.&lt;/p&gt; &lt;h4&gt;Szintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_age(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentumok&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;a neve, ahogy a Flotta panelen áll&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Példák&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_age('r1')&lt;/code&gt; &amp;rarr; 0.4&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_age('r1') &amp;gt; 10&lt;/code&gt; &amp;rarr; igaz, ha több mint 10 másodperce hallgat&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_battery&lt;/h3&gt; &lt;p&gt;Returns how full a robot's battery is, 0 to 1.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;robot_battery függvény&lt;/h3&gt; &lt;p&gt;Visszaadja, mennyire van feltöltve egy robot akkumulátora, 0-tól 1-ig.&lt;/p&gt; &lt;h4&gt;Szintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_battery(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentumok&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;a neve, ahogy a Flotta panelen áll&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Példák&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_battery('r1')&lt;/code&gt; &amp;rarr; 0.82&lt;/li&gt; &lt;li&gt;&lt;code&gt;round(100 * robot_battery('r1')) || ' %'&lt;/code&gt; &amp;rarr; '82 %'&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h3&gt;function robot_state&lt;/h3&gt; &lt;p&gt;Returns how far what is known of a robot can be trusted: 'fresh', 'stale', 'lost' or 'offline'.&lt;/p&gt; &lt;h4&gt;Syntax&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Arguments&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;its name, as in the Fleet panel&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Examples&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; true of robots that are silent&lt;/li&gt; &lt;/ul&gt;</source>
             <translation>&lt;h3&gt;robot_state függvény&lt;/h3&gt; &lt;p&gt;Visszaadja, mennyire lehet bízni abban, amit egy robotról tudunk: 'fresh' (friss), 'stale' (elavult), 'lost' (elveszett) vagy 'offline'.&lt;/p&gt; &lt;h4&gt;Szintaxis&lt;/h4&gt; &lt;p&gt;&lt;code&gt;robot_state(robot)&lt;/code&gt;&lt;/p&gt; &lt;h4&gt;Argumentumok&lt;/h4&gt; &lt;table&gt;&lt;tr&gt;&lt;td&gt;&lt;i&gt;robot&lt;/i&gt;&lt;/td&gt;&lt;td&gt;a neve, ahogy a Flotta panelen áll&lt;/td&gt;&lt;/tr&gt;&lt;/table&gt; &lt;h4&gt;Példák&lt;/h4&gt; &lt;ul&gt; &lt;li&gt;&lt;code&gt;robot_state('r1')&lt;/code&gt; &amp;rarr; 'fresh'&lt;/li&gt; &lt;li&gt;&lt;code&gt;robot_state("robot") IN ('stale', 'lost')&lt;/code&gt; &amp;rarr; igaz a hallgató robotokra&lt;/li&gt; &lt;/ul&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>&lt;h4&gt;Notes&lt;/h4&gt; &lt;p&gt;NULL stands for a robot that the gateway has not told of, and while this QGIS is connected to none. What is not known of a robot is NULL as well. Values are at most half a second old; a layer shows them when it is drawn.&lt;/p&gt;</source>
             <translation>&lt;h4&gt;Megjegyzések&lt;/h4&gt; &lt;p&gt;NULL, ha az átjáró nem beszélt a robotról, és amíg ez a QGIS egyhez sem kapcsolódik. NULL az is, ami egy robotról nem ismert. Az értékek legfeljebb fél másodpercesek; egy réteg akkor mutatja őket, amikor kirajzolódik.&lt;/p&gt;</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flotta</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>crs {given!r} is no CRS that QGIS knows; write a code such as 'EPSG:32633'</source>
             <translation>{given!r} nem olyan vetület, amelyet a QGIS ismer; írjon egy kódot, például 'EPSG:32633'</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no layer of the project has the role {role}; set it in Plugins &gt; Fleet Supervisor &gt; Layer roles, or name a layer as the third argument</source>
             <translation>a projekt egyik rétegének sincs ilyen szerepe: {role}; állítsa be itt: Modulok &gt; Fleet Supervisor &gt; Rétegszerepek, vagy nevezzen meg egy réteget harmadik argumentumként</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>no vector layer of the project has the name or id {layer!r}</source>
             <translation>a projektben nincs ilyen nevű vagy azonosítójú vektorréteg: {layer!r}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: the geometry has no place in {crs}</source>
             <translation>{function}: a geometriának nincs helye itt: {crs}</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: x is {x!r} and y is {y!r}; give two numbers</source>
             <translation>{function}: x értéke {x!r}, y értéke {y!r}; adjon meg két számot</translation>
         </message>
         <message>
-            <location filename="../../plugin/expressions/functions.py" />
+            <location filename="../../plugin/expressions.py" />
             <source>{function}: {geometry!r} is no geometry; give one, or a feature that has one</source>
             <translation>{function}: {geometry!r} nem geometria; adjon meg egyet, vagy olyan elemet, amelynek van</translation>
         </message>
@@ -2240,16 +2185,6 @@
             <location filename="../../plugin/gateway_client/robot_states.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>Hiányzik a websockets Python-csomag, amely az átjáróhoz való kapcsolódáshoz kell. Telepítse a modult a kiadott zipből, amely tartalmazza, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install websockets', és indítsa újra a QGIS-t.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/websocket_library.py" />
-            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
-            <translation>A websockets Python-csomag {version} verziója ({path}) túl régi az átjáróhoz való kapcsolódáshoz. Telepítse a modult a kiadott zipből, amely újabbat tartalmaz, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install "websockets&gt;={oldest}"', és indítsa újra a QGIS-t.</translation>
         </message>
         <message>
             <location filename="../../plugin/help.py" />
@@ -3400,28 +3335,6 @@
             <translation>eddig:</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
-            <translation> Szerep nélkül, mert a projekt más rétegeié: {layers}. A Modulok &gt; Fleet Supervisor &gt; Rétegszerepek menüben módosítható.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>The site in {folder} is in the project already: {names}.</source>
-            <translation>A(z) {folder} mappában lévő telephely már a projektben van: {names}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/site_project.py" />
-            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
-            <translation>Ez a projekt nem a(z) {site} telephelyé: változóiban más az origó, a CRS vagy az elforgatás. Az ellenőrzések és a riasztások ennek a projektnek a rétegei szerint mennek: nyissa meg a telephelyét.</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/site_project.py" />
-            <source>{site}: %n layers loaded.</source>
-            <translation>
-                <numerusform>{site}: %n réteg betöltve.</numerusform>
-            </translation>
-        </message>
-        <message>
             <location filename="../../plugin/map/tools/click_tools.py" />
             <source>Close road</source>
             <translation>Út lezárása</translation>
@@ -3563,13 +3476,68 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Keep off roads on which other robots are sent</source>
+            <translation>Kerülje el az utakat, amelyeken más robotok vannak úton</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Lead ways so</source>
+            <translation>Így vezessen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Surfaces</source>
+            <translation>Felületek</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or cancel it (Esc) first, or select {robot} again.</source>
             <translation>A térképen lévő útvonal ehhez tartozik: {robot}, de {selected} van kijelölve. Előbb küldje el (Enter) vagy vesse el (Esc), vagy jelölje ki újra ezt: {robot}.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>This holds for every leg that is led from now on, until QGIS is closed.</source>
+            <translation>Ez minden ezután vezetett szakaszra érvényes, a QGIS bezárásáig.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
             <source>This is the first vertex: another is put before one that comes later.</source>
             <translation>Ez az első töréspont: másikat csak egy későbbi elé lehet tenni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Way</source>
+            <translation>Út</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Ways on roads</source>
+            <translation>Útvonalak utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>Width</source>
+            <translation>Szélesség</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>all, or such as: asphalt, concrete</source>
+            <translation>mind, vagy például: asphalt, concrete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>as wide as the robots are</source>
+            <translation>amilyen szélesek a robotok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the fastest</source>
+            <translation>a leggyorsabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/route_tool.py" />
+            <source>the shortest</source>
+            <translation>a legrövidebb</translation>
         </message>
         <message>
             <location filename="../../plugin/observations/observation_dock.py" />
@@ -3763,8 +3731,33 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>&amp;Folder for files that are written</source>
+            <translation>A kiírt fájlok &amp;mappája</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>&amp;Size of robots on the map</source>
+            <translation>A robotok &amp;mérete a térképen</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>1 is as they come</source>
+            <translation>1: az eredeti méret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Alarms</source>
             <translation>Riasztások</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
+            <translation>A nyilak mutatják, hogyan van egy-egy robot, és minden helyzettel mozognak. A réteg azt mutatja, amit a stílusa mond, olyan gyakran, ahogy újraíródik; amíg nincs a térképen, nyilak láthatók</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>At most; from the next connection on. Fewer spare a slow network</source>
+            <translation>Legfeljebb; a következő kapcsolattól érvényes. A kevesebb kíméli a lassú hálózatot</translation>
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
@@ -3778,15 +3771,43 @@
         </message>
         <message>
             <location filename="../../plugin/options_page.py" />
+            <source>Layer of robots written anew &amp;every</source>
+            <translation>A robotok rétege &amp;újraíródik ennyi időnként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
             <source>Map and files</source>
             <translation>Térkép és fájlok</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/panel/alarms/alarm_bar.py" />
-            <source>%n alarms</source>
-            <translation>
-                <numerusform>%n riasztás</numerusform>
-            </translation>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Positions asked for, &amp;times a second</source>
+            <translation>Kért helyzetek &amp;száma másodpercenként</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>Robots are &amp;drawn by</source>
+            <translation>Robotok &amp;rajzolója</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
+            <translation>A Robotok (élő) réteg: attribútumtábla, címkék, kifejezések. Az élő térkép ettől független</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the layer Robots (live), in its style</source>
+            <translation>a Robotok (élő) réteg, a maga stílusában</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>the live map: arrows</source>
+            <translation>az élő térkép: nyilak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/options_page.py" />
+            <source>your documents</source>
+            <translation>az Ön dokumentumai</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/panel/alarms/alarm_panel.py" />
@@ -4159,6 +4180,13 @@
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>{robot} is outside the site{where}</source>
             <translation>{robot} a telephelyen kívül van{where}</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/alarms/watch.py" />
+            <source>%n alarms</source>
+            <translation>
+                <numerusform>%n riasztás</numerusform>
+            </translation>
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -5301,6 +5329,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/window.py" />
+            <source> Without a role, since other layers of the project have it: {layers}. Plugins &gt; Fleet Supervisor &gt; Layer roles changes that.</source>
+            <translation> Szerep nélkül, mert a projekt más rétegeié: {layers}. A Modulok &gt; Fleet Supervisor &gt; Rétegszerepek menüben módosítható.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
             <source>No emergency stop is in force.</source>
             <translation>Nincs érvényben vészleállítás.</translation>
         </message>
@@ -5308,6 +5341,23 @@
             <location filename="../../plugin/panel/window.py" />
             <source>Targets and routes</source>
             <translation>Célok és útvonalak</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>The site in {folder} is in the project already: {names}.</source>
+            <translation>A(z) {folder} mappában lévő telephely már a projektben van: {names}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/window.py" />
+            <source>This project is not that of site {site}: its variables have another origin, CRS or rotation. Checks and alarms go by the layers of this project: open the site's.</source>
+            <translation>Ez a projekt nem a(z) {site} telephelyé: változóiban más az origó, a CRS vagy az elforgatás. Az ellenőrzések és a riasztások ennek a projektnek a rétegei szerint mennek: nyissa meg a telephelyét.</translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/panel/window.py" />
+            <source>{site}: %n layers loaded.</source>
+            <translation>
+                <numerusform>{site}: %n réteg betöltve.</numerusform>
+            </translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/as_placed.py" />
@@ -7270,108 +7320,6 @@
             <source>{tiles}, {segments}, {size} bytes</source>
             <translation>{tiles}, {segments}, {size} bájt</translation>
         </message>
-        <message numerus="yes">
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>%n points</source>
-            <translation>
-                <numerusform>%n pont</numerusform>
-            </translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
-            <translation>&lt;p&gt;Megkeresi az utat két, utakhoz közeli hely között: mindegyik annak az útnak a legközelebbi pontjára kerül, amely használható. Lezárt utakat nem használ, egyirányúakat csak az irányukban; a &lt;b&gt;felületek&lt;/b&gt; (nevek vesszővel elválasztva) és a &lt;b&gt;legkisebb szélesség&lt;/b&gt; tovább szűkítik az utat.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;területek, amelyeken nem szabad áthajtani&lt;/b&gt; poligonjain átvezető élek le vannak zárva; ami a peremükön fut, nincs.&lt;/p&gt; &lt;p&gt;Az &lt;b&gt;útvonalban&lt;/b&gt; minden útszakasznak van egy vonala, sorrendben. A &lt;b&gt;pálya&lt;/b&gt; az, amit a robot bejár: legfeljebb ilyen távoli pontok, a sarkok a fordulási sugárra lekerekítve, amennyire a robot és az út széles. A szűkebben maradó sarkokat megszámolja és a naplóban megnevezi.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;motor&lt;/b&gt; a RoutingKit vagy a SciPy, ahol a Pythonban megvan, különben a QGIS sajátja; a napló és az &lt;i&gt;ENGINE_USED&lt;/i&gt; megmondja, melyik volt. Mind ugyanazokat az utakat találja.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Corners tighter than the robot turns</source>
-            <translation>A robot fordulásánál élesebb sarkok</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine</source>
-            <translation>Motor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Engine that was used</source>
-            <translation>Használt motor</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
-            <translation>Megkeresi a legrövidebb vagy leggyorsabb utat az úttengelyek mentén, és a pályát, amelyen a robot halad.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Goal</source>
-            <translation>Végpont</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Length of the route [m]</source>
-            <translation>Az útvonal hossza [m]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Path</source>
-            <translation>Pálya</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Points of the path</source>
-            <translation>A pálya pontjai</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route</source>
-            <translation>Útvonal</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Route on roads</source>
-            <translation>Útvonal utakon</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Start</source>
-            <translation>Kiindulás</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
-            <translation>A ({x:.2f}, {y:.2f}) ponton lévő sarok élesebb, mint ahogy a robot fordul.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>Time on the route [s]</source>
-            <translation>Idő az útvonalon [s]</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>fastest</source>
-            <translation>leggyorsabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>none: plain Python</source>
-            <translation>egyik sem: csak Python</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>shortest</source>
-            <translation>legrövidebb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>the fastest that is installed</source>
-            <translation>a telepítettek közül a leggyorsabb</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/processing/algorithms/find_route.py" />
-            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
-            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
-        </message>
         <message>
             <location filename="../../plugin/processing/algorithms/import_navigation_map.py" />
             <source>&lt;p&gt;Reads a map of Nav2: the &lt;b&gt;YAML&lt;/b&gt; and the image that it names (PGM, PNG, BMP or JPEG), in the modes &lt;i&gt;trinary&lt;/i&gt;, &lt;i&gt;scale&lt;/i&gt; and &lt;i&gt;raw&lt;/i&gt;, with its thresholds, &lt;i&gt;negate&lt;/i&gt;, and origin with yaw.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Raster&lt;/b&gt;: a value for each cell, 0 free to 100 occupied, -1 unknown. &lt;b&gt;Obstacles&lt;/b&gt;: a polygon for each patch of cells of at least &lt;i&gt;OCCUPIED_FROM&lt;/i&gt;, along the edges of the cells.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Place&lt;/b&gt;: the map's metres are those of the site frame. &lt;i&gt;SITE_CRS&lt;/i&gt;, &lt;i&gt;ORIGIN&lt;/i&gt; and &lt;i&gt;ROTATION&lt;/i&gt; say where that is; files of &lt;i&gt;Export navigation map&lt;/i&gt; say it themselves. Where neither does, the layers are in local metres, said in a warning.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:importnavigationmap -- MAP=warehouse.yaml SITE_CRS=EPSG:32633 ORIGIN="640420,5193480 [EPSG:32633]" ROTATION=0 RASTER=warehouse.tif OBSTACLES=warehouse.gpkg&lt;/pre&gt;</source>
@@ -7629,6 +7577,13 @@
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>%n points</source>
+            <translation>
+                <numerusform>%n pont</numerusform>
+            </translation>
+        </message>
+        <message numerus="yes">
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>%n repairs</source>
             <translation>
                 <numerusform>%n javítás</numerusform>
@@ -7638,6 +7593,11 @@
             <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>&lt;p&gt;Checks the network that road centrelines make, and makes a layer of points that show what is odd, each with the feature to look at. Nothing is changed.&lt;/p&gt; &lt;p&gt;What &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; repairs: &lt;b&gt;gap&lt;/b&gt;, an end that stops within the tolerance of another road; &lt;b&gt;overshoot&lt;/b&gt;, an end that reaches beyond a road by less than that; &lt;b&gt;duplicate&lt;/b&gt;, a stretch that is drawn twice.&lt;/p&gt; &lt;p&gt;What only people can judge: &lt;b&gt;dead end&lt;/b&gt;; &lt;b&gt;disconnected part&lt;/b&gt;, roads that are connected with one another but not with the longest part; &lt;b&gt;one-way&lt;/b&gt;, roads from which no way leads back because of the directions.&lt;/p&gt;</source>
             <translation>&lt;p&gt;Ellenőrzi az úttengelyekből álló hálózatot, és pontréteget készít arról, ami furcsa, mindegyiknél a megnézendő elemmel. Semmit sem változtat.&lt;/p&gt; &lt;p&gt;Amit a &lt;i&gt;fleet:buildroadnetwork&lt;/i&gt; kijavít: &lt;b&gt;rés&lt;/b&gt; (gap), egy vég, amely a tűrésen belül egy másik út előtt megáll; &lt;b&gt;túlnyúlás&lt;/b&gt; (overshoot), egy vég, amely ennél kevesebbel nyúlik túl egy úton; &lt;b&gt;kettőzés&lt;/b&gt; (duplicate), kétszer megrajzolt szakasz.&lt;/p&gt; &lt;p&gt;Amit csak ember ítélhet meg: &lt;b&gt;zsákutca&lt;/b&gt; (dead end); &lt;b&gt;különálló rész&lt;/b&gt; (disconnected part), egymással összefüggő utak, amelyek a leghosszabb résszel nem; &lt;b&gt;egyirányú&lt;/b&gt; (one-way), utak, ahonnan az irányok miatt nincs út vissza.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>&lt;p&gt;Finds the way between two places near roads: each is taken to the nearest point of a road that may be used. Closed roads are not used, one-way roads in their direction only; &lt;b&gt;surfaces&lt;/b&gt; (names with commas between) and a &lt;b&gt;least width&lt;/b&gt; restrict the way further.&lt;/p&gt; &lt;p&gt;Edges that lead through a polygon of the &lt;b&gt;areas that must not be driven through&lt;/b&gt; are closed; what runs along a rim is not.&lt;/p&gt; &lt;p&gt;&lt;b&gt;Route&lt;/b&gt; has a line for each stretch of road, in order. &lt;b&gt;Path&lt;/b&gt; is what a robot drives: points at most so far apart, corners rounded to the turning radius as far as robot and road are wide. Corners that stay tighter are counted and named in the log.&lt;/p&gt; &lt;p&gt;The &lt;b&gt;engine&lt;/b&gt; is RoutingKit or SciPy where Python has them, else QGIS's own; the log and &lt;i&gt;ENGINE_USED&lt;/i&gt; say which was used. All find the same ways.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</source>
+            <translation>&lt;p&gt;Megkeresi az utat két, utakhoz közeli hely között: mindegyik annak az útnak a legközelebbi pontjára kerül, amely használható. Lezárt utakat nem használ, egyirányúakat csak az irányukban; a &lt;b&gt;felületek&lt;/b&gt; (nevek vesszővel elválasztva) és a &lt;b&gt;legkisebb szélesség&lt;/b&gt; tovább szűkítik az utat.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;területek, amelyeken nem szabad áthajtani&lt;/b&gt; poligonjain átvezető élek le vannak zárva; ami a peremükön fut, nincs.&lt;/p&gt; &lt;p&gt;Az &lt;b&gt;útvonalban&lt;/b&gt; minden útszakasznak van egy vonala, sorrendben. A &lt;b&gt;pálya&lt;/b&gt; az, amit a robot bejár: legfeljebb ilyen távoli pontok, a sarkok a fordulási sugárra lekerekítve, amennyire a robot és az út széles. A szűkebben maradó sarkokat megszámolja és a naplóban megnevezi.&lt;/p&gt; &lt;p&gt;A &lt;b&gt;motor&lt;/b&gt; a RoutingKit vagy a SciPy, ahol a Pythonban megvan, különben a QGIS sajátja; a napló és az &lt;i&gt;ENGINE_USED&lt;/i&gt; megmondja, melyik volt. Mind ugyanazokat az utakat találja.&lt;/p&gt; &lt;pre&gt;qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]" GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg&lt;/pre&gt;</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7656,6 +7616,11 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Corners tighter than the robot turns</source>
+            <translation>A robot fordulásánál élesebb sarkok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Dead ends</source>
             <translation>Zsákutcák</translation>
         </message>
@@ -7666,13 +7631,38 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine</source>
+            <translation>Motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Engine that was used</source>
+            <translation>Használt motor</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Finds gaps, overshoots, duplicates, dead ends, separate parts and one-way traps in road centrelines.</source>
             <translation>Hézagokat, túlnyúlásokat, kettőzéseket, zsákutcákat, különálló részeket és egyirányú csapdákat keres az úttengelyekben.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Finds the shortest or fastest way along road centrelines, and the path that a robot drives.</source>
+            <translation>Megkeresi a legrövidebb vagy leggyorsabb utat az úttengelyek mentén, és a pályát, amelyen a robot halad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Gaps</source>
             <translation>Hézagok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Goal</source>
+            <translation>Végpont</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Length of the route [m]</source>
+            <translation>Az útvonal hossza [m]</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
@@ -7701,6 +7691,16 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Path</source>
+            <translation>Pálya</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Points of the path</source>
+            <translation>A pálya pontjai</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Repairs</source>
             <translation>Javítások</translation>
         </message>
@@ -7711,8 +7711,58 @@
         </message>
         <message>
             <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route</source>
+            <translation>Útvonal</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Route on roads</source>
+            <translation>Útvonal utakon</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
             <source>Splits road centrelines where they meet, passes over and under at bridges, and repairs on request.</source>
             <translation>Az úttengelyeket találkozásaiknál felosztja, hidaknál alattuk és felettük átvezeti, és kérésre kijavítja.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Start</source>
+            <translation>Kiindulás</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.</source>
+            <translation>A ({x:.2f}, {y:.2f}) ponton lévő sarok élesebb, mint ahogy a robot fordul.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>Time on the route [s]</source>
+            <translation>Idő az útvonalon [s]</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>fastest</source>
+            <translation>leggyorsabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>none: plain Python</source>
+            <translation>egyik sem: csak Python</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>shortest</source>
+            <translation>legrövidebb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>the fastest that is installed</source>
+            <translation>a telepítettek közül a leggyorsabb</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/algorithms/road_network.py" />
+            <source>{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m and goal {off_goal:.2f} m from the road</source>
+            <translation>{metres:.1f} m, {seconds:.1f} s, {points}, megtalálta: {engine}; a kiindulás {off_start:.2f} m-re, a végpont {off_goal:.2f} m-re van az úttól</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/processing/algorithms/road_surfaces.py" />
@@ -9040,71 +9090,6 @@
             <source>the last hour</source>
             <translation>az utolsó óra</translation>
         </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>Choose a file that Export wrote.</source>
-            <translation>Válasszon az Exportálás által írt fájlt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
-            <translation>A QGIS nem adta ki az őrzött tokent: nem adták meg a mesterjelszavát. Nyomja meg a Kapcsolódás gombot és adja meg, vagy írja be a tokent a Hozzáférés alatt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
-            <translation>A QGIS nem őrizte meg a tokent: nem adták meg a mesterjelszavát. A token most érvényes, de legközelebb újra meg kell adni.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
-            <translation>A(z) {config} hitelesítés {method} módszerű, amelyet az átjárók nem ismernek. Válasszon {wanted} módszerűt, jelszóként a tokennel.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
-            <translation>A kapcsolatban megnevezett {config} hitelesítés nincs ebben a QGIS-ben. Szerkessze a kapcsolatot és válasszon másikat, vagy írja be a tokent.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>The connection has no name. Give it one, such as the site's.</source>
-            <translation>A kapcsolatnak nincs neve. Adjon neki egyet, például a telephelyét.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
-            <translation>Ez a QGIS nem őriz hitelesítést (hogy miért, a beállításai mondják meg a Hitelesítés lapon): írja be a tokent a Hozzáférés alatt.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} has no list named connections. {choose}</source>
-            <translation>{source} nem tartalmaz connections nevű listát. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} holds no connections to gateways. {choose}</source>
-            <translation>{source} nem tartalmaz átjárókhoz vezető kapcsolatokat. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is not JSON: {error}. {choose}</source>
-            <translation>{source} nem JSON: {error}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
-            <translation>{source} verziója {found}; ez a modul a {version}. verziót olvassa. Frissítse a modult.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
-            <translation>{source}: a(z) {number}. kapcsolat nem ilyen nevű szövegekből áll: {keys}. {choose}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/settings/connections.py" />
-            <source>{source}: connection {number}: {error}</source>
-            <translation>{source}: {number}. kapcsolat: {error}</translation>
-        </message>
         <message numerus="yes">
             <location filename="../../plugin/settings/connections_widget.py" />
             <source>%n connections from {file}.</source>
@@ -9275,64 +9260,69 @@
             <translation>{site} ({crs}) válaszol.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Folder for files that are written</source>
-            <translation>A kiírt fájlok &amp;mappája</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>Choose a file that Export wrote.</source>
+            <translation>Válasszon az Exportálás által írt fájlt.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>&amp;Size of robots on the map</source>
-            <translation>A robotok &amp;mérete a térképen</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not give the token that it keeps: its master password was not given. Press Connect and enter it, or enter the token under Access.</source>
+            <translation>A QGIS nem adta ki az őrzött tokent: nem adták meg a mesterjelszavát. Nyomja meg a Kapcsolódás gombot és adja meg, vagy írja be a tokent a Hozzáférés alatt.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>1 is as they come</source>
-            <translation>1: az eredeti méret</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>QGIS did not keep the token: its master password was not given. The token is used now and has to be entered again next time.</source>
+            <translation>A QGIS nem őrizte meg a tokent: nem adták meg a mesterjelszavát. A token most érvényes, de legközelebb újra meg kell adni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Arrows show how each robot is, and move with every position. The layer shows what its style says, as often as it is written anew; while it is not on the map there are arrows</source>
-            <translation>A nyilak mutatják, hogyan van egy-egy robot, és minden helyzettel mozognak. A réteg azt mutatja, amit a stílusa mond, olyan gyakran, ahogy újraíródik; amíg nincs a térképen, nyilak láthatók</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} is of the method {method}, which gateways do not know. Choose one of the method {wanted} with the token as its password.</source>
+            <translation>A(z) {config} hitelesítés {method} módszerű, amelyet az átjárók nem ismernek. Válasszon {wanted} módszerűt, jelszóként a tokennel.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>At most; from the next connection on. Fewer spare a slow network</source>
-            <translation>Legfeljebb; a következő kapcsolattól érvényes. A kevesebb kíméli a lassú hálózatot</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The authentication {config} that the connection names is not in this QGIS. Edit the connection and choose another, or enter the token.</source>
+            <translation>A kapcsolatban megnevezett {config} hitelesítés nincs ebben a QGIS-ben. Szerkessze a kapcsolatot és válasszon másikat, vagy írja be a tokent.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Layer of robots written anew &amp;every</source>
-            <translation>A robotok rétege &amp;újraíródik ennyi időnként</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>The connection has no name. Give it one, such as the site's.</source>
+            <translation>A kapcsolatnak nincs neve. Adjon neki egyet, például a telephelyét.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Positions asked for, &amp;times a second</source>
-            <translation>Kért helyzetek &amp;száma másodpercenként</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>This QGIS keeps no authentication (its options say why, under Authentication): enter the token under Access.</source>
+            <translation>Ez a QGIS nem őriz hitelesítést (hogy miért, a beállításai mondják meg a Hitelesítés lapon): írja be a tokent a Hozzáférés alatt.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>Robots are &amp;drawn by</source>
-            <translation>Robotok &amp;rajzolója</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} has no list named connections. {choose}</source>
+            <translation>{source} nem tartalmaz connections nevű listát. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>The layer Robots (live): attribute table, labels, expressions. The live map goes its own way</source>
-            <translation>A Robotok (élő) réteg: attribútumtábla, címkék, kifejezések. Az élő térkép ettől független</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} holds no connections to gateways. {choose}</source>
+            <translation>{source} nem tartalmaz átjárókhoz vezető kapcsolatokat. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the layer Robots (live), in its style</source>
-            <translation>a Robotok (élő) réteg, a maga stílusában</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is not JSON: {error}. {choose}</source>
+            <translation>{source} nem JSON: {error}. {choose}</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>the live map: arrows</source>
-            <translation>az élő térkép: nyilak</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source} is of version {found}; this plugin reads version {version}. Update the plugin.</source>
+            <translation>{source} verziója {found}; ez a modul a {version}. verziót olvassa. Frissítse a modult.</translation>
         </message>
         <message>
-            <location filename="../../plugin/settings/preferences.py" />
-            <source>your documents</source>
-            <translation>az Ön dokumentumai</translation>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number} is not a set of texts named {keys}. {choose}</source>
+            <translation>{source}: a(z) {number}. kapcsolat nem ilyen nevű szövegekből áll: {keys}. {choose}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/settings/profile.py" />
+            <source>{source}: connection {number}: {error}</source>
+            <translation>{source}: {number}. kapcsolat: {error}</translation>
         </message>
         <message>
             <location filename="../../plugin/tour/practice_fleet.py" />
@@ -9753,6 +9743,16 @@
             <location filename="../../plugin/ui/tables.py" />
             <source>{file} was not written ({why}). Choose another folder, or close the file where it is open.</source>
             <translation>{file} nem lett kiírva ({why}). Válasszon másik mappát, vagy zárja be a fájlt, ahol nyitva van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets is missing, which the connection to the gateway needs. Install the plugin from its release zip, which contains it, or run 'python3 -m pip install websockets' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>Hiányzik a websockets Python-csomag, amely az átjáróhoz való kapcsolódáshoz kell. Telepítse a modult a kiadott zipből, amely tartalmazza, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install websockets', és indítsa újra a QGIS-t.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/ui/vendored.py" />
+            <source>The Python package websockets {version} in {path} is too old for the connection to the gateway. Install the plugin from its release zip, which contains a newer one, or run 'python3 -m pip install "websockets&gt;={oldest}"' with the Python that QGIS uses, and restart QGIS.</source>
+            <translation>A websockets Python-csomag {version} verziója ({path}) túl régi az átjáróhoz való kapcsolódáshoz. Telepítse a modult a kiadott zipből, amely újabbat tartalmaz, vagy futtassa a QGIS Pythonjával: 'python3 -m pip install "websockets&gt;={oldest}"', és indítsa újra a QGIS-t.</translation>
         </message>
     </context>
 </TS>

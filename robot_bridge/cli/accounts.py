@@ -11,8 +11,7 @@ from typing import Annotated
 import typer
 from sqlalchemy import Connection
 
-from ..core.messages.operator_requests import Role
-from ..core.messages.validation import check_robot_name
+from ..core.messages.base import Role, check_robot_name
 from ..gateway.auth import accounts, audit
 from ..gateway.storage.database import read_password, shown
 from ..gateway.storage.repositories import robots as stored_robots

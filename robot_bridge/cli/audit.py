@@ -15,7 +15,7 @@ import typer
 from sqlalchemy import URL, Connection
 
 from ..core.errors import BridgeError, StoreError, listed_names
-from ..core.messages.validation import MessageError
+from ..core.messages.base import MessageError
 from ..gateway.auth import audit as audit_log
 from ..gateway.auth.accounts import grants
 from ..gateway.auth.audit import AuditEntry

@@ -12,7 +12,7 @@ from sqlalchemy import URL, Connection
 
 from ..core.errors import StoreError
 from ..core.files import replacement
-from ..core.messages.validation import check_robot_name
+from ..core.messages.base import check_robot_name
 from ..core.sites.site_database import is_database_address, read_site_address
 from ..gateway.storage import revisions
 from ..gateway.storage.backup import back_up, revision_in

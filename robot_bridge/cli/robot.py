@@ -16,8 +16,8 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 import typer
 
 from ..core.errors import BridgeError
+from ..core.messages.base import check_robot_name
 from ..core.messages.robots import SetObject
-from ..core.messages.validation import check_robot_name
 from ..core.parent_process import call_at_end_of_input
 from ..protocol.credentials import ClientCredentials
 from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings, RequestSink, RobotMemory

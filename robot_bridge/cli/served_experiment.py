@@ -29,16 +29,9 @@ from ..gateway.app import GatewaySettings, Signals
 from ..gateway.app import run as run_gateway
 from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings
 from ..reference_robot.body import BodyLimits
-from ..reference_robot.localisation import simulation
+from ..reference_robot.localisation import experiment, simulation
 from ..reference_robot.localisation.avoidance import MovingObstacles, People
-from ..reference_robot.localisation.experiment import (
-    PATIENCE,
-    ExperimentSettings,
-    Record,
-    check_route,
-    goal_of,
-    route_from,
-)
+from ..reference_robot.localisation.experiment import ExperimentSettings, Record
 from ..reference_robot.localisation.localiser import InitialBelief
 from ..reference_robot.localisation.sensors import TruePose
 from ..reference_robot.websocket_link import RobotWebSocketLink
@@ -102,7 +95,7 @@ def drive_at_gateway(
             f"experiment {drives.name}: each seed has a world of its own for what is reported there; give "
             "--accept or --at-once, not both"
         )
-    check_route(robot_map, settings.route)
+    experiment.check_route(robot_map, settings.route)
     if drives.window is None:
         return asyncio.run(_all_drives(drives, robot_map, settings, seeds))
     with TemporaryDirectory() as folder:
@@ -185,7 +178,7 @@ async def _drive_together(
     address: str,
 ) -> list[Record]:
     surroundings = MovingObstacles()
-    routes = [route_from(settings.route, number / len(seeds)) for number in range(len(seeds))]
+    routes = [experiment.route_from(settings.route, number / len(seeds)) for number in range(len(seeds))]
     robots = [
         _Robot(drives, robot_map, settings, seed, route, surroundings, address)
         for seed, route in zip(seeds, routes, strict=True)
@@ -202,7 +195,7 @@ async def _drive_together(
             for robot in robots:
                 await desk.ask("send", robot.command())
                 robot.begin()
-            longest = PATIENCE * robots[0].length / settings.speed + 60.0
+            longest = experiment.PATIENCE * robots[0].length / settings.speed + 60.0
             await _step_until(robots, people, drives.pace, lambda robot: robot.is_done, longest)
             # What they saw is to be stored before they are gone.
             await _step_until(robots, people, pace, lambda robot: robot.has_reported, STORED)
@@ -344,7 +337,7 @@ class _Robot:
 
     def command(self) -> dict[str, Any]:
         """Return the parameters of the command that sends it round."""
-        goal = goal_of(self._settings)
+        goal = experiment.goal_of(self._settings)
         points = {"points": self._route, **({} if goal is None else {"theta": goal[2]})}
         command = f"experiment-{self.name}-{time.time_ns()}"
         return {"command": command, "robot": self.name, "op": "SetPath", "params": points}
@@ -364,7 +357,7 @@ class _Robot:
         """Return what was noted."""
         columns = [np.array(column) for column in zip(*self._rows, strict=True)]
         return replace(
-            Record(self._seed, None, *columns, goal=goal_of(self._settings)),
+            Record(self._seed, None, *columns, goal=experiment.goal_of(self._settings)),
             maps=self.agent.maps,
             map_bytes=self.agent.map_bytes,
             clearance=float(self._clearance),

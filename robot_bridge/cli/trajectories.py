@@ -11,8 +11,8 @@ from typing import Annotated
 import typer
 
 from ..core.errors import BridgeError, counted
+from ..core.messages.base import check_robot_name
 from ..core.messages.robots import SendPos
-from ..core.messages.validation import check_robot_name
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories.trajectories import Fix, TrajectoryQuery
 from ..gateway.trajectories.exchange import RecordedDrive, TrajectoryFile, import_drives

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlsplit
 
-from .messages.validation import is_loopback, usable_addresses
+from .messages.base import is_loopback, usable_addresses
 
 SPREAD = 0.2
 """of a wait by which it is longer or shorter: those whose gateway died do not all come in one moment."""

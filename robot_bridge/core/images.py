@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .errors import RefusedError
-from .messages.validation import MessageError
+from .messages.base import MessageError
 
 _BEGINNINGS = {
     "image/jpeg": b"\xff\xd8\xff",

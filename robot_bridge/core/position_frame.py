@@ -10,8 +10,8 @@ import numpy as np
 import numpy.typing as npt
 
 from .json_decoder import MESSAGE, DecodingError, JsonBounds, decode_json
+from .messages.base import MessageError
 from .messages.robots import SendPos, is_status
-from .messages.validation import MessageError
 
 # --- The binary frame of positions: a JSON head, and behind it a table of 64-bit floats ---
 # Everything is little-endian: the length of the head as an unsigned 32-bit integer; the head, a JSON-RPC

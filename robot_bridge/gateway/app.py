@@ -21,8 +21,8 @@ from websockets.http11 import Request, Response
 
 from ..core.errors import BridgeError, SiteError, StoreError
 from ..core.messages.administration import Stopping
+from ..core.messages.base import MessageError, check_robot_name
 from ..core.messages.json_values import to_json
-from ..core.messages.validation import MessageError, check_robot_name
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError
@@ -52,7 +52,7 @@ from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
 from .model.clocks import ClockWatch, check_clock_at_start
-from .model.request_handlers import Answering, RequestHandlers
+from .model.events import Answering, RequestHandlers
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention

@@ -12,8 +12,7 @@ from .cluster.request_relay import RequestRelay
 from .cluster.robot_relay import DetailRelay, PositionRelay
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
-from .model.events import PlanChanged, SiteChosen
-from .model.request_handlers import Answering
+from .model.events import Answering, PlanChanged, SiteChosen
 from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
 

@@ -22,8 +22,7 @@ from ..core.sites.settings import SETTINGS_FILE, read_settings
 from ..core.sites.site import Site, frame_mismatch, publish_staged, read_site, sibling_sites
 from ..core.sites.site_database import FORMAT, SCHEMA, SITE_FILES, SiteAddress, digest_text
 from .fleet.service import Fleet
-from .model.events import SiteChosen
-from .model.request_handlers import handles
+from .model.events import SiteChosen, handles
 from .monitoring import wait_at_most
 from .site.site_maps import SiteMaps
 from .storage.dialects import CONNECT_ARGUMENTS, PostgreSQL

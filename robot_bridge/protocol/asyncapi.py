@@ -9,9 +9,8 @@ from typing import Any
 
 from ..core.messages import links
 from ..core.messages.administration import PROTOCOL_VERSION, Playback, PlaybackReport
-from ..core.messages.operator_requests import DESK_REQUESTS, Done
+from ..core.messages.base import DESK_REQUESTS, ROBOT_NAME, Done
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
-from ..core.messages.validation import ROBOT_NAME
 from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
 from .openapi import openapi
 

@@ -20,23 +20,12 @@ from ..core.errors import (
     StoreError,
 )
 from ..core.json_decoder import DecodingError, decode_json, has_few_brackets
+from ..core.messages import robots
+from ..core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, refuse_unknown_keys, unknown_keys
 from ..core.messages.commands import Send
 from ..core.messages.json_values import to_json
-from ..core.messages.operator_requests import DESK_REQUESTS, DeskRequest
-from ..core.messages.robots import (
-    ANSWERS,
-    COMMANDS,
-    PAYLOADS,
-    REQUESTS,
-    Abort,
-    Answer,
-    Command,
-    Request,
-    SendImage,
-    SendPos,
-)
+from ..core.messages.robots import Abort, Answer, Command, Request, SendImage, SendPos
 from ..core.messages.safety import EmergencyStop
-from ..core.messages.validation import MessageError, refuse_unknown_keys, unknown_keys
 from . import jsonrpc
 
 log = logging.getLogger(__name__)
@@ -56,7 +45,7 @@ def decode_request(op: str, params: Any, payload: bytes | None = None) -> Reques
 
     What is binary in it comes as ``payload``, or as base64 text among the parameters.
     """
-    return cast("Request", _convert(REQUESTS, "operation", op, params, payload))
+    return cast("Request", _convert(robots.REQUESTS, "operation", op, params, payload))
 
 
 def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
@@ -64,12 +53,12 @@ def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
 
     Parameters that are not known are passed over: a newer gateway may give more.
     """
-    return cast("Answer", _convert(ANSWERS, "operation", op, params, payload, strict=False))
+    return cast("Answer", _convert(robots.ANSWERS, "operation", op, params, payload, strict=False))
 
 
 def decode_command(op: str, params: Any) -> Command:
     """Return what an operator wants a robot to be told, ``op`` with its parameters."""
-    return cast("Command", _convert(COMMANDS, "operation", op, params))
+    return cast("Command", _convert(robots.COMMANDS, "operation", op, params))
 
 
 def decode_desk_request(method: str, params: Any) -> DeskRequest[Any]:
@@ -96,7 +85,7 @@ def _convert(
         params = understood
     if params is not None and not isinstance(params, dict):
         raise MessageError(f"{name}: params is {type(params).__name__}; give an object with named parameters")
-    if name in PAYLOADS:
+    if name in robots.PAYLOADS:
         params = _with_payload(name, params or {}, payload)
     try:
         message = msgspec.convert(params or {}, cls)
@@ -121,7 +110,7 @@ def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
 
 
 def _with_payload(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
-    name = PAYLOADS[op]
+    name = robots.PAYLOADS[op]
     if payload is not None:
         return {**params, name: payload}
     if name not in params:
@@ -233,15 +222,15 @@ def parse_params(op: str, text: str | bytes | None) -> Any:
 
 def payload_of(message: Request | Answer) -> bytes | None:
     """Return what is binary in ``message``: the payload of its row."""
-    name = PAYLOADS.get(type(message).__name__)
+    name = robots.PAYLOADS.get(type(message).__name__)
     return None if name is None else cast("bytes", getattr(message, name))
 
 
 def with_base64(op: str, params: dict[str, Any], payload: bytes | None) -> dict[str, Any]:
     """Return the parameters of a message with its payload among them, as it travels inside JSON."""
-    if payload is None or op not in PAYLOADS:
+    if payload is None or op not in robots.PAYLOADS:
         return params
-    return {**params, PAYLOADS[op]: base64.b64encode(payload).decode("ascii")}
+    return {**params, robots.PAYLOADS[op]: base64.b64encode(payload).decode("ascii")}
 
 
 def params_of(message: Request | Answer) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from ..core.errors import BridgeError
-from ..core.messages.validation import is_loopback
+from ..core.messages.base import is_loopback
 
 # --- The exception family of accounts, tokens and certificates ---
 

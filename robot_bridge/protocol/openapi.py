@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from ..core.messages.administration import PROTOCOL_VERSION
+from ..core.messages.base import CRS_CODE, ROBOT_NAME
 from ..core.messages.roads import RouteReport, SurfaceAt
-from ..core.messages.validation import CRS_CODE, ROBOT_NAME
 from .json_schemas import Schema, definitions
 
 SURFACES, ROUTE = "/site/surfaces", "/site/route"

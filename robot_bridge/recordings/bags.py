@@ -16,7 +16,7 @@ from itertools import chain
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
-from ..core.messages.validation import COORDINATE
+from ..core.messages.base import COORDINATE
 from . import tracks
 
 # --- A message as a bag holds it, and the bounds of all bags ---

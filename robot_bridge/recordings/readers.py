@@ -13,26 +13,10 @@ import numpy as np
 
 from ..core.errors import CrsError
 from ..core.sites.frame import crs_of, projections
+from . import tracks
 from .bags import read_bag
 from .csv_table import TableForm, read_csv
-from .tracks import (
-    LATEST,
-    LATITUDE,
-    LONGITUDE,
-    NOTHING,
-    SPEED_BOUNDS,
-    WGS84,
-    Recording,
-    RecordingError,
-    Remarks,
-    Sample,
-    Source,
-    ValueRefusedError,
-    gather,
-    number,
-    place_bounds,
-    seconds_of,
-)
+from .tracks import Recording, RecordingError, Remarks, Sample, Source, ValueRefusedError, number
 
 # --- Positions out of GPX: each track is a robot's, its segments one after the other ---
 
@@ -126,7 +110,7 @@ def read_gpx(file: Path, remarks: Remarks) -> Source:
 
     :raises RecordingError: when it is read, for what is no GPX.
     """
-    return Source(WGS84, _gpx_samples(file, remarks))
+    return Source(tracks.WGS84, _gpx_samples(file, remarks))
 
 
 def _gpx_samples(file: Path, remarks: Remarks) -> Iterator[Sample]:
@@ -157,15 +141,15 @@ def _gpx_sample(point: _Point, robot: str) -> Sample:
     texts = point.texts
     if not texts.get("time"):
         raise ValueRefusedError("time", "is missing; a track without times cannot be played")
-    course = number(texts["course"], "course", _COURSE) if texts.get("course") else NOTHING
+    course = number(texts["course"], "course", _COURSE) if texts.get("course") else tracks.NOTHING
     return Sample(
         point.row,
         robot,
-        seconds_of(texts["time"], "time"),
-        number(point.attributes.get("lon", ""), "lon", LONGITUDE),
-        number(point.attributes.get("lat", ""), "lat", LATITUDE),
+        tracks.seconds_of(texts["time"], "time"),
+        number(point.attributes.get("lon", ""), "lon", tracks.LONGITUDE),
+        number(point.attributes.get("lat", ""), "lat", tracks.LATITUDE),
         math.remainder(math.radians(90.0 - course), math.tau),
-        number(texts["speed"], "speed", SPEED_BOUNDS) if texts.get("speed") else NOTHING,
+        number(texts["speed"], "speed", tracks.SPEED_BOUNDS) if texts.get("speed") else tracks.NOTHING,
     )
 
 
@@ -240,7 +224,7 @@ def _geopackage_sample(fid: int, point: bytes | None, robot: Any, time: Any, hea
     place = np.frombuffer(point, dtype=_POINT, count=1)[0]
     if not isinstance(robot, str) or not robot:
         raise ValueRefusedError("robot", "there is no name")
-    bounds, _ = place_bounds(is_earth=False)
+    bounds, _ = tracks.place_bounds(is_earth=False)
     return Sample(
         fid,
         robot,
@@ -248,13 +232,13 @@ def _geopackage_sample(fid: int, point: bytes | None, robot: Any, time: Any, hea
         _finite(place["x"], "geom x", bounds),
         _finite(place["y"], "geom y", bounds),
         math.remainder(math.radians(90.0 - _finite(heading, "heading", (-360.0, 360.0))), math.tau),
-        _finite(v, "v", SPEED_BOUNDS),
+        _finite(v, "v", tracks.SPEED_BOUNDS),
     )
 
 
 def _seconds(time: Any) -> float:
     at = np.datetime64(time, "ms").astype(np.int64).item() / 1000.0
-    if not -LATEST <= at <= LATEST:
+    if not -tracks.LATEST <= at <= tracks.LATEST:
         raise ValueRefusedError("time", f"{time} is no time")
     return at
 
@@ -285,11 +269,11 @@ def read_recording(file: Path, options: ReadingOptions) -> Recording:
     remarks = Remarks()
     kind = file.name.lower().removesuffix(".gz").rpartition(".")[2]
     if file.is_dir():
-        return gather(file, read_bag(file, options.topics, remarks), remarks)
+        return tracks.gather(file, read_bag(file, options.topics, remarks), remarks)
     if kind not in READERS:
         known = ", ".join(f".{name}" for name in READERS)
         raise RecordingError(f"{file} is of no kind that is read; known are {known}")
-    return gather(file, READERS[kind](file, options, remarks), remarks)
+    return tracks.gather(file, READERS[kind](file, options, remarks), remarks)
 
 
 def _csv(file: Path, options: ReadingOptions, remarks: Remarks) -> Source:

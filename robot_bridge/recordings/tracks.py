@@ -15,7 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..core.errors import BridgeError
-from ..core.messages.validation import COORDINATE, SPEED, THETA
+from ..core.messages.base import COORDINATE, SPEED, THETA
 
 # --- Samples that every reader makes of a file ---
 

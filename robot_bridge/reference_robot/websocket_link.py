@@ -13,9 +13,9 @@ from websockets.frames import CloseCode
 
 from ..core.errors import BridgeError
 from ..core.gateway_addresses import GatewayAddresses
+from ..core.messages.base import MessageError
 from ..core.messages.json_values import to_json
 from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
-from ..core.messages.validation import MessageError
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from ..protocol.credentials import AccessError, ClientCredentials

@@ -75,7 +75,7 @@ def main():
     # Processing comes with every QGIS, beside the plugins that users install.
     sys.path.append(str(Path(QgsApplication.pkgDataPath()) / "python" / "plugins"))
     count = import_everything()
-    from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
+    from fleet_supervisor.plugin.ui.vendored import websocket_library
 
     library = websocket_library()
     news = connect(url)

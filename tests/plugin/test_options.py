@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.help import OPTIONS, HelpWindow
 from fleet_supervisor.plugin.plugin import FleetPlugin
-from fleet_supervisor.plugin.settings.preferences import Preferences, read_preferences, write_preferences
+from fleet_supervisor.plugin.settings.profile import Preferences, read_preferences, write_preferences
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

@@ -13,7 +13,7 @@ import jsonschema
 import pytest
 from websockets.frames import CloseCode
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS
 from robot_bridge.core.messages.robots import ANSWERS, PAYLOADS, REQUESTS
 from robot_bridge.gateway.api.robot_session import REPLACED
 from robot_bridge.gateway.auth.authorisation import REVOKED

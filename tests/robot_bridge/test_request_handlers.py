@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import pytest
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS, DeskRequest, Done, Priority, Role
+from robot_bridge.core.messages.base import DESK_REQUESTS, DeskRequest, Done, Priority, Role
 from robot_bridge.core.messages.queues import GetQueue, PauseRobot
 from robot_bridge.core.messages.roads import GetClosures
-from robot_bridge.gateway.model.request_handlers import Encoded, RequestHandlers, handles
+from robot_bridge.gateway.model.events import Encoded, RequestHandlers, handles
 
 
 class Service:

@@ -33,7 +33,7 @@ def main() -> None:
 def sample_site(made: Path, picture: Path) -> None:
     """Draw the surfaces that the sample site's centrelines make, over its orthophoto."""
     roads = f"{SITE / 'site.gpkg'}|layername=road_centrelines"
-    print(run("build_road_surfaces.BuildRoadSurfaces", {"ROADS": roads, "SURFACES": str(made)}))
+    print(run("road_surfaces.BuildRoadSurfaces", {"ROADS": roads, "SURFACES": str(made)}))
     layers = [_line(roads, "#ffffff", 0.5, "dash"), vector(str(made), style="road_surfaces"), photo()]
     draw_map(layers, EXTENT, PIXELS_PER_M, picture)
 
@@ -47,7 +47,7 @@ def real_track(folder: Path, picture: Path, beside: Path) -> None:
     real = str(DATA / "university_track_surfaces_derived_utm33.gpkg")
     made = str(folder / "track.gpkg")
     given = {"ROADS": roads, "SITE_CRS": CRS, "SURFACE": "'asphalt'", "DRAWN": [_parking(real)]}
-    print(run("build_road_surfaces.BuildRoadSurfaces", {**given, "SURFACES": made}))
+    print(run("road_surfaces.BuildRoadSurfaces", {**given, "SURFACES": made}))
     drive = f"file://{DATA / 'uni_track_drive_utm33.csv'}?xField=x_utm33&yField=y_utm33&crs={CRS}"
     surfaces = _solid(made)
     box = surfaces.extent().buffered(MARGIN_M)

@@ -20,9 +20,9 @@ def main() -> None:
     with drawing(__doc__) as folder, tempfile.TemporaryDirectory() as place:
         outputs = {name: f"{place}/{name}.gpkg" for name in ("EDGES", "NODES", "ROUTE", "PATH")}
         network = {"ROADS": ROADS, "EDGES": outputs["EDGES"], "NODES": outputs["NODES"]}
-        print(run("build_road_network.BuildRoadNetwork", network))
+        print(run("road_network.BuildRoadNetwork", network))
         way = {"ROUTE": outputs["ROUTE"], "PATH": outputs["PATH"], "TURNING_RADIUS": 3}
-        print(run("find_route.FindRoute", {"ROADS": ROADS, "SURFACES": "asphalt", **PLACES, **way}))
+        print(run("road_network.FindRoute", {"ROADS": ROADS, "SURFACES": "asphalt", **PLACES, **way}))
         looks = {"NODES": "point", "PATH": "path", "EDGES": "edge"}
         layers = [_layer(outputs[name], look) for name, look in looks.items()]
         draw_map([*layers, photo()], EXTENT, PIXELS_PER_M, folder / "roads.png")

@@ -38,7 +38,7 @@ def main() -> None:
         loaded = load(sound)
         draw(loaded, folder / "exported-window.png")
         put_faults_in(sound, faulty)
-        found = run("check_robot_map.CheckRobotMap", {"MAP": str(faulty), "FINDINGS": str(faulty) + ".gpkg"})
+        found = run("read_robot_maps.CheckRobotMap", {"MAP": str(faulty), "FINDINGS": str(faulty) + ".gpkg"})
         print(found)
         findings = vector(found["FINDINGS"], style="robot_map_findings")
         draw([findings, *load(faulty)], folder / "findings.png")
@@ -61,7 +61,7 @@ def load(file: Path) -> list[Any]:
     """Return the layers of a robot map, topmost first, in their styles."""
     names = {"SEGMENTS": "segments", "LINES": "lines", "AREAS": "areas", "BORDER": "border"}
     outputs = {name: f"{file}.{look}.gpkg" for name, look in names.items()}
-    made = run("load_robot_map.LoadRobotMap", {"MAP": str(file), **outputs})
+    made = run("read_robot_maps.LoadRobotMap", {"MAP": str(file), **outputs})
     return [vector(made[name], style=f"robot_map_{look}") for name, look in names.items()]
 
 

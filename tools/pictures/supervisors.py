@@ -92,7 +92,7 @@ def connected(url: str, tokens: dict[str, str]) -> Iterator[tuple[Any, Any]]:
 
 def draw_sites(desk: Any, window: Any, picture: Path) -> None:
     """Open the choice of the site with one selected that can be chosen, and take its picture."""
-    dialog = part("plugin.admin.site_choice").SiteChoiceDialog(desk, window)
+    dialog = part("plugin.admin.supervision").SiteChoiceDialog(desk, window)
     dialog.show()
     wait(lambda: len(dialog.model.rows) == len(SITES), "the sites")
     ready = [not row.served and row.refusal is None for row in dialog.model.rows]

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from qgis.core import QgsFeedback
 
-from ....robot_bridge.core.roads.centrelines import Surface
+from ....robot_bridge.core.roads.network import Surface
 from ....robot_bridge.core.robotmap.model import ShapeType
 from ....robot_bridge.core.robotmap.outlines import Outlines
 from ....robot_bridge.core.sites import geopackage

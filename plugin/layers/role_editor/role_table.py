@@ -22,28 +22,17 @@ from qgis.PyQt.QtWidgets import QComboBox, QStyledItemDelegate, QStyleOptionView
 from ....robot_bridge.core.robotmap.parametric_shapes import NAMED
 from ...ui.glyphs import DOUBTFUL, WRONG, for_letters
 from ...ui.language import first_of, tr
+from .. import roles
 from ..live_layers import MARK
-from ..roles import (
-    FURNITURE,
-    KEEPOUT,
-    OBSTACLE,
-    OBSTACLE_ROLES,
-    ORTHOPHOTO,
-    RAMP,
-    ROAD_CENTRELINE,
-    ROAD_SURFACE,
-    STAIRS,
-    LayerSetup,
-    setup_of,
-)
+from ..roles import LayerSetup
 from .preview import COLOURS, LayerMeasure
 
 # --- The rows of the role table: one for each layer of the project that can have a role ---
 
-_LINES = (OBSTACLE, STAIRS, FURNITURE, ROAD_CENTRELINE)
-_POLYGONS = (OBSTACLE, RAMP, FURNITURE, ROAD_SURFACE, KEEPOUT)
+_LINES = (roles.OBSTACLE, roles.STAIRS, roles.FURNITURE, roles.ROAD_CENTRELINE)
+_POLYGONS = (roles.OBSTACLE, roles.RAMP, roles.FURNITURE, roles.ROAD_SURFACE, roles.KEEPOUT)
 _CHOICES = {
-    QgsWkbTypes.GeometryType.PointGeometry: (FURNITURE,),
+    QgsWkbTypes.GeometryType.PointGeometry: (roles.FURNITURE,),
     QgsWkbTypes.GeometryType.LineGeometry: _LINES,
     QgsWkbTypes.GeometryType.PolygonGeometry: _POLYGONS,
     QgsWkbTypes.GeometryType.UnknownGeometry: tuple(dict.fromkeys((*_LINES, *_POLYGONS))),
@@ -63,7 +52,7 @@ class RoleRow:
     def roles(self) -> tuple[str, ...]:
         """The roles that the layer can have, and the one it has however odd; ``""`` is none."""
         if isinstance(self.layer, QgsRasterLayer):
-            choices: tuple[str, ...] = (ORTHOPHOTO,)
+            choices: tuple[str, ...] = (roles.ORTHOPHOTO,)
         else:
             choices = _CHOICES.get(self.layer.geometryType(), ())
         return tuple(dict.fromkeys(("", *choices, self.setup.role)))
@@ -81,7 +70,7 @@ def role_rows(project: QgsProject) -> list[RoleRow]:
     """Return a row for each layer that can have a role, by name; the desk's live robots have none."""
     layers = [layer for layer in project.mapLayers().values() if _can_have_a_role(layer)]
     return [
-        RoleRow(layer, layer.id(), layer.name(), setup_of(layer))
+        RoleRow(layer, layer.id(), layer.name(), roles.setup_of(layer))
         for layer in sorted(layers, key=lambda layer: (layer.name().lower(), layer.id()))
     ]
 
@@ -147,14 +136,14 @@ EXPLANATIONS = {
 }
 ROLE_NAMES = {
     "": "–",
-    OBSTACLE: tr("obstacle"),
-    STAIRS: tr("stairs"),
-    RAMP: tr("ramp"),
-    FURNITURE: tr("furniture"),
-    ROAD_CENTRELINE: tr("road centreline"),
-    ROAD_SURFACE: tr("road surface"),
-    KEEPOUT: tr("keepout"),
-    ORTHOPHOTO: tr("orthophoto"),
+    roles.OBSTACLE: tr("obstacle"),
+    roles.STAIRS: tr("stairs"),
+    roles.RAMP: tr("ramp"),
+    roles.FURNITURE: tr("furniture"),
+    roles.ROAD_CENTRELINE: tr("road centreline"),
+    roles.ROAD_SURFACE: tr("road surface"),
+    roles.KEEPOUT: tr("keepout"),
+    roles.ORTHOPHOTO: tr("orthophoto"),
 }
 
 _GREY = QColor("#8a949e")
@@ -169,12 +158,12 @@ def role_name(role: str) -> str:
 
 def used_columns(role: str) -> tuple[int, ...]:
     """Return the columns of expressions that count for a layer of ``role``."""
-    if role in OBSTACLE_ROLES:
+    if role in roles.OBSTACLE_ROLES:
         columns = (FILTER, HEIGHT, ESTIMATE, BASE, SEMANTICS, OUTDOOR)
-        return (*columns, WIDTH, TEMPLATE, ROTATION) if role == FURNITURE else columns
-    if role == ROAD_CENTRELINE:
+        return (*columns, WIDTH, TEMPLATE, ROTATION) if role == roles.FURNITURE else columns
+    if role == roles.ROAD_CENTRELINE:
         return (FILTER, SEMANTICS, WIDTH)
-    return () if role in ("", ORTHOPHOTO) else (FILTER, SEMANTICS)
+    return () if role in ("", roles.ORTHOPHOTO) else (FILTER, SEMANTICS)
 
 
 class RoleTableModel(QAbstractTableModel):
@@ -260,7 +249,7 @@ class RoleTableModel(QAbstractTableModel):
     def _shown(self, row: RoleRow, column: int) -> str:
         if column == RESULT:
             found = self._results.get(row.layer_id)
-            measured = row.setup.role and row.setup.role != ORTHOPHOTO
+            measured = row.setup.role and row.setup.role != roles.ORTHOPHOTO
             return str(found) if found is not None else ("…" if measured else "")
         if column == ROLE:
             return role_name(row.setup.role)

@@ -14,12 +14,11 @@ from qgis.PyQt.QtGui import QColor, QCursor, QIcon, QKeyEvent
 from qgis.PyQt.QtWidgets import QAction, QToolTip
 
 from ....robot_bridge.core.messages.roads import RouteReport
-from ....robot_bridge.core.roads.centrelines import Surface
+from ....robot_bridge.core.roads.network import Surface
 from ...control.fleet_controller import FleetController
 from ...control.messages import MessageBar
 from ...control.pending_command import ROUTE, PendingCommand, Point
-from ...control.roads import SHORTEST, RoutePreferences
-from ...control.route_queries import RouteQuestion, route_in_words
+from ...control.route_queries import SHORTEST, RoutePreferences, RouteQuestion, route_in_words
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
 from ...ui.actions import ICONS
 from ...ui.errors import FleetError, MapTransformError, NotSentError

@@ -1,4 +1,4 @@
-"""Map tool that draws a route, with handles to drag its vertices and legs."""
+"""Map tool that draws a route, with handles to drag its vertices and legs; how legs are led along roads."""
 
 from __future__ import annotations
 
@@ -8,12 +8,15 @@ import numpy as np
 from qgis.core import QgsPointXY
 from qgis.gui import QgsMapCanvas, QgsMapMouseEvent, QgsVertexMarker
 from qgis.PyQt import sip
-from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt
+from qgis.PyQt.QtCore import QEvent, QObject, QPoint, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QKeyEvent
+from qgis.PyQt.QtWidgets import QCheckBox, QDoubleSpinBox, QLineEdit, QWidget
 
 from ...control import pending_command
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import LEAST_POINTS, ROUTE, PendingCommand, Point, vertices
+from ...control.route_queries import RoutePreferences
+from ...ui.dialogs import QuestionDialog
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
 from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
@@ -352,3 +355,62 @@ class RouteTool(DrawingTool):
     def _hold_again(self, vertex: int) -> None:
         if self.draft is not None and vertex in pending_command.vertices(self.draft):
             self._hold(self.draft, vertex)
+
+
+# --- Which ways the legs of a route are led along roads ---
+
+ROUTE_CRITERIA = ((tr("the shortest"), False), (tr("the fastest"), True))
+WIDEST_ROAD = 50.0
+
+
+def surfaces_of(text: str) -> tuple[str, ...]:
+    """Return the names of surfaces in ``text``, which has commas between them, each once."""
+    return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
+
+
+class RoutePreferencesDialog(QuestionDialog):
+    """Begins with the ``wishes`` that hold; ``confirmed`` carries those that are to hold from now on."""
+
+    confirmed = pyqtSignal(object)
+
+    def __init__(self, wishes: RoutePreferences, parent: QWidget):
+        super().__init__(
+            "fleet_way_wishes_dialog",
+            tr("Ways on roads"),
+            ("fleet_way_wishes_confirm", tr("Lead ways so")),
+            is_safe=False,
+            parent=parent,
+        )
+        self.add_text(tr("This holds for every leg that is led from now on, until QGIS is closed."))
+        self._way = self.add_choice(tr("Way"), ROUTE_CRITERIA, "fleet_way_wishes_way")
+        self._way.setCurrentIndex(self._way.findData(wishes.fastest))
+        self._surfaces = QLineEdit(", ".join(wishes.surfaces))
+        self._surfaces.setPlaceholderText(tr("all, or such as: asphalt, concrete"))
+        self.add_field(tr("Surfaces"), self._surfaces, "fleet_way_wishes_surfaces")
+        self._width = _metres(wishes.least_width)
+        self.add_field(tr("Width"), self._width, "fleet_way_wishes_width")
+        self._avoid = QCheckBox(tr("Keep off roads on which other robots are sent"))
+        self._avoid.setChecked(wishes.avoid_reserved)
+        self.add_field("", self._avoid, "fleet_way_wishes_avoid")
+        self.lay_out()
+        self.accepted.connect(lambda: self.confirmed.emit(self.wishes()))
+
+    def wishes(self) -> RoutePreferences:
+        """Return what stands in the fields."""
+        return RoutePreferences(
+            fastest=self._way.currentData(),
+            surfaces=surfaces_of(self._surfaces.text()),
+            least_width=self._width.value(),
+            avoid_reserved=self._avoid.isChecked(),
+        )
+
+
+def _metres(value: float) -> QDoubleSpinBox:
+    field = QDoubleSpinBox()
+    field.setRange(0.0, WIDEST_ROAD)
+    field.setSingleStep(0.5)
+    field.setDecimals(1)
+    field.setSuffix(" m")
+    field.setSpecialValueText(tr("as wide as the robots are"))
+    field.setValue(value)
+    return field

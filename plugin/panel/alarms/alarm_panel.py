@@ -21,7 +21,7 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...settings.preferences import export_path
+from ...settings.profile import export_path
 from ...ui.dialogs import file_to_write, push_button
 from ...ui.errors import FleetError
 from ...ui.language import date_and_time, short_time, time_of_day, tr, tr_count

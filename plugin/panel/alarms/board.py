@@ -15,8 +15,8 @@ from ....robot_bridge.core.messages.safety import FenceAlarm, NearnessAlarm
 from ...gateway_client.robot_states import RemovedRobots
 from ...ui.glyphs import is_dark
 from ...ui.language import tr
+from . import rules
 from .rules import (
-    RULES,
     Alarm,
     AlarmChange,
     AlarmEvent,
@@ -25,9 +25,6 @@ from .rules import (
     Key,
     PairHysteresis,
     RowHysteresis,
-    Thresholds,
-    alarm_text,
-    too_close,
 )
 
 CHANGES = {
@@ -96,7 +93,7 @@ def fence_alarms(alarms: Iterable[FenceAlarm]) -> list[ReportedAlarm]:
     return found
 
 
-def passing_alarms(conflicts: Conflicts, limits: Thresholds) -> list[ReportedAlarm]:
+def passing_alarms(conflicts: Conflicts, limits: rules.Thresholds) -> list[ReportedAlarm]:
     """Return the robots that will pass one another too near soon, or do so now, as alarms."""
     soon = (one for one in conflicts.conflicts if one.begins - conflicts.t <= limits.pass_within)
     found = [_passing_alarm(one) for one in soon]
@@ -181,9 +178,9 @@ URGENCY = {kind: number for number, kind in enumerate(AlarmKind)}
 class AlarmBoard:
     """Looks at one situation after the other. ``moment`` is on the monotonic clock, ``at`` since 1970."""
 
-    def __init__(self, limits: Thresholds | None = None) -> None:
-        self._limits = limits or Thresholds()
-        self._rows = {kind: RowHysteresis() for kind in RULES}
+    def __init__(self, limits: rules.Thresholds | None = None) -> None:
+        self._limits = limits or rules.Thresholds()
+        self._rows = {kind: RowHysteresis() for kind in rules.RULES}
         self._pairs = PairHysteresis()
         self._reported: dict[Key, float] = {}
         """The alarms that the gateway judges, with when each was reported last."""
@@ -192,7 +189,7 @@ class AlarmBoard:
         self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
 
     @property
-    def limits(self) -> Thresholds:
+    def limits(self) -> rules.Thresholds:
         """The settings."""
         return self._limits
 
@@ -210,7 +207,7 @@ class AlarmBoard:
     def evaluate(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
         """Judge a situation and return what changed by it."""
         events = []
-        for kind, rule in RULES.items():
+        for kind, rule in rules.RULES.items():
             holds, over = rule(now, self._limits)
             if kind not in self._limits.kinds:
                 holds, over = np.zeros_like(holds), np.ones_like(over)
@@ -248,7 +245,7 @@ class AlarmBoard:
             self._ordered = None
         return events, renewed
 
-    def set_limits(self, limits: Thresholds) -> None:
+    def set_limits(self, limits: rules.Thresholds) -> None:
         """Judge by other settings from the next look on."""
         self._limits = limits
 
@@ -271,7 +268,7 @@ class AlarmBoard:
 
     def clear(self) -> None:
         """Forget the robots and their alarms: they are another site's. The log stays."""
-        self._rows = {kind: RowHysteresis() for kind in RULES}
+        self._rows = {kind: RowHysteresis() for kind in rules.RULES}
         self._pairs = PairHysteresis()
         self._reported.clear()
         self._alarms.clear()
@@ -297,7 +294,7 @@ class AlarmBoard:
                 del self._alarms[alarm.key]
 
     def _look_at_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
-        one, other, apart = too_close(now, self._limits)
+        one, other, apart = rules.too_close(now, self._limits)
         if AlarmKind.TOO_CLOSE not in self._limits.kinds:
             one, other, apart = one[:0], other[:0], apart[:0]
         rises, falls = self._pairs.update(one, other, apart, self._limits.too_close)
@@ -312,7 +309,7 @@ class AlarmBoard:
         alarm = Alarm(
             kind,
             now.names[row],
-            alarm_text(kind, now, row, other),
+            rules.alarm_text(kind, now, row, other),
             at,
             "" if other is None else now.names[other],
             (x, y) if np.isfinite(x) and np.isfinite(y) else None,

@@ -25,33 +25,18 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.geometry import theta_of
+from ....robot_bridge.core.layouts import cone_files
 from ....robot_bridge.core.layouts.catalogue import LAYOUTS
-from ....robot_bridge.core.layouts.cone_files import (
-    COLOUR,
-    HEAD,
-    ConeColumns,
-    colour_table,
-    cones_of,
-    headless_rows,
-    is_track,
-    read_csv,
-    read_track,
-)
+from ....robot_bridge.core.layouts.cone_files import ConeColumns
 from ....robot_bridge.core.layouts.layout import Cone, cones_along_line, cones_at_pose
 from ...cone_texts import layout_in_words, whole_dimension_in_words
 from ...layers.crs import stated_crs
 from ...layers.road_layers import lines_of
 from ...layers.site_transform import SiteGeoreference
 from ...ui.language import tr, tr_page
+from ..common import cone_layers
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, enum_parameter, shown_by_processing
-from ..common.cone_layers import (
-    STYLES,
-    ConeSetup,
-    add_layers,
-    cone_crs_parameter,
-    ground_parameters,
-    point_rows,
-)
+from ..common.cone_layers import STYLES, ConeSetup
 from ..common.parameters import point_in
 
 # --- ``fleet:conelayout``: a standard layout at a place or along a line ---
@@ -115,11 +100,11 @@ class ConeLayout(FleetAlgorithm):
                 REVERSE, tr("Against the direction of the line"), defaultValue=False
             ),
             QgsProcessingParameterString(PREFIX, tr("Ids begin with (default: the layout)"), optional=True),
-            *ground_parameters(),
-            cone_crs_parameter(),
+            *cone_layers.ground_parameters(),
+            cone_layers.cone_crs_parameter(),
         ):
             self.addParameter(parameter)
-        add_layers(self)
+        cone_layers.add_layers(self)
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         given = [name for name in (POINT, LINE) if parameters.get(name) not in (None, "")]
@@ -306,11 +291,11 @@ class ImportConeLayout(FleetAlgorithm):
             QgsProcessingParameterString(
                 NAME, tr("Name (default: the layout's, else the file's)"), optional=True
             ),
-            *ground_parameters(),
-            cone_crs_parameter(),
+            *cone_layers.ground_parameters(),
+            cone_layers.cone_crs_parameter(),
         ):
             self.addParameter(parameter)
-        add_layers(self)
+        cone_layers.add_layers(self)
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
         given = [name for name in (FILE, INPUT) if parameters.get(name) not in (None, "")]
@@ -365,17 +350,17 @@ class ImportConeLayout(FleetAlgorithm):
         if self._source is None:
             return _cones_in(Path(self.parameterAsFile(parameters, FILE, context)), columns, name)
         rows = [_attributes(feature) for feature in self._source.getFeatures()]
-        return cones_of(rows, self._source.fields().names(), columns, name, first=1)
+        return cone_files.cones_of(rows, self._source.fields().names(), columns, name, first=1)
 
     def _as_it_lies(self, columns: ConeColumns, name: str, context: QgsProcessingContext) -> list[Cone]:
         """Return the cones of the layer's points, in the site CRS."""
         source = self._source
         site = SiteGeoreference.in_crs(self._setup.crs, context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
-        points = point_rows(source.sourceName(), source.getFeatures(), placing, ())
+        points = cone_layers.point_rows(source.sourceName(), source.getFeatures(), placing, ())
         rows = [{**point.values, "$x": point.x, "$y": point.y} for point in points]
         head = [*source.fields().names(), "$x", "$y"]
-        return cones_of(rows, head, replace(columns, x="$x", y="$y"), name, first=1)
+        return cone_files.cones_of(rows, head, replace(columns, x="$x", y="$y"), name, first=1)
 
     def _moved(self, cones: list[Cone], parameters: Parameters, context: QgsProcessingContext) -> list[Cone]:
         if parameters.get(ORIGIN) in (None, ""):
@@ -403,15 +388,15 @@ def _file_problem(parameters: Parameters) -> str:
 
 def _cones_in(file: Path, columns: ConeColumns, name: str) -> list[Cone]:
     """Return the cones of a table or a track, in its own metres."""
-    of_track = ConeColumns(colour=COLOUR)
-    if is_track(file):
-        return cones_of(read_track(file), HEAD, of_track, name, first=1)
-    if (rows := headless_rows(file)) is not None:
-        return cones_of(rows, HEAD, of_track, name, first=1)
-    head, table = read_csv(file)
-    if columns.x not in head and (rows := colour_table(head, table)) is not None:
-        return cones_of(rows, HEAD, of_track, name, first=1)
-    return cones_of(table, head, columns, name)
+    of_track = ConeColumns(colour=cone_files.COLOUR)
+    if cone_files.is_track(file):
+        return cone_files.cones_of(cone_files.read_track(file), cone_files.HEAD, of_track, name, first=1)
+    if (rows := cone_files.headless_rows(file)) is not None:
+        return cone_files.cones_of(rows, cone_files.HEAD, of_track, name, first=1)
+    head, table = cone_files.read_csv(file)
+    if columns.x not in head and (rows := cone_files.colour_table(head, table)) is not None:
+        return cone_files.cones_of(rows, cone_files.HEAD, of_track, name, first=1)
+    return cone_files.cones_of(table, head, columns, name)
 
 
 def _attributes(feature: QgsFeature) -> dict[str, Any]:

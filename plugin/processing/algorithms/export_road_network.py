@@ -19,27 +19,14 @@ from qgis.core import (
     QgsProcessingParameterString,
 )
 
-from ....robot_bridge.core.roads.graph_export import (
-    LayoutNames,
-    largest_error,
-    lif_document,
-    nav2_route_graph,
-    open_roads,
-    transformed_network,
-)
+from ....robot_bridge.core.roads import graph_export
+from ....robot_bridge.core.roads.graph_export import LayoutNames
 from ....robot_bridge.core.roads.lanelet2_export import lanelet2_document, lanes_of, misread_places
 from ....robot_bridge.core.roads.network import Network
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...ui.language import tr, tr_count, tr_page
-from ..common import road_sources
-from ..common.algorithm import (
-    FleetAlgorithm,
-    ParameterError,
-    Parameters,
-    advanced,
-    enum_parameter,
-    shown_by_processing,
-)
+from ..common import algorithm, road_sources
+from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters
 from ..common.map_files import MapPlace, PlacedMap
 from ..common.outputs import WholeFolder
 from ..common.parameters import frame_in_crs_parameters, site_frame
@@ -86,7 +73,7 @@ class RoadNetworkExport:
 
 
 def _nav2(export: RoadNetworkExport) -> Files:
-    error = largest_error(export.network)
+    error = graph_export.largest_error(export.network)
     if error >= _NOTABLE_M:
         export.warn(
             tr(
@@ -99,12 +86,20 @@ def _nav2(export: RoadNetworkExport) -> Files:
     place = (
         {"crs": frame.crs, "origin": list(frame.origin), "rotation": frame.rotation} if frame.crs else None
     )
-    return {f"{export.name}.geojson": nav2_route_graph(export.network, export.map_id, export.crs, place)}
+    return {
+        f"{export.name}.geojson": graph_export.nav2_route_graph(
+            export.network, export.map_id, export.crs, place
+        )
+    }
 
 
 def _lif(export: RoadNetworkExport) -> Files:
     names = LayoutNames(export.name, export.map_id, export.vehicle_type)
-    return {f"{export.name}.lif.json": lif_document(export.network, names, datetime.now(timezone.utc))}
+    return {
+        f"{export.name}.lif.json": graph_export.lif_document(
+            export.network, names, datetime.now(timezone.utc)
+        )
+    }
 
 
 def _lanelet2(export: RoadNetworkExport) -> Files:
@@ -205,7 +200,7 @@ class ExportRoadNetwork(FleetAlgorithm):
     def prepareAlgorithm(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ):
-        with shown_by_processing():
+        with algorithm.shown_by_processing():
             self._source = road_sources.RoadSource(self, parameters, context)
             self._keepouts = road_sources.KeepoutAreas(self, parameters, context)
         return True
@@ -215,7 +210,7 @@ class ExportRoadNetwork(FleetAlgorithm):
     ):
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
         folder = Path(self.parameterAsString(parameters, OUTPUT, context))
-        with shown_by_processing(feedback):
+        with algorithm.shown_by_processing(feedback):
             if not formats:
                 raise ParameterError(
                     tr("FORMATS is empty: choose of {known}.", known=", ".join(FORMAT_WRITERS))
@@ -260,7 +255,7 @@ class ExportRoadNetwork(FleetAlgorithm):
         closed, warnings = self._keepouts.edges_inside(built[0], reading.crs, feedback)
         feedback.setProgress(60)
         return RoadNetworkExport(
-            network=_in_frame(open_roads(built[0], closed), frame),
+            network=_in_frame(graph_export.open_roads(built[0], closed), frame),
             frame=frame,
             name=words[NAME],
             map_id=words[MAP_ID],
@@ -290,19 +285,21 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
     ]
     return [
         roads,
-        enum_parameter(FORMATS, tr("Formats"), FORMAT_NAMES, ["nav2"], several=True),
+        algorithm.enum_parameter(FORMATS, tr("Formats"), FORMAT_NAMES, ["nav2"], several=True),
         QgsProcessingParameterString(NAME, tr("Name of the files"), _WORDS[NAME]),
         road_sources.keepout_parameter(),
         road_sources.repair_parameter(),
         tolerance,
         *others,
-        *map(advanced, rare),
+        *map(algorithm.advanced, rare),
         QgsProcessingParameterFolderDestination(OUTPUT, tr("Folder")),
     ]
 
 
 def _in_frame(network: Network, frame: SiteFrame) -> Network:
-    return transformed_network(network, frame.to_site(network.nodes), frame.to_site(network.edges.xy))
+    return graph_export.transformed_network(
+        network, frame.to_site(network.nodes), frame.to_site(network.edges.xy)
+    )
 
 
 def _write(made: dict[str, Files], folder: Path, feedback: QgsProcessingFeedback) -> None:

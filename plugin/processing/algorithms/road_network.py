@@ -1,9 +1,11 @@
-"""``fleet:buildroadnetwork`` and ``fleet:checkroadnetwork``: centrelines as a network, and what is odd."""
+"""``fleet:buildroadnetwork``, ``fleet:checkroadnetwork`` and ``fleet:route``: networks of roads, and ways."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
+import numpy as np
 from qgis.core import (
     QgsGeometry,
     QgsPointXY,
@@ -11,22 +13,23 @@ from qgis.core import (
     QgsProcessingContext,
     QgsProcessingFeedback,
     QgsProcessingOutputNumber,
+    QgsProcessingOutputString,
     QgsProcessingParameterFeatureSink,
+    QgsProcessingParameterPoint,
     QgsWkbTypes,
 )
 
+from ....robot_bridge.core.roads import network_checks
+from ....robot_bridge.core.roads.engines import AUTOMATIC
 from ....robot_bridge.core.roads.network import Network
-from ....robot_bridge.core.roads.network_checks import (
-    REPAIRED,
-    RoadFinding,
-    RoadFindingKind,
-    count_by_kind,
-    find_road_defects,
-)
+from ....robot_bridge.core.roads.network_checks import RoadFinding, RoadFindingKind
+from ....robot_bridge.core.roads.path_smoothing import DensePath, dense_path
+from ....robot_bridge.core.roads.routes import Route
 from ...ui.language import tr, tr_count, tr_page
-from ..common import road_sources
+from ..common import algorithm, road_sources
 from ..common.algorithm import FleetAlgorithm, Parameters, fields_of, shown_by_processing
 from ..common.outputs import fill_sink, line
+from ..common.parameters import point_in
 
 # --- ``fleet:buildroadnetwork``: road centrelines in, edges and nodes out ---
 
@@ -235,7 +238,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             network = road_sources.network_as_drawn(reading, feedback)
             if network is None:
                 return {}
-            findings = find_road_defects(network, tolerance)
+            findings = network_checks.find_road_defects(network, tolerance)
             feedback.setProgress(90)
             kind = QgsWkbTypes.Type.Point
             sink, source = self.parameterAsSink(
@@ -244,7 +247,7 @@ class CheckRoadNetwork(FleetAlgorithm):
             rows = [_row(finding, reading.features) for finding in findings]
             if not fill_sink(sink, self._fields, rows, feedback):
                 return {}
-        counts = count_by_kind(findings)
+        counts = network_checks.count_by_kind(findings)
         for name, count in counts.items():
             if count:
                 feedback.pushInfo(f"{name}: {count}")
@@ -262,9 +265,190 @@ class CheckRoadNetwork(FleetAlgorithm):
 def _row(finding: RoadFinding, features: list[int]):
     values = [
         finding.kind.value,
-        int(finding.kind in REPAIRED),
+        int(finding.kind in network_checks.REPAIRED),
         features[finding.road],
         # People know features, not the numbers of roads.
         finding.in_words(features),
     ]
     return QgsGeometry.fromPointXY(QgsPointXY(finding.x, finding.y)), values
+
+
+# --- ``fleet:route``: the shortest or fastest way along roads, and the path that a robot drives ---
+
+START, GOAL, BY = "START", "GOAL", "BY"
+ENGINE, ROUTE, PATH = "ENGINE", "ROUTE", "PATH"
+SHORTEST, FASTEST = "shortest", "fastest"
+WAYS = {SHORTEST: tr("shortest"), FASTEST: tr("fastest")}
+ENGINE_NAMES = {
+    AUTOMATIC: tr("the fastest that is installed"),
+    "contraction": "RoutingKit",
+    "scipy": "SciPy",
+    road_sources.QGIS: "QGIS",
+    "plain": tr("none: plain Python"),
+}
+_ROUTE = {
+    "order": "int8",
+    "feature": "int8",
+    "edge": "int8",
+    "length_m": "double",
+    "width_m": "double",
+    "surface": "string",
+}
+_PATH = {"metres": "double", "seconds": "double", "points": "int8", "tight": "int8", "engine": "string"}
+ROUTE_NUMBERS = {
+    "METRES": tr("Length of the route [m]"),
+    "SECONDS": tr("Time on the route [s]"),
+    "POINT_COUNT": tr("Points of the path"),
+    "TIGHT_COUNT": tr("Corners tighter than the robot turns"),
+    road_sources.WARNING_COUNT: tr("Warnings"),
+}
+ENGINE_USED = "ENGINE_USED"
+
+
+class FindRoute(FleetAlgorithm):
+    """Finds a way along roads between two places near them."""
+
+    GROUP = ("roads", tr("Roads"))
+    NAME = "route"
+    TITLE = tr("Route on roads")
+    SUMMARY = tr(
+        "Finds the shortest or fastest way along road centrelines, and the path that a robot drives."
+    )
+    ICON = "route_on_roads.svg"
+    STYLES = {ROUTE: "route.qml", PATH: "path.qml"}  # noqa: RUF012
+    TAGS = ("road", "route", "shortest path", "fastest", "navigation", "path")
+    HELP = tr_page("""
+    <p>Finds the way between two places near roads: each is taken to the nearest point of a road that may be
+    used. Closed roads are not used, one-way roads in their direction only; <b>surfaces</b> (names with commas
+    between) and a <b>least width</b> restrict the way further.</p>
+    <p>Edges that lead through a polygon of the <b>areas that must not be driven through</b> are closed; what
+    runs along a rim is not.</p>
+    <p><b>Route</b> has a line for each stretch of road, in order. <b>Path</b> is what a robot drives: points
+    at most so far apart, corners rounded to the turning radius as far as robot and road are wide.
+    Corners that stay tighter are counted and named in the log.</p>
+    <p>The <b>engine</b> is RoutingKit or SciPy where Python has them, else QGIS's own; the log and
+    <i>ENGINE_USED</i> say which was used. All find the same ways.</p>
+    <pre>qgis_process run fleet:route -- ROADS=roads.gpkg START="640430,5193530 [EPSG:32633]"
+    GOAL="640600,5193570 [EPSG:32633]" SURFACES=asphalt ROUTE=route.gpkg PATH=path.gpkg</pre>
+    """)
+
+    def initAlgorithm(self, configuration: dict[str, Any] | None = None):
+        roads, tolerance, *others = road_sources.road_parameters()
+        ways = algorithm.enum_parameter(BY, tr("Way"), WAYS, SHORTEST)
+        engine = algorithm.advanced(algorithm.enum_parameter(ENGINE, tr("Engine"), ENGINE_NAMES, AUTOMATIC))
+        for parameter in (
+            roads,
+            QgsProcessingParameterPoint(START, tr("Start")),
+            QgsProcessingParameterPoint(GOAL, tr("Goal")),
+            ways,
+            road_sources.surfaces_parameter(),
+            *road_sources.length_parameters(),
+            road_sources.keepout_parameter(),
+            road_sources.repair_parameter(),
+            tolerance,
+            *others,
+            engine,
+        ):
+            self.addParameter(parameter)
+        lines = QgsProcessing.SourceType.TypeVectorLine
+        self.addParameter(QgsProcessingParameterFeatureSink(ROUTE, tr("Route"), lines))
+        self.addParameter(QgsProcessingParameterFeatureSink(PATH, tr("Path"), lines))
+        for name, title in ROUTE_NUMBERS.items():
+            self.addOutput(QgsProcessingOutputNumber(name, title))
+        self.addOutput(QgsProcessingOutputString(ENGINE_USED, tr("Engine that was used")))
+
+    def prepareAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        self._fields = algorithm.fields_of(_ROUTE), algorithm.fields_of(_PATH)
+        with algorithm.shown_by_processing():
+            self._source = road_sources.RoadSource(self, parameters, context)
+            self._keepouts = road_sources.KeepoutAreas(self, parameters, context)
+        return True
+
+    def processAlgorithm(
+        self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
+    ):
+        with algorithm.shown_by_processing(feedback):
+            wishes = road_sources.driving_options(self, parameters, context)
+            reading = self._source.read(feedback)
+            if reading is None:
+                return {}
+            reading.warnings += wishes.doubts(reading.roads)
+            built = road_sources.network_of_roads(self, parameters, context, reading, feedback)
+            if built is None:
+                return {}
+            network, _ = built
+            router = road_sources.router_on(network, self.parameterAsEnumString(parameters, ENGINE, context))
+            reading.warnings += self._keepouts.close(router, reading.crs, feedback)
+            feedback.setProgress(80)
+            fastest = self.parameterAsEnumString(parameters, BY, context) == FASTEST
+            route = router.route(
+                *(point_in(self, parameters, name, context, reading.crs) for name in (START, GOAL)),
+                replace(wishes.restrictions, fastest=fastest),
+                wishes.reach,
+            )
+            path = dense_path(route.points, route.widths, wishes.driving)
+            made = self._written(route, path, reading, parameters, context, feedback)
+        self.remember(made)
+        _report(route, path, feedback)
+        figures = (route.metres, route.seconds, len(path.points), len(path.tight), len(reading.warnings))
+        return {**made, **dict(zip(ROUTE_NUMBERS, figures, strict=True)), ENGINE_USED: route.engine}
+
+    def _written(
+        self,
+        route: Route,
+        path: DensePath,
+        reading: road_sources.RoadReading,
+        parameters: Parameters,
+        context: QgsProcessingContext,
+        feedback: QgsProcessingFeedback,
+    ):
+        one = [round(route.metres, 3), round(route.seconds, 3), len(path.points), len(path.tight)]
+        tables = (
+            (ROUTE, _stretches(route, reading)),
+            (PATH, [(line(path.points), [*one, route.engine])]),
+        )
+        made = {}
+        for (name, rows), fields in zip(tables, self._fields, strict=True):
+            kind = QgsWkbTypes.Type.LineString
+            sink, made[name] = self.parameterAsSink(parameters, name, context, fields, kind, reading.crs)
+            fill_sink(sink, fields, rows, feedback)
+        return made
+
+
+def _stretches(route: Route, reading: road_sources.RoadReading):
+    edges = route.network.edges
+    return [
+        (
+            line(points),
+            [
+                order,
+                reading.features[edges.source[edge]],
+                edge,
+                float(np.round(route.lengths[order], 3)),
+                float(edges.width[edge]),
+                str(edges.surface[edge]),
+            ],
+        )
+        for order, (edge, points) in enumerate(zip(route.edges.tolist(), route.lines, strict=True))
+    ]
+
+
+def _report(route: Route, path: DensePath, feedback: QgsProcessingFeedback) -> None:
+    feedback.pushInfo(
+        tr(
+            "{metres:.1f} m, {seconds:.1f} s, {points}, found by {engine}; start {off_start:.2f} m "
+            "and goal {off_goal:.2f} m from the road",
+            metres=route.metres,
+            seconds=route.seconds,
+            points=tr_count(len(path.points), "1 point", "%n points"),
+            engine=route.engine,
+            off_start=route.off_start,
+            off_goal=route.off_goal,
+        )
+    )
+    for x, y in path.tight.tolist():
+        feedback.pushWarning(
+            tr("The corner at ({x:.2f}, {y:.2f}) is tighter than the robot turns.", x=x, y=y)
+        )

@@ -29,7 +29,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RoadsCancelledError
-from ....robot_bridge.core.roads.centrelines import GENERATED, Surface
+from ....robot_bridge.core.roads.network import GENERATED, Surface
 from ....robot_bridge.core.roads.surface_generation import PRECEDENCE as USUAL_ORDER
 from ....robot_bridge.core.roads.surface_generation import generate_surfaces
 from ....robot_bridge.core.roads.surface_index import areas_of, surface_edges

@@ -1,12 +1,16 @@
-"""Roads and keepouts read from layers, and the options of driving on them."""
+"""Roads and keepouts read from layers, the options of driving on them, and QGIS's own search for ways."""
 
 from __future__ import annotations
 
+import importlib.util
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
+from qgis.analysis import QgsGraph, QgsGraphAnalyzer
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsPointXY,
     QgsProcessing,
     QgsProcessingAlgorithm,
     QgsProcessingContext,
@@ -22,8 +26,15 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RoadsCancelledError
-from ....robot_bridge.core.roads.centrelines import DEFAULT_SPEED, Centrelines, centrelines
-from ....robot_bridge.core.roads.network import CancelCheck, Network, build_network
+from ....robot_bridge.core.roads.engines import AUTOMATIC, Ends, RouteGraph
+from ....robot_bridge.core.roads.network import (
+    DEFAULT_SPEED,
+    CancelCheck,
+    Centrelines,
+    Network,
+    build_network,
+    centrelines,
+)
 from ....robot_bridge.core.roads.network_checks import RoadFinding, repaired_network
 from ....robot_bridge.core.roads.path_smoothing import Driving
 from ....robot_bridge.core.roads.routes import REACH, Restrictions, Router
@@ -418,3 +429,70 @@ def _asking(feedback: QgsProcessingFeedback) -> CancelCheck:
             raise RoadsCancelledError
 
     return ask
+
+
+# --- QGIS's own graph search: what is left where neither RoutingKit nor SciPy is installed ---
+
+QGIS = "qgis"
+"""The engine's name where one is chosen."""
+
+
+class GraphEngine:
+    """Finds ways by QgsGraphAnalyzer on a graph that is kept; it is made again when costs have changed."""
+
+    name = "QGIS (QgsGraphAnalyzer)"
+
+    def __init__(self, graph: RouteGraph, costs: np.ndarray) -> None:
+        self._graph = graph
+        self._costs = costs.copy()
+        self._made: QgsGraph | None = None
+        self._arcs: list[int] = []
+
+    def set_costs(self, arcs: np.ndarray, costs: np.ndarray) -> None:
+        """Give ``arcs`` other costs."""
+        self._costs[arcs] = costs
+        self._made = None
+
+    def way(self, starts: Ends, goals: Ends) -> list[int] | None:
+        """Return the arcs of the cheapest way, None for none."""
+        made = self._made or self._make()
+        least, tree, last = math.inf, [], -1
+        for node, before in starts:
+            came_by, away = QgsGraphAnalyzer.dijkstra(made, node, 0)
+            for goal, beyond in goals:
+                # Nodes that cannot be reached cost the greatest number there is.
+                cost = before + away[goal] + beyond if goal == node or came_by[goal] >= 0 else math.inf
+                if cost < least:
+                    least, tree, last = cost, came_by, goal
+        return None if last < 0 else self._back(tree, last)
+
+    def _back(self, tree: list[int], node: int) -> list[int]:
+        arcs = []
+        while tree[node] >= 0:
+            arc = self._arcs[tree[node]]
+            arcs.append(arc)
+            node = int(self._graph.tail[arc])
+        return arcs[::-1]
+
+    def _make(self) -> QgsGraph:
+        made = QgsGraph()
+        for x, y in self._graph.nodes.tolist():
+            made.addVertex(QgsPointXY(x, y))
+        self._arcs = np.flatnonzero(np.isfinite(self._costs)).tolist()
+        for arc in self._arcs:
+            ends = int(self._graph.tail[arc]), int(self._graph.head[arc])
+            made.addEdge(*ends, [float(self._costs[arc])])
+        self._made = made
+        return made
+
+
+def router_on(network: Network, engine: str) -> Router:
+    """Return the router on ``network`` by an engine: QGIS, or one of those that the bridge knows."""
+    stock = not any(importlib.util.find_spec(name) for name in ("routingkit_cch", "scipy"))
+    if engine == QGIS or (engine == AUTOMATIC and stock):
+        return Router(network, _of_qgis)
+    return Router(network, engine)
+
+
+def _of_qgis(graph: RouteGraph):
+    return lambda costs: GraphEngine(graph, costs)

@@ -10,22 +10,11 @@ from dataclasses import dataclass, replace
 from itertools import pairwise
 
 from ..errors import JobError, UnservedError, counted, listed_names
-from . import pyvrp_search
+from . import pyvrp_search, schedules
 from .job import AssignmentJob, CancellableTravel, Travel
 from .local_search import TripLimits, improved, saving_pairs, trips_by_savings
 from .plan import ConePlan
-from .schedules import (
-    BALANCED,
-    LEAST_DISTANCE,
-    OBJECTIVES,
-    Schedule,
-    ScheduleEvaluator,
-    Score,
-    StageObjective,
-    Trip,
-    plan_of,
-    scheduled,
-)
+from .schedules import Schedule, ScheduleEvaluator, Score, StageObjective, Trip
 
 # --- One stage of a job: targets that are added to the days that robots have had so far ---
 
@@ -33,7 +22,7 @@ _SLACK = 1.05
 """By how much trips may be longer than an even share of the work."""
 _FIRST_SHARE = 0.05
 """Of the time: until when the first plan is made better before PyVRP works on its trips."""
-_LAST_SHARE = {BALANCED: 0.85, LEAST_DISTANCE: 0.97}
+_LAST_SHARE = {schedules.BALANCED: 0.85, schedules.LEAST_DISTANCE: 0.97}
 """Of the time: until when PyVRP may work. It shortens trips; to share them out evenly is left to do then."""
 
 
@@ -170,7 +159,7 @@ def _limits(days: ScheduleEvaluator, targets: list[int], aim: StageObjective) ->
     if math.isfinite(longest):
         made += [replace(limits, range_m=longest / 2) for limits in made]
     work = sum(days.demand[place] for place in targets)
-    if aim.objective != BALANCED or work > 4 * len(robots) * rooms[-1]:
+    if aim.objective != schedules.BALANCED or work > 4 * len(robots) * rooms[-1]:
         return made
     alone = [days.trip_metres([place]) / speed + days.service[place] for place in targets]
     share = sum(alone) / len(robots)
@@ -181,9 +170,9 @@ def _limits(days: ScheduleEvaluator, targets: list[int], aim: StageObjective) ->
 def _assigned(
     days: ScheduleEvaluator, trips: Sequence[Trip], start: Sequence[Schedule], aim: StageObjective
 ) -> StageSolution:
-    plan, left = scheduled(days, trips, start, aim)
+    plan, left = schedules.scheduled(days, trips, start, aim)
     if left:
-        plan, left = scheduled(days, [[place] for trip in left for place in trip], plan, aim)
+        plan, left = schedules.scheduled(days, [[place] for trip in left for place in trip], plan, aim)
     return StageSolution(plan, [place for trip in left for place in trip], _score(days, plan, aim))
 
 
@@ -236,14 +225,14 @@ class Objective:
     :raises JobError: when one of them is none.
     """
 
-    objective: str = BALANCED
+    objective: str = schedules.BALANCED
     method: str = AUTOMATIC
     time_limit_s: float = 10.0
     seed: int = 0
 
     def __post_init__(self) -> None:
         for what, value, choices in (
-            ("objective", self.objective, OBJECTIVES),
+            ("objective", self.objective, schedules.OBJECTIVES),
             ("method", self.method, METHODS),
         ):
             if value not in choices:
@@ -273,7 +262,9 @@ def assign(
     method = PREVIEW
     if use_pyvrp:
         method = PYVRP if improved_by_pyvrp else PREVIEW_KEPT
-    return plan_of(days, CancellableTravel(travel, lambda: progress(1.0)), plan, objective.objective, method)
+    return schedules.plan_of(
+        days, CancellableTravel(travel, lambda: progress(1.0)), plan, objective.objective, method
+    )
 
 
 def _use_pyvrp(method: str) -> bool:

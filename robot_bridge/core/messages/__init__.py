@@ -1,7 +1,7 @@
 """The messages of the bridge: one definition for every wire, each in the module of its subject.
 
 :mod:`.robots` holds the paper's: what robots ask and what the server answers. The other modules hold what
-operators ask and are told; :mod:`.operator_requests` says what each request declares. With any of them all
+operators ask and are told; :mod:`.base` says what each request declares. With any of them all
 are loaded, so that the table of requests is whole.
 Positions are metres in the site frame, angles radians counter-clockwise from its x axis, times seconds since
 1970-01-01 UTC. Nothing here is imported but the standard library, so that QGIS can load it.
@@ -14,10 +14,10 @@ from typing import Any
 
 from . import (  # noqa: F401 # found among the names of this module
     administration,
+    base,
     commands,
     json_values,
     links,
-    operator_requests,
     plans,
     positions,
     queues,
@@ -25,7 +25,6 @@ from . import (  # noqa: F401 # found among the names of this module
     roads,
     robots,
     safety,
-    validation,
 )
 
 _MODULES = [value for value in list(globals().values()) if isinstance(value, ModuleType)]

@@ -6,16 +6,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
-from .operator_requests import DeskRequest, Role
+from . import base
+from .base import DeskRequest, MessageError, Role
 from .safety import EmergencyReport, check_reason
-from .validation import (
-    LONGEST_OPERATOR,
-    MessageError,
-    check_expires_in,
-    check_finite,
-    check_robot_name,
-    usable_addresses,
-)
 
 # --- The connection of an operator: what is served here, and who you are ---
 
@@ -76,7 +69,7 @@ class Gateways:
     gateways: list[str]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "gateways", usable_addresses(self.gateways) or [])
+        object.__setattr__(self, "gateways", base.usable_addresses(self.gateways) or [])
 
 
 @dataclass(frozen=True)
@@ -92,10 +85,10 @@ class Hello(DeskRequest[HelloResult]):
     protocol: int = PROTOCOL_VERSION
 
     def __post_init__(self) -> None:
-        if not (len(self.operator) <= LONGEST_OPERATOR and self.operator.strip().isprintable()):
+        if not (len(self.operator) <= base.LONGEST_OPERATOR and self.operator.strip().isprintable()):
             raise MessageError(
                 f"operator has {len(self.operator)} characters and begins {self.operator[:40]!r}; give a "
-                f"name of at most {LONGEST_OPERATOR} printable characters on one line"
+                f"name of at most {base.LONGEST_OPERATOR} printable characters on one line"
             )
 
 
@@ -150,7 +143,7 @@ class AddOperator(DeskRequest[NewToken]):
     expires_in: float | None = None
 
     def __post_init__(self) -> None:
-        check_expires_in(self.expires_in, LONGEST_VALIDITY)
+        base.check_expires_in(self.expires_in, LONGEST_VALIDITY)
 
 
 @dataclass(frozen=True)
@@ -163,7 +156,7 @@ class RotateToken(DeskRequest[NewToken]):
     expires_in: float | None = None
 
     def __post_init__(self) -> None:
-        check_expires_in(self.expires_in, LONGEST_VALIDITY)
+        base.check_expires_in(self.expires_in, LONGEST_VALIDITY)
 
 
 @dataclass(frozen=True)
@@ -270,7 +263,7 @@ class GetAudit(DeskRequest[Audit]):
     limit: int = 200
 
     def __post_init__(self) -> None:
-        check_finite(since=self.since)
+        base.check_finite(since=self.since)
         _check_limit(self.limit)
         if self.before is not None and not 0 <= self.before < 2**63:
             raise MessageError(f"before is {self.before}; give the id of an entry")
@@ -368,7 +361,7 @@ class RemoveRobots(DeskRequest[RobotsRemoved]):
         if not 1 <= len(self.robots) <= MOST_REMOVED:
             raise MessageError(f"robots names {len(self.robots)}; give 1 to {MOST_REMOVED}")
         for robot in self.robots:
-            check_robot_name(robot)
+            base.check_robot_name(robot)
         check_reason(self.reason)
 
 
@@ -446,7 +439,7 @@ class Playback:
     method: ClassVar[str] = "playback"
 
     def __post_init__(self) -> None:
-        check_finite(speed=self.speed, place_s=self.place_s)
+        base.check_finite(speed=self.speed, place_s=self.place_s)
 
 
 @dataclass(frozen=True)
@@ -474,7 +467,7 @@ class SetPlayback(DeskRequest[PlaybackReport]):
     place_s: float | None = None
 
     def __post_init__(self) -> None:
-        check_finite(speed=self.speed, place_s=self.place_s)
+        base.check_finite(speed=self.speed, place_s=self.place_s)
 
     @property
     def change(self) -> Playback:

@@ -7,16 +7,9 @@ from enum import Enum
 from typing import Any
 
 from ..errors import RefusedError
-from .operator_requests import DeskRequest, Done, Priority, Role
+from . import base
+from .base import DeskRequest, Done, MessageError, Priority, Role
 from .safety import check_override, check_reason
-from .validation import (
-    MessageError,
-    check_command_id,
-    check_crs,
-    check_expires_in,
-    check_finite,
-    check_robot_name,
-)
 
 
 class CommandState(str, Enum):
@@ -106,8 +99,8 @@ class TargetPosition:
     crs: str | None = None
 
     def __post_init__(self) -> None:
-        check_crs(self.crs)
-        check_finite(x=self.x, y=self.y, theta=self.theta)
+        base.check_crs(self.crs)
+        base.check_finite(x=self.x, y=self.y, theta=self.theta)
 
 
 @dataclass(frozen=True)
@@ -155,10 +148,10 @@ class Send(DeskRequest[CommandReport]):
     override: str | None = None
 
     def __post_init__(self) -> None:
-        check_command_id(self.command)
+        base.check_command_id(self.command)
         check_reason(self.reason)
         check_override(self.override)
-        check_expires_in(self.expires_in, LONGEST_EXPIRY)
+        base.check_expires_in(self.expires_in, LONGEST_EXPIRY)
 
 
 @dataclass(frozen=True)
@@ -170,7 +163,7 @@ class SendMap(DeskRequest[Done]):
     robot: str
 
     def __post_init__(self) -> None:
-        check_robot_name(self.robot)
+        base.check_robot_name(self.robot)
 
 
 @dataclass(frozen=True)
@@ -190,7 +183,7 @@ class AbortAll(DeskRequest[Commands]):
     def __post_init__(self) -> None:
         check_reason(self.reason)
         if self.command is not None:
-            check_command_id(self.command)
+            base.check_command_id(self.command)
 
 
 @dataclass(frozen=True)
@@ -225,9 +218,9 @@ class AbortTask(DeskRequest[CommandReport]):
     reason: str | None = None
 
     def __post_init__(self) -> None:
-        check_command_id(self.command)
+        base.check_command_id(self.command)
         check_reason(self.reason)
         if (self.robot is None) == (self.aborts is None):
             raise MessageError("give one of robot and aborts: whose task is to end, or which command")
         if self.robot is not None:
-            check_robot_name(self.robot)
+            base.check_robot_name(self.robot)

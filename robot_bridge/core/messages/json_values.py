@@ -9,14 +9,13 @@ from enum import Enum
 from typing import Any, TypeVar
 
 from . import administration, roads
+from .base import Role, known_fields
 from .commands import CommandReport, CommandState, CommandStep
-from .operator_requests import Role
 from .plans import PlanProblemKind, PlanProblemReport, PlanReport, PlanState, PlanStopReport
 from .positions import MOST_CELLS, Density, FleetView, RobotReport
 from .queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from .records import ObservationReport, ObservationState, PlacementReport
 from .safety import EmergencyReport, RobotState, StoppedGateways
-from .validation import known_fields
 
 # --- Messages to and from plain JSON values ---
 

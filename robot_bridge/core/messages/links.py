@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from .administration import SiteReport
-from .validation import LONGEST_STATUS, MessageError, check_finite, one_line
+from .base import LONGEST_STATUS, MessageError, check_finite, one_line
 
 LINK_PROTOCOL = 1
 MOST_COUNTS = 50

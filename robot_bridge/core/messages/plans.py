@@ -10,10 +10,9 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from .operator_requests import DeskRequest, Priority, Role
+from .base import LONGEST_LABEL, DeskRequest, MessageError, Priority, Role, check_finite, check_stored_number
 from .queues import LONGEST_QUEUE, TaskState
 from .safety import check_override, check_reason
-from .validation import LONGEST_LABEL, MessageError, check_finite, check_stored_number
 
 MOST_CONES = 5000
 """cones of a plan, and cones that stand around it."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from enum import Enum
 
-from .operator_requests import DeskRequest, Done, Priority, Role
+from .base import COORDINATE, DeskRequest, Done, MessageError, Priority, Role, check_finite, check_robot_name
 from .safety import PathDeclaration, RobotState
-from .validation import COORDINATE, MessageError, check_finite, check_robot_name
 
 # --- Positions as a table of numbers: what a desk asks for that shows thousands of robots ---
 # A binary frame (:mod:`..core.position_frame`): a JSON-RPC notification ``positions`` whose params are

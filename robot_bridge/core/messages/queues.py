@@ -11,8 +11,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar
 
-from . import validation
-from .operator_requests import DeskRequest, Priority, Role
+from . import base
+from .base import DeskRequest, Priority, Role
 from .safety import RobotState, check_override, check_reason
 
 LONGEST_QUEUE = 1000
@@ -78,18 +78,16 @@ class QueueTask:
     placement: int | None = None
     after: list[str] | None = None
     crs: str | None = None
-    texts: ClassVar[validation.Texts] = dict.fromkeys(
-        ("cone", "label", "layout", "plan"), validation.LONGEST_LABEL
-    )
+    texts: ClassVar[base.Texts] = dict.fromkeys(("cone", "label", "layout", "plan"), base.LONGEST_LABEL)
 
     def __post_init__(self) -> None:
         check_task_id(self.task)
-        validation.check_finite(x=self.x, y=self.y, theta=self.theta)
-        validation.check_crs(self.crs)
-        validation.check_texts(self)
-        validation.check_stored_number(placement=self.placement)
+        base.check_finite(x=self.x, y=self.y, theta=self.theta)
+        base.check_crs(self.crs)
+        base.check_texts(self)
+        base.check_stored_number(placement=self.placement)
         if self.placement is not None and self.kind is not TaskKind.COLLECT:
-            raise validation.MessageError(
+            raise base.MessageError(
                 f"task {self.task}: placement is for what is collected, not {self.kind.value}"
             )
         if self.path is not None:
@@ -258,7 +256,7 @@ class PauseQueue(DeskRequest[QueueReport]):
     reason: str | None = None
 
     def __post_init__(self) -> None:
-        validation.check_robot_name(self.robot)
+        base.check_robot_name(self.robot)
         check_reason(self.reason)
 
 
@@ -279,7 +277,7 @@ class PauseRobot(DeskRequest[QueueReport]):
     reason: str | None = None
 
     def __post_init__(self) -> None:
-        validation.check_robot_name(self.robot)
+        base.check_robot_name(self.robot)
         check_reason(self.reason)
 
 
@@ -319,9 +317,9 @@ class GetQueue(DeskRequest[Queues]):
 
     def __post_init__(self) -> None:
         if self.robot is not None:
-            validation.check_robot_name(self.robot)
+            base.check_robot_name(self.robot)
         if not 0 <= self.ended <= LONGEST_QUEUE:
-            raise validation.MessageError(f"ended is {self.ended}; give a number from 0 to {LONGEST_QUEUE}")
+            raise base.MessageError(f"ended is {self.ended}; give a number from 0 to {LONGEST_QUEUE}")
 
 
 @dataclass(frozen=True)
@@ -374,7 +372,7 @@ class TakeOver(DeskRequest[Queues]):
         names = [self.robot, *(share.robot for share in self.shares)]
         twice = sorted({name for name in names if names.count(name) > 1})
         if twice:
-            raise validation.MessageError(
+            raise base.MessageError(
                 f"shares: {', '.join(twice)} is named more than once; give each robot one share"
             )
 
@@ -382,49 +380,41 @@ class TakeOver(DeskRequest[Queues]):
 def check_task_id(task: str) -> None:
     """Refuse an id that cannot tell one task from every other; raises MessageError."""
     if not (8 <= len(task) <= 64 and task.isprintable()):
-        raise validation.MessageError(f"task is {task[:80]!r}; give an id of 8 to 64 characters, say a UUID")
+        raise base.MessageError(f"task is {task[:80]!r}; give an id of 8 to 64 characters, say a UUID")
 
 
 def check_path(task: str, path: list[tuple[float, float]], end: tuple[float, float]) -> None:
     """Refuse what is no path to ``end``; raises MessageError naming the task."""
     if not 2 <= len(path) <= LONGEST_PATH:
-        raise validation.MessageError(f"task {task}: path holds {len(path)} points; give 2 to {LONGEST_PATH}")
+        raise base.MessageError(f"task {task}: path holds {len(path)} points; give 2 to {LONGEST_PATH}")
     # There may be tens of thousands: which one is wrong is looked for when one is.
     if not all(math.isfinite(x) and math.isfinite(y) for x, y in path):
         for number, (x, y) in enumerate(path):
-            validation.check_finite(
-                **{f"task {task}: path[{number}].x": x, f"task {task}: path[{number}].y": y}
-            )
+            base.check_finite(**{f"task {task}: path[{number}].x": x, f"task {task}: path[{number}].y": y})
     if max(abs(path[-1][0] - end[0]), abs(path[-1][1] - end[1])) > _SAME_PLACE:
-        raise validation.MessageError(
+        raise base.MessageError(
             f"task {task}: its path ends at {path[-1]} and its target is {end}; let the path end there"
         )
 
 
 def _check_after(task: str, after: list[str]) -> None:
     if len(after) > LONGEST_QUEUE:
-        raise validation.MessageError(
-            f"task {task}: after names {len(after)} tasks; give {LONGEST_QUEUE} at most"
-        )
+        raise base.MessageError(f"task {task}: after names {len(after)} tasks; give {LONGEST_QUEUE} at most")
     if task in after:
-        raise validation.MessageError(f"task {task}: after names the task itself; it would wait for ever")
+        raise base.MessageError(f"task {task}: after names the task itself; it would wait for ever")
     for one in after:
         check_task_id(one)
 
 
 def _check_edit(robot: str, revision: int) -> None:
-    validation.check_robot_name(robot)
-    validation.check_stored_number(revision=revision)
+    base.check_robot_name(robot)
+    base.check_stored_number(revision=revision)
 
 
 def _check_tasks(tasks: list[QueueTask]) -> None:
     if len(tasks) > LONGEST_QUEUE:
-        raise validation.MessageError(
-            f"tasks holds {len(tasks)} tasks; a queue takes {LONGEST_QUEUE} at most"
-        )
+        raise base.MessageError(f"tasks holds {len(tasks)} tasks; a queue takes {LONGEST_QUEUE} at most")
     ids = [task.task for task in tasks]
     if len(set(ids)) < len(ids):
         twice = next(id for id in ids if ids.count(id) > 1)
-        raise validation.MessageError(
-            f"tasks: {twice} is there more than once; give each task an id of its own"
-        )
+        raise base.MessageError(f"tasks: {twice} is there more than once; give each task an id of its own")

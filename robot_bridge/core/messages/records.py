@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import ClassVar, NamedTuple
 
-from . import validation
-from .operator_requests import DeskRequest, Priority, Role
+from . import base
+from .base import DeskRequest, Priority, Role
 from .queues import QueueTask
 
 # --- What robots saw, as operators are told it, and what operators make of it ---
@@ -76,11 +76,11 @@ class GetObservations(DeskRequest[Observations]):
     object: str | None = None
     before: int | None = None
     limit: int = 100
-    ranges: ClassVar[validation.Ranges] = {"limit": (1, 1000)}
+    ranges: ClassVar[base.Ranges] = {"limit": (1, 1000)}
 
     def __post_init__(self) -> None:
-        validation.check_stored_number(before=self.before)
-        validation.check_ranges(self)
+        base.check_stored_number(before=self.before)
+        base.check_ranges(self)
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class GetImage(DeskRequest[Image]):
     observation: int
 
     def __post_init__(self) -> None:
-        validation.check_stored_number(observation=self.observation)
+        base.check_stored_number(observation=self.observation)
 
 
 @dataclass(frozen=True)
@@ -121,15 +121,15 @@ class ReviewObservation(DeskRequest[ObservationReport]):
     radius: float | None = None
     reason: str | None = None
     revise: bool = False
-    ranges: ClassVar[validation.Ranges] = {"height": (0, 1000), "radius": (0.01, 50)}
-    texts: ClassVar[validation.Texts] = {"semantics": validation.LONGEST_LABEL, "reason": LONGEST_REASON}
+    ranges: ClassVar[base.Ranges] = {"height": (0, 1000), "radius": (0.01, 50)}
+    texts: ClassVar[base.Texts] = {"semantics": base.LONGEST_LABEL, "reason": LONGEST_REASON}
 
     def __post_init__(self) -> None:
-        validation.check_stored_number(observation=self.observation)
-        validation.check_ranges(self)
-        validation.check_texts(self)
+        base.check_stored_number(observation=self.observation)
+        base.check_ranges(self)
+        base.check_texts(self)
         if not self.accept and (self.semantics, self.height, self.radius) != (None, None, None):
-            raise validation.MessageError(
+            raise base.MessageError(
                 "accept is false, and semantics, height and radius are for what is accepted"
             )
 
@@ -192,16 +192,16 @@ class GetPlacements(DeskRequest[Placements]):
     collected: bool | None = None
     before: int | None = None
     limit: int = 1000
-    texts: ClassVar[validation.Texts] = dict.fromkeys(("layout", "plan", "cone"), validation.LONGEST_LABEL)
+    texts: ClassVar[base.Texts] = dict.fromkeys(("layout", "plan", "cone"), base.LONGEST_LABEL)
 
     def __post_init__(self) -> None:
-        validation.check_texts(self)
-        validation.check_finite(since=self.since, until=self.until)
-        validation.check_stored_number(before=self.before)
+        base.check_texts(self)
+        base.check_finite(since=self.since, until=self.until)
+        base.check_stored_number(before=self.before)
         if self.robot is not None:
-            validation.check_robot_name(self.robot)
+            base.check_robot_name(self.robot)
         if not 1 <= self.limit <= MOST_PLACEMENTS:
-            raise validation.MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACEMENTS}")
+            raise base.MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACEMENTS}")
 
 
 @dataclass(frozen=True)
@@ -226,10 +226,10 @@ class CollectLayout(DeskRequest[CollectingTasks]):
     method = "collect_layout"
     least_role = Role.VIEWER
     layout: str | None = None
-    texts: ClassVar[validation.Texts] = {"layout": validation.LONGEST_LABEL}
+    texts: ClassVar[base.Texts] = {"layout": base.LONGEST_LABEL}
 
     def __post_init__(self) -> None:
-        validation.check_texts(self)
+        base.check_texts(self)
 
 
 # --- What operators ask about where robots have been ---
@@ -277,18 +277,18 @@ class GetTrajectory(DeskRequest[Trajectory]):
     limit: int = 1000
 
     def __post_init__(self) -> None:
-        validation.check_finite(since=self.since, until=self.until)
+        base.check_finite(since=self.since, until=self.until)
         if self.bounds is not None:
             x_min, y_min, x_max, y_max = self.bounds
-            validation.check_finite(x_min=x_min, y_min=y_min, x_max=x_max, y_max=y_max)
+            base.check_finite(x_min=x_min, y_min=y_min, x_max=x_max, y_max=y_max)
             if x_min > x_max or y_min > y_max:
-                raise validation.MessageError(
+                raise base.MessageError(
                     f"bounds {list(self.bounds)} hold nothing; give x_min, y_min, x_max, y_max"
                 )
         if not 1 <= self.limit <= MOST_PLACES:
-            raise validation.MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACES}")
+            raise base.MessageError(f"limit is {self.limit}; give a number from 1 to {MOST_PLACES}")
         if self.after is not None and _MARK.fullmatch(self.after) is None:
-            raise validation.MessageError(f"after is {self.after[:80]!r}; give 'next' of the page before")
+            raise base.MessageError(f"after is {self.after[:80]!r}; give 'next' of the page before")
 
     def mark(self) -> tuple[float, int] | None:
         """Return the time and id that ``after`` stands for."""

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import ClassVar, Literal
 
-from .operator_requests import DeskRequest, Priority, Role
+from . import base
+from .base import DeskRequest, MessageError, Priority, Role, Texts
 from .safety import check_reason
-from .validation import MessageError, Texts, check_crs, check_finite, check_robot_name, check_texts
 
 # --- What operators ask about roads: a route to look at, a road to be closed, robots in each other's way
 
@@ -61,14 +61,14 @@ class GetRoute(DeskRequest[RouteReport]):
     crs: str | None = None
 
     def __post_init__(self) -> None:
-        check_crs(self.crs)
-        check_finite(x=self.x, y=self.y, least_width=self.least_width)
+        base.check_crs(self.crs)
+        base.check_finite(x=self.x, y=self.y, least_width=self.least_width)
         if (self.robot is None) == (self.start is None):
             raise MessageError("get_route: give one of robot and start: whose way it is, or from where")
         if self.robot is not None:
-            check_robot_name(self.robot)
+            base.check_robot_name(self.robot)
         if self.start is not None:
-            check_finite(start_x=self.start[0], start_y=self.start[1])
+            base.check_finite(start_x=self.start[0], start_y=self.start[1])
 
 
 @dataclass(frozen=True)
@@ -106,7 +106,7 @@ class CloseRoad(DeskRequest[RoadClosed]):
 
     def __post_init__(self) -> None:
         check_closure_id(self.closure)
-        check_finite(x=self.x, y=self.y, reach=self.reach)
+        base.check_finite(x=self.x, y=self.y, reach=self.reach)
         check_reason(self.reason)
         if self.seconds is not None and not 0 < self.seconds <= LONGEST_CLOSURE:
             raise MessageError(
@@ -255,8 +255,8 @@ class GetWaysOut(DeskRequest[WaysOut]):
     other: str
 
     def __post_init__(self) -> None:
-        check_robot_name(self.robot)
-        check_robot_name(self.other)
+        base.check_robot_name(self.robot)
+        base.check_robot_name(self.other)
         if self.robot == self.other:
             raise MessageError(f"get_ways_out: robot and other are both {self.robot!r}; give two robots")
 
@@ -302,8 +302,8 @@ class ResolveConflict(DeskRequest[ConflictResolved]):
     by: Literal["waiting", "route", "either"] = "either"
 
     def __post_init__(self) -> None:
-        check_robot_name(self.robot)
-        check_robot_name(self.other)
+        base.check_robot_name(self.robot)
+        base.check_robot_name(self.other)
         if self.robot == self.other:
             raise MessageError(f"resolve_conflict: robot and other are both {self.robot!r}; give two robots")
 
@@ -341,7 +341,7 @@ class GetSurface:
 
     def __post_init__(self) -> None:
         _check(self.points, self.crs, MOST_OF_A_ROBOT)
-        check_texts(self)
+        base.check_texts(self)
 
 
 @dataclass(frozen=True)
@@ -392,5 +392,5 @@ def _check(points: Sequence[tuple[float, float]], crs: str | None, most: int) ->
     if not 1 <= len(points) <= most:
         raise MessageError(f"points holds {len(points)} points; give 1 to {most}, more in further questions")
     for number, (x, y) in enumerate(points):
-        check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
-    check_crs(crs)
+        base.check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
+    base.check_crs(crs)

@@ -13,18 +13,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Literal
 
-from . import validation
+from . import base
 from .roads import GetSurface, SetSurface
 from .safety import Ability, PathDeclaration
 
 _SURELY_NEAR = 10_000.0
-_SPEED_FOR_PLACE = _SURELY_NEAR / validation.SPEED[1]
+_SPEED_FOR_PLACE = _SURELY_NEAR / base.SPEED[1]
 """A place, altitude and speed whose sum is below are within every bound, as those of most robots are."""
 
 
 def is_status(text: str) -> bool:
     """Tell whether ``text`` is a status as it is, neither too long nor of more than one line."""
-    return len(text) <= validation.LONGEST_STATUS and text.isprintable()
+    return len(text) <= base.LONGEST_STATUS and text.isprintable()
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Ready:
     acknowledged: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        validation.check_stored_number(magic=self.magic)
+        base.check_stored_number(magic=self.magic)
 
     @property
     def paths(self) -> PathDeclaration | None:
@@ -95,9 +95,9 @@ class OpAck:
     acknowledged: ClassVar[bool] = False
 
     def __post_init__(self) -> None:
-        validation.check_stored_number(id=self.id, magic=self.magic)
+        base.check_stored_number(id=self.id, magic=self.magic)
         if self.gateways is not None:
-            object.__setattr__(self, "gateways", validation.usable_addresses(self.gateways))
+            object.__setattr__(self, "gateways", base.usable_addresses(self.gateways))
 
 
 @dataclass(frozen=True)
@@ -123,31 +123,29 @@ class SendPos:
     theta_from: Literal["course", "last", "unknown"] | None = None
     magic: int | None = None
     acknowledged: ClassVar[bool] = False
-    ranges: ClassVar[validation.Ranges] = {
-        "x": validation.COORDINATE,
-        "y": validation.COORDINATE,
-        "theta": validation.THETA,
-        "v": validation.SPEED,
-        "t": validation.CLOCK,
-        "fix_t": validation.CLOCK,
-        "altitude": validation.ALTITUDE,
+    ranges: ClassVar[base.Ranges] = {
+        "x": base.COORDINATE,
+        "y": base.COORDINATE,
+        "theta": base.THETA,
+        "v": base.SPEED,
+        "t": base.CLOCK,
+        "fix_t": base.CLOCK,
+        "altitude": base.ALTITUDE,
         "battery": (0, 1),
-        "accuracy": validation.ACCURACY,
+        "accuracy": base.ACCURACY,
     }
 
     def __post_init__(self) -> None:
         # Ten thousand of them come every second: what is wrong is looked for when something is.
         place = abs(self.x) + abs(self.y) + abs(self.altitude or 0.0) + abs(self.v) * _SPEED_FOR_PLACE
         clocks = abs(self.t or 0.0) + abs(self.fix_t or 0.0)
-        if not (
-            place <= _SURELY_NEAR and clocks <= validation.CLOCK[1] and -math.pi <= self.theta <= math.pi
-        ):
-            validation.check_ranges(self)
-            object.__setattr__(self, "theta", validation.direction(self.theta))
-        if not (0 <= (self.battery or 0) <= 1 and 0 <= (self.accuracy or 0) <= validation.ACCURACY[1]):
-            validation.check_ranges(self)
+        if not (place <= _SURELY_NEAR and clocks <= base.CLOCK[1] and -math.pi <= self.theta <= math.pi):
+            base.check_ranges(self)
+            object.__setattr__(self, "theta", base.direction(self.theta))
+        if not (0 <= (self.battery or 0) <= 1 and 0 <= (self.accuracy or 0) <= base.ACCURACY[1]):
+            base.check_ranges(self)
         if self.status is not None and not is_status(self.status):
-            object.__setattr__(self, "status", validation.one_line(self.status, validation.LONGEST_STATUS))
+            object.__setattr__(self, "status", base.one_line(self.status, base.LONGEST_STATUS))
 
     @classmethod
     def of_checked(cls, names: Sequence[str], values: Sequence[Any]) -> SendPos:
@@ -181,22 +179,22 @@ class SendGPS:
     status: str | None = None
     magic: int | None = None
     acknowledged: ClassVar[bool] = False
-    ranges: ClassVar[validation.Ranges] = {
+    ranges: ClassVar[base.Ranges] = {
         "lat": (-90, 90),
         "lon": (-180, 180),
         "heading": (0, 360),
-        "altitude": validation.ALTITUDE,
-        "v": validation.SPEED,
-        "t": validation.CLOCK,
-        "fix_t": validation.CLOCK,
-        "accuracy": validation.ACCURACY,
+        "altitude": base.ALTITUDE,
+        "v": base.SPEED,
+        "t": base.CLOCK,
+        "fix_t": base.CLOCK,
+        "accuracy": base.ACCURACY,
         "battery": (0, 1),
     }
 
     def __post_init__(self) -> None:
-        validation.check_ranges(self)
+        base.check_ranges(self)
         if self.status is not None:
-            object.__setattr__(self, "status", validation.one_line(self.status, validation.LONGEST_STATUS))
+            object.__setattr__(self, "status", base.one_line(self.status, base.LONGEST_STATUS))
 
     @property
     def has_fix(self) -> bool:
@@ -213,16 +211,16 @@ class GetMap:
     area: float
     magic: int | None = None
     acknowledged: ClassVar[bool] = True
-    ranges: ClassVar[validation.Ranges] = {
-        "x": validation.COORDINATE,
-        "y": validation.COORDINATE,
-        "area": validation.AREA,
+    ranges: ClassVar[base.Ranges] = {
+        "x": base.COORDINATE,
+        "y": base.COORDINATE,
+        "area": base.AREA,
     }
 
     def __post_init__(self) -> None:
-        validation.check_ranges(self)
+        base.check_ranges(self)
         if self.area <= 0:
-            raise validation.MessageError(f"area is {self.area}; give square metres above 0")
+            raise base.MessageError(f"area is {self.area}; give square metres above 0")
 
 
 @dataclass(frozen=True)
@@ -270,23 +268,23 @@ class SetObject:
     magic: int | None = None
     doubts: str | None = None
     acknowledged: ClassVar[bool] = True
-    ranges: ClassVar[validation.Ranges] = {
-        "x": validation.COORDINATE,
-        "y": validation.COORDINATE,
+    ranges: ClassVar[base.Ranges] = {
+        "x": base.COORDINATE,
+        "y": base.COORDINATE,
         "height": (0, 1000),
         "radius": (0.01, 50),
-        "t": validation.CLOCK,
+        "t": base.CLOCK,
     }
-    texts: ClassVar[validation.Texts] = {
-        "object": validation.LONGEST_LABEL,
-        "label": validation.LONGEST_LABEL,
-        "source": validation.LONGEST_LABEL,
-        "doubts": validation.LONGEST_LABEL,
+    texts: ClassVar[base.Texts] = {
+        "object": base.LONGEST_LABEL,
+        "label": base.LONGEST_LABEL,
+        "source": base.LONGEST_LABEL,
+        "doubts": base.LONGEST_LABEL,
     }
 
     def __post_init__(self) -> None:
-        validation.check_ranges(self)
-        validation.check_texts(self)
+        base.check_ranges(self)
+        base.check_texts(self)
 
 
 @dataclass(frozen=True)
@@ -305,20 +303,20 @@ class SendImage:
     source: str | None = None
     magic: int | None = None
     acknowledged: ClassVar[bool] = True
-    ranges: ClassVar[validation.Ranges] = {
-        "x": validation.COORDINATE,
-        "y": validation.COORDINATE,
-        "t": validation.CLOCK,
+    ranges: ClassVar[base.Ranges] = {
+        "x": base.COORDINATE,
+        "y": base.COORDINATE,
+        "t": base.CLOCK,
     }
-    texts: ClassVar[validation.Texts] = {
-        "object": validation.LONGEST_LABEL,
-        "media_type": validation.LONGEST_LABEL,
-        "source": validation.LONGEST_LABEL,
+    texts: ClassVar[base.Texts] = {
+        "object": base.LONGEST_LABEL,
+        "media_type": base.LONGEST_LABEL,
+        "source": base.LONGEST_LABEL,
     }
 
     def __post_init__(self) -> None:
-        validation.check_ranges(self)
-        validation.check_texts(self)
+        base.check_ranges(self)
+        base.check_texts(self)
 
 
 @dataclass(frozen=True)
@@ -334,7 +332,7 @@ class Start:
 
     def __post_init__(self) -> None:
         if self.gateways is not None:
-            object.__setattr__(self, "gateways", validation.usable_addresses(self.gateways))
+            object.__setattr__(self, "gateways", base.usable_addresses(self.gateways))
 
 
 @dataclass(frozen=True)
@@ -366,12 +364,12 @@ class SetPath:
     collect: bool | None = None
 
     def __post_init__(self) -> None:
-        validation.check_finite(theta=self.theta)
+        base.check_finite(theta=self.theta)
         _check_cone(self)
         if len(self.points) < 2:
-            raise validation.MessageError(f"points holds {len(self.points)} points; a path has at least two")
+            raise base.MessageError(f"points holds {len(self.points)} points; a path has at least two")
         for number, (x, y) in enumerate(self.points):
-            validation.check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
+            base.check_finite(**{f"points[{number}].x": x, f"points[{number}].y": y})
 
 
 @dataclass(frozen=True)
@@ -388,7 +386,7 @@ class SetPosEnd:
     collect: bool | None = None
 
     def __post_init__(self) -> None:
-        validation.check_finite(x=self.x, y=self.y, theta=self.theta)
+        base.check_finite(x=self.x, y=self.y, theta=self.theta)
         _check_cone(self)
 
 
@@ -404,9 +402,7 @@ def path_to_end(task: SetPosEnd | SetPath, points: list[tuple[float, float]]) ->
 
 def _check_cone(end: SetPosEnd | SetPath) -> None:
     if end.cone and end.collect:
-        raise validation.MessageError(
-            "cone and collect are both true; a cone is placed or collected, not both"
-        )
+        raise base.MessageError("cone and collect are both true; a cone is placed or collected, not both")
 
 
 @dataclass(frozen=True)
@@ -418,7 +414,7 @@ class SetPosIni:
     theta: float | None = None
 
     def __post_init__(self) -> None:
-        validation.check_finite(x=self.x, y=self.y, theta=self.theta)
+        base.check_finite(x=self.x, y=self.y, theta=self.theta)
 
 
 Position = SendPos | SendGPS

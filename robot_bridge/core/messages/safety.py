@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any, Literal
 
-from .operator_requests import DeskRequest, Priority, Role
-from .validation import MessageError, check_command_id, known_fields, one_line
+from .base import DeskRequest, MessageError, Priority, Role, check_command_id, known_fields, one_line
 
 # --- How far the knowledge of a robot can be trusted ---
 

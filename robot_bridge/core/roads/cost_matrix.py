@@ -10,10 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .centrelines import BACKWARD, FORWARD, Floats, Ints
 from .engines import RouteGraph, cheapest_of_parallel
 from .map_matching import Foothold, NearestEdge
-from .network import SAME, Network
+from .network import BACKWARD, FORWARD, SAME, Floats, Ints, Network
 from .routes import REACH, Place, Restrictions
 
 _AT_ONCE_BY_SCIPY, _AT_ONCE_BY_HEAP = 32, 1

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import MissingEngineError
-from .centrelines import Floats, Ints
+from .network import Floats, Ints
 
 # --- What a search for routes needs of an engine ---
 

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import RoadExportError
-from .centrelines import BACKWARD, FORWARD, Floats, Ints
-from .network import Network
+from .network import BACKWARD, FORWARD, Floats, Ints, Network
 
 # --- The part of a network that is written: open roads, none of which ends where it begins ---
 

@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RoadExportError
-from .centrelines import BACKWARD, BOTH, FORWARD, Floats
-from .network import Network
+from .network import BACKWARD, BOTH, FORWARD, Floats, Network
 
 # --- Lanes of roads as pairs of borders, and the turns that join them at junctions ---
 # Lanes follow one another where they share the points at their ends. Roads that meet at an angle cannot: so

@@ -8,8 +8,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .centrelines import Centrelines, Floats, Ints, ranges
-from .network import Network, boxes_of, cell_number, cell_size, cells_of, foot_on
+from .network import (
+    Centrelines,
+    Floats,
+    Ints,
+    Network,
+    boxes_of,
+    cell_number,
+    cell_size,
+    cells_of,
+    foot_on,
+    ranges,
+)
 
 # --- The nearest point of a network's edges ---
 

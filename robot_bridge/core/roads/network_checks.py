@@ -9,9 +9,11 @@ from enum import Enum
 import numpy as np
 
 from ..errors import counted
-from .centrelines import Centrelines, Floats, Ints, ranges
 from .network import (
     CancelCheck,
+    Centrelines,
+    Floats,
+    Ints,
     Network,
     boxes_of,
     build_network,
@@ -19,6 +21,7 @@ from .network import (
     network_of,
     never_cancel,
     noded,
+    ranges,
     touching,
 )
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RoadInputError
-from .centrelines import Floats, ranges
+from .network import Floats, ranges
 
 _STRAIGHT = math.radians(0.5)
 """Bends below this are none."""

@@ -14,10 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import NoRouteError, OffNetworkError
-from .centrelines import BACKWARD, FORWARD, Floats, Ints
 from .engines import AUTOMATIC, Engine, EngineFactory, RouteGraph, engines_for
 from .map_matching import Foothold, NearestEdge
-from .network import SAME, Network
+from .network import BACKWARD, FORWARD, SAME, Floats, Ints, Network
 
 # --- A sparse route: stretches of edges, one after another ---
 

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..errors import RoadsCancelledError, RoadsError, installation
-from .centrelines import GENERATED, Centrelines, Floats, Ints, Surface
-from .network import same_points
+from .network import GENERATED, Centrelines, Floats, Ints, Surface, same_points
 
 # --- Roads as strips of their widths ---
 

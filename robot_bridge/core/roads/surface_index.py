@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import RoadInputError
-from .centrelines import DRAWN, Floats, Ints, Surface, ranges
+from .network import DRAWN, Floats, Ints, Surface, ranges
 
 # --- The edges of surfaces as columns ---
 

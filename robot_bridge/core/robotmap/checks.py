@@ -11,18 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import counted
-from . import obstacle_checks
-from .findings import (
-    SAME_PLACE,
-    TOUCHING,
-    MapCheckLimits,
-    MapFinding,
-    MapFindingKind,
-    SegmentTable,
-    Severity,
-    overlapping_boxes,
-    place,
-)
+from . import findings, obstacle_checks
+from .findings import MapCheckLimits, MapFinding, MapFindingKind, SegmentTable, Severity, place
 from .model import Border, RobotMap, ShapeType
 
 # --- Whether obstacles repeat, cover or cross one another ---
@@ -62,11 +52,15 @@ def meeting_obstacles(table: SegmentTable, limits: MapCheckLimits) -> Iterator[M
 
 
 def _meeting(table: SegmentTable) -> _Pairs:
-    kept = np.flatnonzero((table.shape_type[table.row] != ShapeType.RAMP) & (table.lengths >= SAME_PLACE))
+    kept = np.flatnonzero(
+        (table.shape_type[table.row] != ShapeType.RAMP) & (table.lengths >= findings.SAME_PLACE)
+    )
     a, b = table.a[kept], table.b[kept]
     none = np.empty(0, dtype=np.int64)
     found = [_Pairs(none, none, none, np.empty((0, 2, 2, 2)))]
-    for i, j in overlapping_boxes(np.minimum(a, b) - TOUCHING, np.maximum(a, b) + TOUCHING):
+    for i, j in findings.overlapping_boxes(
+        np.minimum(a, b) - findings.TOUCHING, np.maximum(a, b) + findings.TOUCHING
+    ):
         # The first of a pair is the longer one: whether the shorter lies on it is well defined.
         longer = np.hypot(*(b - a)[i].T) >= np.hypot(*(b - a)[j].T)
         i, j = np.where(longer, i, j), np.where(longer, j, i)
@@ -94,7 +88,9 @@ def _sides(a: NDArray[Any], b: NDArray[Any], line: NDArray[Any], point: NDArray[
 def _crossing(a: NDArray[Any], b: NDArray[Any], i: NDArray[Any], j: NDArray[Any]) -> _Pairs:
     aj, bj = _sides(a, b, i, a[j]), _sides(a, b, i, b[j])
     ai, bi = _sides(a, b, j, a[i]), _sides(a, b, j, b[i])
-    clear = np.minimum(np.minimum(np.abs(aj), np.abs(bj)), np.minimum(np.abs(ai), np.abs(bi))) > TOUCHING
+    clear = (
+        np.minimum(np.minimum(np.abs(aj), np.abs(bj)), np.minimum(np.abs(ai), np.abs(bi))) > findings.TOUCHING
+    )
     cross = clear & (aj * bj < 0) & (ai * bi < 0)
     i, j, aj, bj = i[cross], j[cross], aj[cross], bj[cross]
     point = a[j] + (aj / (aj - bj))[:, None] * (b[j] - a[j])
@@ -118,8 +114,12 @@ def _covering(a: NDArray[Any], b: NDArray[Any], i: NDArray[Any], j: NDArray[Any]
     low = np.maximum(np.minimum(start, end), 0.0)
     high = np.minimum(np.maximum(start, end), length)
     off = np.maximum(np.abs(_sides(a, b, i, a[j])), np.abs(_sides(a, b, i, b[j])))
-    same = (np.abs(start) <= SAME_PLACE) & (np.abs(end - length) <= SAME_PLACE) & (off <= SAME_PLACE)
-    covers = (off <= TOUCHING) & (np.abs(turn) >= _PARALLEL) & (high - low > _SHORTEST_OVERLAP)
+    same = (
+        (np.abs(start) <= findings.SAME_PLACE)
+        & (np.abs(end - length) <= findings.SAME_PLACE)
+        & (off <= findings.SAME_PLACE)
+    )
+    covers = (off <= findings.TOUCHING) & (np.abs(turn) >= _PARALLEL) & (high - low > _SHORTEST_OVERLAP)
     kept = covers | same
     what = np.where(same, _SAME, np.where(turn > 0, _ALONG, _AGAINST))[kept]
     ends = [(a[i] + t[:, None] * unit)[kept] for t in (low, high)]

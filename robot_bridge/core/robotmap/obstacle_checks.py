@@ -11,18 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import counted
-from .findings import (
-    SAME_PLACE,
-    TOUCHING,
-    MapCheckLimits,
-    MapFinding,
-    MapFindingKind,
-    SegmentTable,
-    Severity,
-    mark,
-    overlapping_boxes,
-    place,
-)
+from . import findings
+from .findings import MapCheckLimits, MapFinding, MapFindingKind, SegmentTable, Severity, mark, place
 from .model import ShapeType
 
 # --- Checks that look at one obstacle or one segment at a time: ids, border, heights, lengths ---
@@ -47,8 +37,8 @@ def repeated_ids(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFin
 def outside_border(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
     """Yield a finding for each obstacle that leaves the border of the map."""
     border = table.robot_map.border
-    low = np.array([border.x_min, border.y_min]) - SAME_PLACE
-    high = np.array([border.x_max, border.y_max]) + SAME_PLACE
+    low = np.array([border.x_min, border.y_min]) - findings.SAME_PLACE
+    high = np.array([border.x_max, border.y_max]) + findings.SAME_PLACE
     within = (table.a >= low) & (table.a <= high) & (table.b >= low) & (table.b <= high)
     inside: NDArray[Any] = np.all(within, axis=1)
     for row, segments in _by_obstacle(table, ~inside):
@@ -64,7 +54,7 @@ def outside_border(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapF
 
 def without_length(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
     """Yield a finding for each obstacle with segments whose two ends are one point."""
-    for row, segments in _by_obstacle(table, table.lengths < SAME_PLACE):
+    for row, segments in _by_obstacle(table, table.lengths < findings.SAME_PLACE):
         first = table.a[segments[0]]
         yield MapFinding(
             MapFindingKind.SLIVER,
@@ -149,7 +139,7 @@ def near_misses(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFind
     """
     points, rows = _loose_ends(table)
     number, segment, distance = _distances(table, points, rows, limits.gap)
-    attached = np.unique(number[distance <= TOUCHING])
+    attached = np.unique(number[distance <= findings.TOUCHING])
     near = ~np.isin(number, attached)
     for end in np.unique(number[near]):
         candidates = np.flatnonzero(near & (number == end))
@@ -194,7 +184,7 @@ def _gap(table: SegmentTable, before: int, after: int) -> MapFinding:
 
 
 def _apart(one: NDArray[Any], other: NDArray[Any]) -> NDArray[Any]:
-    apart: NDArray[Any] = np.hypot(*(one - other).T) > SAME_PLACE
+    apart: NDArray[Any] = np.hypot(*(one - other).T) > findings.SAME_PLACE
     return apart
 
 
@@ -214,8 +204,8 @@ def _loose_ends(table: SegmentTable) -> tuple[NDArray[Any], NDArray[Any]]:
     points = np.concatenate([table.a[table.offsets[rows]], table.b[table.offsets[rows + 1] - 1]])
     border = table.robot_map.border
     x, y = points.T
-    inside = (np.minimum(x - border.x_min, border.x_max - x) > SAME_PLACE) & (
-        np.minimum(y - border.y_min, border.y_max - y) > SAME_PLACE
+    inside = (np.minimum(x - border.x_min, border.x_max - x) > findings.SAME_PLACE) & (
+        np.minimum(y - border.y_min, border.y_max - y) > findings.SAME_PLACE
     )
     return points[inside], np.concatenate([rows, rows])[inside]
 
@@ -228,7 +218,7 @@ def _distances(
     high = np.concatenate([points + reach, np.maximum(table.a, table.b)])
     count = len(points)
     found = [(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))]
-    for one, other in overlapping_boxes(low, high):
+    for one, other in findings.overlapping_boxes(low, high):
         point, segment = np.minimum(one, other), np.maximum(one, other) - count
         mixed = (point < count) & (segment >= 0)
         point, segment = point[mixed], segment[mixed]
@@ -341,7 +331,7 @@ def _cut_sources(table: SegmentTable) -> set[str]:
         at = table.of_obstacle(int(row))
         (x, y) = np.stack([table.a[at][0], table.b[at][-1]]).T
         to_side = np.min([x - border.x_min, border.x_max - x, y - border.y_min, border.y_max - y], axis=0)
-        if (to_side <= SAME_PLACE).all():
+        if (to_side <= findings.SAME_PLACE).all():
             sources.add(table.obstacles[row].ext.get("src", ""))
     return sources
 
@@ -358,7 +348,7 @@ def _finding(
 def _is_whole(table: SegmentTable, row: int) -> bool:
     at = table.of_obstacle(row)
     a, b = table.a[at], table.b[at]
-    return len(a) >= 3 and bool((np.hypot(*(np.roll(a, -1, axis=0) - b).T) <= SAME_PLACE).all())
+    return len(a) >= 3 and bool((np.hypot(*(np.roll(a, -1, axis=0) - b).T) <= findings.SAME_PLACE).all())
 
 
 def _signed_area(points: NDArray[Any]) -> float:
@@ -369,7 +359,7 @@ def _signed_area(points: NDArray[Any]) -> float:
 def _rings_around(table: SegmentTable, rings: _Rings, usable: NDArray[Any]) -> dict[int, int]:
     """Return the smallest other ring that each ring lies in, for those that lie in one."""
     inner, outer = [], []
-    for one, other in overlapping_boxes(rings.low, rings.high):
+    for one, other in findings.overlapping_boxes(rings.low, rings.high):
         for i, j in ((one, other), (other, one)):
             holds = (rings.low[j] <= rings.low[i]).all(axis=1) & (rings.high[j] >= rings.high[i]).all(axis=1)
             holds &= usable[j] & (np.abs(rings.area[j]) > np.abs(rings.area[i]))

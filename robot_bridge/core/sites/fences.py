@@ -12,8 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry import Track
-from ..roads.centrelines import Floats, Ints
-from ..roads.network import Network
+from ..roads.network import Floats, Ints, Network
 from ..robotmap.model import ShapeType
 from ..robotmap.outlines import Outlines, is_closed
 from ..robotmap.window_index import BoxGrid

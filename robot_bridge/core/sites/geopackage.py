@@ -14,7 +14,7 @@ import numpy as np
 from ..errors import LayerError
 from ..files import write_geopackage_layer
 from ..json_decoder import DecodingError, decode_json
-from ..roads.centrelines import DEFAULT_SPEED, DRAWN, Centrelines, centrelines
+from ..roads.network import DEFAULT_SPEED, DRAWN, Centrelines, centrelines
 from .frame import Points, crs_of, projections
 
 # --- What a site has besides obstacles, as plain arrays in the site frame ---

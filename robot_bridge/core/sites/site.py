@@ -15,7 +15,7 @@ from ..errors import CacheError, SiteError, WindowError
 from ..files import StagedFiles
 from ..geometry import Track
 from ..messages.links import MOST_AREA_POINTS, SiteArea, SiteAreas, SiteRoad
-from ..roads.centrelines import Surface
+from ..roads.network import Surface
 from ..roads.surface_index import SurfaceIndex
 from ..robotmap.model import PART_OF, Border, RobotMap, Window
 from ..robotmap.outlines import Outlines

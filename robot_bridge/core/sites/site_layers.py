@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import LayerError
-from ..roads.centrelines import DRAWN, GENERATED, Surface
+from ..roads.network import DRAWN, GENERATED, Surface
 from ..robotmap.model import ShapeType
 from ..robotmap.outlines import OutlineRow, Outlines, is_closed
 from . import geopackage

@@ -21,14 +21,14 @@ from websockets.http11 import Request, Response
 
 from ...core.errors import BridgeError, CrsError, RefusedError
 from ...core.messages.administration import SiteReport
+from ...core.messages.base import MessageError
 from ...core.messages.safety import RobotState
-from ...core.messages.validation import MessageError
 from ...core.sites.frame import lonlat_of
 from ...protocol import openapi
 from ...protocol.codec import decode_desk_request
 from ..auth.port import http_response
 from ..fleet.service import Fleet
-from ..model.request_handlers import RequestHandlers
+from ..model.events import RequestHandlers
 from ..monitoring import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
 from ..site.site_maps import SiteMaps
 from ..storage.schema import rr, sa

@@ -28,14 +28,13 @@ from ...core.errors import (
 )
 from ...core.logs import log_and_continue
 from ...core.messages.administration import PROTOCOL_VERSION, Hello
+from ...core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, Priority, Role
 from ...core.messages.commands import Send
 from ...core.messages.json_values import to_json
-from ...core.messages.operator_requests import DESK_REQUESTS, DeskRequest, Priority, Role
 from ...core.messages.positions import PositionForm, Subscribe
 from ...core.messages.roads import GetRoute
 from ...core.messages.robots import Abort
 from ...core.messages.safety import EmergencyStop
-from ...core.messages.validation import MessageError
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
 from ..auth.authorisation import AuthGate
@@ -43,7 +42,7 @@ from ..auth.client_connection import ClientConnection
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..fleet.views import ViewWatch
-from ..model.request_handlers import Answering
+from ..model.events import Answering
 
 # --- The order of requests, and what one overtakes ---
 

@@ -15,9 +15,9 @@ from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
 from ...core.logs import Key
+from ...core.messages.base import LARGEST_MESSAGE, MessageError
 from ...core.messages.json_values import to_json
 from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
-from ...core.messages.validation import LARGEST_MESSAGE, MessageError
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, decode_position, decode_request, error_code
 from ..auth.accounts import TokenKind

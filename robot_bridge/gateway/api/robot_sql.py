@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from ...core.errors import DataRefusedError, NotReadyError, OtherRunError, RefusedError, StoreError
 from ...core.logs import TroubleNews, log_unforeseen
+from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name
 from ...core.messages.robots import PAYLOADS, REQUESTS, OpAck
-from ...core.messages.validation import LARGEST_MESSAGE, MessageError, check_robot_name
 from ...protocol.codec import decode_request, parse_params
 from ..fleet.outbox import RequestOutcome
 from ..fleet.service import Fleet

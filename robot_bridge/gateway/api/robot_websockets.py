@@ -16,18 +16,11 @@ from websockets.exceptions import ConnectionClosed
 from ...core.errors import BridgeError, BusyError, ForbiddenError, NotReadyError, RefusedError, SiteError
 from ...core.json_decoder import DecodingError
 from ...core.logs import log_and_continue
+from ...core.messages import links
+from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name, refuse_unknown_keys
 from ...core.messages.json_values import to_json
-from ...core.messages.links import (
-    LINK_PROTOCOL,
-    AbortOfAll,
-    GetAreas,
-    LinkHello,
-    LinkPositions,
-    LinkStatus,
-    LinkWelcome,
-)
+from ...core.messages.links import AbortOfAll, GetAreas, LinkHello, LinkPositions, LinkStatus, LinkWelcome
 from ...core.messages.robots import Ready, SendImage
-from ...core.messages.validation import LARGEST_MESSAGE, MessageError, check_robot_name, refuse_unknown_keys
 from ...core.position_frame import entries_in, poses_in_frame
 from ...core.sites.site import Site, areas_in_box
 from ...protocol import jsonrpc
@@ -238,7 +231,7 @@ class LinkConnection:
         self._fleet.links.introduce(self.name, hello.kind, self.ask)
         site = self._fleet.site
         return LinkWelcome(
-            LINK_PROTOCOL,
+            links.LINK_PROTOCOL,
             self.name,
             list(self._robots),
             self._fleet.reception.database_id,

@@ -18,7 +18,7 @@ from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
 from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS
-from ..auth.rate_limit import RateLimit
+from ..auth.client_connection import RateLimit
 from ..fleet.service import Fleet
 from .robot_session import RobotSession, RobotSessions
 

@@ -12,8 +12,7 @@ from fnmatch import fnmatchcase
 
 from sqlalchemy import Connection, func, insert, select, update
 
-from ...core.messages.operator_requests import Role
-from ...core.messages.validation import check_robot_name
+from ...core.messages.base import Role, check_robot_name
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from ..storage.schema import links, operators, tokens

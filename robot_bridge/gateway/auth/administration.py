@@ -12,7 +12,7 @@ from sqlalchemy import Connection
 from ...core.errors import StoreError
 from ...core.messages import administration
 from ...protocol.credentials import AccessError
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..storage.database import Database
 from . import accounts, audit
 from .accounts import Grant, Operator

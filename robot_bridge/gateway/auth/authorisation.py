@@ -14,15 +14,14 @@ from websockets.http11 import Request, Response
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError, counted
-from ...core.messages.operator_requests import Role
+from ...core.messages.base import Role
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in
 from .audit import AuditJournal, SessionRow
-from .client_connection import ClientConnection, Identity
-from .rate_limit import RateLimit
+from .client_connection import ClientConnection, Identity, RateLimit
 
 # --- Who is connected now, how many there are of each sort, and how a connection is ended ---
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import URL
 
 from ...core.errors import BridgeError
-from ...core.messages.validation import LONGEST_ADDRESS, is_gateway_address
+from ...core.messages.base import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
 from .bus import Bus, NatsBus, NoBus, NotifyBus
 from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name

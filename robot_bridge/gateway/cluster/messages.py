@@ -24,8 +24,8 @@ from sqlalchemy import Connection
 
 from ...core.errors import BridgeError
 from ...core.logs import RepeatedLines
+from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import PathDeclaration
-from ...core.messages.validation import LONGEST_STATUS
 from ..model.events import EventBus
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject

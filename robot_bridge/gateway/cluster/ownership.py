@@ -14,12 +14,12 @@ from sqlalchemy import Connection
 
 from ...core.errors import StoreError, listed_names
 from ...core.logs import log_and_continue
-from ...core.messages.operator_requests import DeskRequest
+from ...core.messages.base import DeskRequest
 from ..storage.database import Database, to_its_end
-from ..storage.owner_fence import FencedError
 from ..storage.repositories import gateways, relayed
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories.gateways import Claimed, Owner
+from ..storage.repositories.robots import FencedError
 from .bus import own_subject
 from .membership import Membership, OwnedRobots
 from .messages import Exchange, NameAnswer, NameQuery

@@ -29,6 +29,7 @@ from ...core.errors import (
 )
 from ...core.json_decoder import decode_json
 from ...core.logs import log_and_continue, log_unforeseen
+from ...core.messages.base import DeskRequest, MessageError
 from ...core.messages.commands import (
     AbortAll,
     AbortTask,
@@ -39,7 +40,6 @@ from ...core.messages.commands import (
     TargetPosition,
 )
 from ...core.messages.json_values import to_json
-from ...core.messages.operator_requests import DeskRequest
 from ...core.messages.queues import (
     AddTasks,
     GetQueue,
@@ -53,15 +53,14 @@ from ...core.messages.queues import (
 )
 from ...core.messages.roads import ResolveConflict
 from ...core.messages.robots import Abort
-from ...core.messages.validation import MessageError
 from ...protocol.codec import decode_desk_request
-from ..model.request_handlers import Answering
+from ..model.events import Answering
 from ..model.robots import Robots
 from ..monitoring import wait_at_most
 from ..storage.database import Database
-from ..storage.owner_fence import FencedError
 from ..storage.repositories import commands, relayed
 from ..storage.repositories.relayed import NewRequest, TakenRequest
+from ..storage.repositories.robots import FencedError
 from .bus import STOP
 from .membership import Membership
 from .messages import AbortCall, Exchange, Wake

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from ...core.messages.base import LONGEST_STATUS, one_line
 from ...core.messages.robots import SendPos
-from ...core.messages.validation import LONGEST_STATUS, one_line
 from ..model.robots import DescribedElsewhere, ReportedElsewhere, Robot, Robots
 from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS

@@ -18,11 +18,11 @@ from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SendPos, SetPosIni
 from ...protocol.codec import decode_answer
 from ..storage.database import Database
-from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import closures, commands, queues
 from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.queues import QueueHold
+from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from .active_command import ActiveCommand, CommandOrder, Recall, because, note
 
 # --- How commands and their messages in SA are written, in one transaction; called in the database's thread

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
+from ...core.messages.base import MessageError, check_crs
 from ...core.messages.commands import (
     AbortAll,
     AbortTask,
@@ -21,9 +22,8 @@ from ...core.messages.commands import (
 )
 from ...core.messages.json_values import to_json
 from ...core.messages.robots import COMMANDS, Abort, SetPath
-from ...core.messages.validation import MessageError, check_crs
 from ...protocol.codec import decode_command
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
 from ..storage.database import Database

@@ -19,22 +19,11 @@ from ..model.arrival import PathArrival, arrival_judge
 from ..model.events import CommandChanged, EventBus, OutboxChanged
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
-from ..storage.owner_fence import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
 from ..storage.repositories import commands
 from ..storage.repositories.commands import StoredCommand
-from . import persistence
-from .active_command import (
-    ABORTED,
-    GATEWAY,
-    ActiveCommand,
-    ActiveCommands,
-    CommandOrder,
-    Recall,
-    acknowledge_command,
-    ended_by,
-    given_up_by,
-    restart_commands,
-)
+from ..storage.repositories.robots import CHECK_VALID_S, SOLE_FENCE, FencedError, OwnerFence
+from . import active_command, persistence
+from .active_command import ABORTED, GATEWAY, ActiveCommand, ActiveCommands, CommandOrder, Recall, given_up_by
 from .validation import CommandReader, CommandRules, CommandValidator, WaitingRobots
 
 log = logging.getLogger(__name__)
@@ -399,7 +388,7 @@ class CommandService(CommandReader):
                 stood = (pose.x, pose.y, pose.theta)
                 await self._save([command.step(CommandState.REACHED, now, GATEWAY, reason, off, stood)])
             elif abort is not None:
-                await self._save(ended_by(abort, [command], abort.acknowledged_at, ABORTED))
+                await self._save(active_command.ended_by(abort, [command], abort.acknowledged_at, ABORTED))
 
     async def _deliver_again(
         self,
@@ -410,7 +399,7 @@ class CommandService(CommandReader):
         note_run: Callable[[Connection], bool],
     ) -> None:
         async with self._held.of([robot]):
-            anew = restart_commands(
+            anew = active_command.restart_commands(
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
             again = anew.again, anew.ended
@@ -442,7 +431,9 @@ class CommandService(CommandReader):
     def _answered(self, command: ActiveCommand, ack: OpAck) -> list[ActiveCommand]:
         robot, now = command.report.robot, self._clock.time()
         unseen = self._robots.is_unseen(robot, now)
-        return acknowledge_command(command, ack, self._open.of(robot), now, self._tolerance, unseen=unseen)
+        return active_command.acknowledge_command(
+            command, ack, self._open.of(robot), now, self._tolerance, unseen=unseen
+        )
 
     def _restored(self, stored: StoredCommand) -> ActiveCommand:
         seen = self._robots.pose(stored.report.robot)

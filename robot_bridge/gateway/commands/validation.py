@@ -15,15 +15,8 @@ from ...core.messages.safety import Ability
 from ..model.robots import Robots
 from ..site.places import ServedSite, keepout_refusals
 from ..storage.repositories.closures import HoldRow
-from .active_command import (
-    NOTHING,
-    ActiveCommand,
-    ActiveCommands,
-    CommandOrder,
-    create_command,
-    recalled,
-    superseded,
-)
+from . import active_command
+from .active_command import ActiveCommand, ActiveCommands, CommandOrder, create_command, recalled, superseded
 from .persistence import CommandInsert
 
 # --- What the commands with a step to come tell of the robots; nothing here changes any ---
@@ -235,7 +228,7 @@ class CommandValidator(CommandReader):
             raise RefusedError(f"robot {name!r} places and collects no cones; send it there without one")
 
     def _is_open_to(self, robot: str, task: str) -> bool:
-        if task == NOTHING:
+        if task == active_command.NOTHING:
             return not any(c.is_motion or c.is_abort for c in self._open.of(robot))
         return self.is_carrying_out(robot, task)
 

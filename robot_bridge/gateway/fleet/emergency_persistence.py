@@ -24,15 +24,15 @@ from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainE
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
 from ...core.logs import TroubleNews
+from ...core.messages.base import MessageError, check_command_id
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
-from ...core.messages.validation import MessageError, check_command_id
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
 from ..storage.database import Database
 from ..storage.dialects import sqlite_file_of
-from ..storage.owner_fence import FencedError
 from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
+from ..storage.repositories.robots import FencedError
 
 # --- Emergency stops on their way into the database, in a small file of this computer ---
 # A stop goes out before it is stored. Where the database is away then, and the gateway dies before it is

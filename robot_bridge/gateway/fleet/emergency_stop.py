@@ -15,15 +15,14 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_and_continue
+from ...core.messages.base import LONGEST_OPERATOR, one_line
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.json_values import to_json
 from ...core.messages.robots import Abort
 from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
-from ...core.messages.validation import LONGEST_OPERATOR, one_line
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops

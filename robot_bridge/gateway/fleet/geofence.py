@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError
+from ...core.messages.base import MessageError
 from ...core.messages.commands import AbortTask
 from ...core.messages.json_values import to_json
 from ...core.messages.queues import PauseRobot
 from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, RobotState, StopAction, StopOutcome
-from ...core.messages.validation import MessageError
 from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings

@@ -30,8 +30,7 @@ from ...core.messages.administration import (
 from ...core.messages.json_values import to_json
 from ...core.messages.links import LinkStatus
 from ...core.sites.settings_tables import LinkOptions
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions

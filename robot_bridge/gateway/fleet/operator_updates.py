@@ -21,6 +21,7 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
+from ...core.messages.base import MessageError
 from ...core.messages.json_values import to_json
 from ...core.messages.positions import (
     PLACE_COLUMNS,
@@ -41,11 +42,9 @@ from ...core.messages.records import (
     ReviewObservation,
 )
 from ...core.messages.robots import Observed, SendImage, SetObject
-from ...core.messages.validation import MessageError
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
 from ...core.sites.settings import SiteSettings
-from ..model.events import EventBus, ObservationChanged
-from ..model.request_handlers import Encoded, handles
+from ..model.events import Encoded, EventBus, ObservationChanged, handles
 from ..model.robots import Robot, Robots
 from ..site.places import Ground, check_places
 from ..storage.database import Database

@@ -17,8 +17,7 @@ from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
 from ..cluster.messages import Exchange
 from ..cluster.ownership import NameClaims, Ownership
 from ..commands.service import CommandService
-from ..model.events import EventBus, RobotLeft, RobotsTakenUp
-from ..model.request_handlers import handles
+from ..model.events import EventBus, RobotLeft, RobotsTakenUp, handles
 from ..model.robots import AWAY, Robot, Robots
 from ..queues.registry import QueueRegistry
 from ..queues.requests import QueueEditor

@@ -9,8 +9,8 @@ from typing import NamedTuple, Protocol
 
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_unforeseen
+from ...core.messages.base import Done
 from ...core.messages.commands import CommandState, SendMap
-from ...core.messages.operator_requests import Done
 from ...core.messages.roads import GetSurface, SetSurface
 from ...core.messages.robots import (
     Answer,
@@ -24,12 +24,12 @@ from ...core.messages.robots import (
     SetPosIni,
 )
 from ...core.messages.safety import RobotState
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.robotmap.model import Border, EncodedMap
 from ...protocol.codec import decode_answer
 from ..commands.service import CommandService
 from ..model.arrival import Planner, remaining_path
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import Robots
 from ..site.places import ServedSite
 from ..storage.database import Database

@@ -16,6 +16,7 @@ from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
 from ...core.messages.administration import Gateways
+from ...core.messages.base import LONGEST_REFUSAL, MOST_GATEWAYS, one_line
 from ...core.messages.commands import CommandState
 from ...core.messages.json_values import to_json
 from ...core.messages.positions import RobotReport
@@ -32,7 +33,6 @@ from ...core.messages.robots import (
     Start,
     Stopped,
 )
-from ...core.messages.validation import LONGEST_REFUSAL, MOST_GATEWAYS, one_line
 from ..auth.accounts import TokenKind
 from ..auth.authorisation import PATHS
 from ..cluster.cluster import Cluster
@@ -50,8 +50,8 @@ from ..queues.requests import PauseService, QueueEditor
 from ..queues.runner import QueueRunner
 from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.owner_fence import SOLE_FENCE, FencedError
 from ..storage.repositories import robots as stored_robots
+from ..storage.repositories.robots import SOLE_FENCE, FencedError
 from ..traffic.road_planning import RoadPlanner
 from ..traffic.service import RoadTraffic
 from ..trajectories.recording import TrajectoryRecorder, TrajectoryWriter

@@ -35,7 +35,7 @@ from ...core.messages.positions import (
     View,
 )
 from ...core.messages.safety import RobotState
-from ..model.request_handlers import Encoded, handles
+from ..model.events import Encoded, handles
 from ..model.robots import Robot, Robots, reports_of
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions

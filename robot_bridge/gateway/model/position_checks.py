@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Literal
 
+from ...core.messages.base import SPEED
 from ...core.messages.robots import SendGPS, SendPos
-from ...core.messages.validation import SPEED
 from ...core.sites.frame import SiteBounds
 from ...core.sites.settings import SettingsSource
 from .robots import AcceptedArea, Robot

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
+from ...core.messages.base import check_robot_name
 from ...core.messages.positions import RobotReport, link_elsewhere
 from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
-from ...core.messages.validation import check_robot_name
 from .arrival import standing
 from .clocks import LEAST_BEHIND, UNKNOWN_AGE, ClockStep, PoseOrder
 from .events import EventBus, RobotReturned

@@ -29,8 +29,8 @@ from ...core.errors import (
     StoreError,
 )
 from ...core.logs import log_unforeseen
+from ...core.messages.base import MessageError
 from ...core.messages.plans import MOST_CONES, PlanReport, PlanState
-from ...core.messages.validation import MessageError
 from ..commands.active_command import GATEWAY
 from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries

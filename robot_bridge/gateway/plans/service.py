@@ -28,8 +28,7 @@ from ...core.messages.plans import (
 )
 from ...core.messages.queues import PauseQueue
 from ..commands.active_command import GATEWAY
-from ..model.events import EventBus, Listeners
-from ..model.request_handlers import handles
+from ..model.events import EventBus, Listeners, handles
 from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.closures import ClosureService

@@ -31,9 +31,9 @@ from ..model.robots import Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask, queue_report
 from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import queues
 from ..storage.repositories.queues import ChangedError
+from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 
 # --- The queues of the fleet as they are stored; each change is stored before it is told ---
 

@@ -11,24 +11,8 @@ from functools import partial
 from sqlalchemy import Connection
 
 from ...core.errors import RefusedError
+from ...core.messages import queues as messages
 from ...core.messages.commands import AbortTask, CommandState
-from ...core.messages.queues import (
-    AddTasks,
-    GetQueue,
-    MakeCurrent,
-    MoveTask,
-    PauseQueue,
-    PauseRobot,
-    QueueReport,
-    Queues,
-    QueueTask,
-    RemoveTask,
-    ResumeQueue,
-    SetQueue,
-    TakeOver,
-    TaskKind,
-    TaskState,
-)
 from ...core.messages.records import (
     CollectingTasks,
     CollectLayout,
@@ -40,11 +24,11 @@ from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, CommandOrder, because
 from ..commands.persistence import Also
 from ..model import task_queue
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.task_queue import Queue, QueuedTask, queue_report
 from ..site.places import check_keepouts, check_places, tasks_in_site_frame
-from ..storage.owner_fence import OwnerFence
 from ..storage.repositories import commands, queues, records
+from ..storage.repositories.robots import OwnerFence
 from . import task_life
 from .registry import QueueContext, again_if_moved
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
@@ -69,8 +53,8 @@ class PauseService:
         self._clock = context.clock
         self._waiting = context.waiting
 
-    @handles(PauseRobot)
-    async def pause(self, request: PauseRobot, operator: str) -> QueueReport:
+    @handles(messages.PauseRobot)
+    async def pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         """Let a robot stand, and keep what it was doing; return its queue when that is stored.
 
         Asked again it changes nothing. Raises RefusedError for a robot that is not known, MessageError for a
@@ -86,7 +70,7 @@ class PauseService:
                     continue
             return await self._pause(request, operator)
 
-    async def _pause(self, request: PauseRobot, operator: str) -> QueueReport:
+    async def _pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
         robot, queue = request.robot, self._book.get(request.robot)
         reason, now = because(f"paused by {operator}", request.reason), self._clock.time()
         doing = self._commands.carried_out(robot)
@@ -143,7 +127,7 @@ class QueueEntries:
     done is aborted. ``override`` as with SetQueue.
     """
 
-    tasks: Mapping[str, Sequence[QueueTask] | None]
+    tasks: Mapping[str, Sequence[messages.QueueTask] | None]
     revisions: Mapping[str, int] = field(default_factory=dict)
     seen: Mapping[str, Queue] = field(default_factory=dict)
     resumed: Collection[str] = ()
@@ -184,7 +168,7 @@ def _write_taking(
 
 def _removed(tasks: Sequence[QueuedTask], reason: str, operator: str, at: float) -> list[QueuedTask]:
     why = because(f"removed by {operator}", reason)
-    return [task_life.end_task(task, TaskState.REMOVED, at, why) for task in tasks]
+    return [task_life.end_task(task, messages.TaskState.REMOVED, at, why) for task in tasks]
 
 
 class QueueEditor:
@@ -203,8 +187,8 @@ class QueueEditor:
         self._clock = context.clock
         self._fence = context.fence
 
-    @handles(SetQueue)
-    async def set(self, request: SetQueue, operator: str) -> QueueReport:
+    @handles(messages.SetQueue)
+    async def set(self, request: messages.SetQueue, operator: str) -> messages.QueueReport:
         """Replace what is not begun."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
@@ -212,8 +196,8 @@ class QueueEditor:
             after = task_queue.replace_tasks(queue, request.tasks, known, operator, self._clock.time())
             return await self._edit(queue, after, operator, "another list took its place")
 
-    @handles(AddTasks)
-    async def add(self, request: AddTasks, operator: str) -> QueueReport:
+    @handles(messages.AddTasks)
+    async def add(self, request: messages.AddTasks, operator: str) -> messages.QueueReport:
         """Put tasks into a queue."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
@@ -222,37 +206,37 @@ class QueueEditor:
             after = task_queue.add_tasks(queue, request.tasks, request.before, known, operator, now)
             return await self._edit(queue, after, operator)
 
-    @handles(MoveTask)
-    async def move(self, request: MoveTask, operator: str) -> QueueReport:
+    @handles(messages.MoveTask)
+    async def move(self, request: messages.MoveTask, operator: str) -> messages.QueueReport:
         """Move a task to another place of its queue."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(
                 queue, task_queue.move_task(queue, request.task, request.before), operator
             )
 
-    @handles(RemoveTask)
-    async def remove(self, request: RemoveTask, operator: str) -> QueueReport:
+    @handles(messages.RemoveTask)
+    async def remove(self, request: messages.RemoveTask, operator: str) -> messages.QueueReport:
         """Take a task out of its queue."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(
                 queue, task_queue.remove_task(queue, request.task), operator, request.reason
             )
 
-    @handles(MakeCurrent)
-    async def make_current(self, request: MakeCurrent, operator: str) -> QueueReport:
+    @handles(messages.MakeCurrent)
+    async def make_current(self, request: messages.MakeCurrent, operator: str) -> messages.QueueReport:
         """Let a task be done first."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(queue, task_queue.put_task_first(queue, request.task), operator)
 
-    @handles(PauseQueue)
-    async def pause(self, request: PauseQueue, operator: str) -> QueueReport:
+    @handles(messages.PauseQueue)
+    async def pause(self, request: messages.PauseQueue, operator: str) -> messages.QueueReport:
         """Send a robot nothing more by itself."""
         reason = because(f"paused by {operator}", request.reason)
         # An order beside the queue may come in between.
         return await again_if_moved(partial(self._pause, request.robot, reason, operator))
 
-    @handles(ResumeQueue)
-    async def resume(self, request: ResumeQueue, operator: str) -> QueueReport:
+    @handles(messages.ResumeQueue)
+    async def resume(self, request: messages.ResumeQueue, operator: str) -> messages.QueueReport:
         """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
         async with self._editing(request.robot, request.revision) as queue:
             after, current = task_queue.resume_queue(queue, operator, self._clock.time()), queue.current
@@ -260,12 +244,12 @@ class QueueEditor:
                 after = after.with_head(task_queue.return_task(current, task_life.STOPS_FIRST))
             return await self._edit(queue, after, operator)
 
-    @handles(TakeOver)
-    async def take_over(self, request: TakeOver, operator: str) -> Queues:
+    @handles(messages.TakeOver)
+    async def take_over(self, request: messages.TakeOver, operator: str) -> messages.Queues:
         """Let other robots do what waits in one robot's queue, all of it or nothing."""
         return await again_if_moved(partial(self._take_over, request, operator))
 
-    async def _take_over(self, request: TakeOver, operator: str) -> Queues:
+    async def _take_over(self, request: messages.TakeOver, operator: str) -> messages.Queues:
         names = [request.robot, *(share.robot for share in request.shares)]
         revisions = {request.robot: request.revision}
         revisions.update({share.robot: share.revision for share in request.shares})
@@ -285,16 +269,16 @@ class QueueEditor:
             taken = task_life.transferred_current_task(before[request.robot], request)
             ended = [] if taken is None else [(request.robot, taken)]
             await self._stored(list(before.values()), write, ended, operator)
-            return Queues([self._book.accept(after[name]) for name in names])
+            return messages.Queues([self._book.accept(after[name]) for name in names])
 
-    async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
+    async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[messages.QueueReport]:
         """Give several robots their tasks in one transaction, in which ``also`` is written; see there.
 
         Their robots may be at any gateways. Raises OutdatedError where a queue is not as it was seen.
         """
         return await again_if_moved(partial(self._enter, entries, operator, also))
 
-    async def _enter(self, entries: QueueEntries, operator: str, also: Also) -> list[QueueReport]:
+    async def _enter(self, entries: QueueEntries, operator: str, also: Also) -> list[messages.QueueReport]:
         names = [*entries.tasks, *(name for name in entries.away if name not in entries.tasks)]
         async with self._book.holding(names):
             for name in names:
@@ -350,7 +334,7 @@ class QueueEditor:
         before, tasks, now = self._book.get(name), entries.tasks[name], self._clock.time()
         after = before
         if tasks is not None:
-            request = SetQueue(name, before.revision, list(tasks), entries.override)
+            request = messages.SetQueue(name, before.revision, list(tasks), entries.override)
             known = await self._checked(request, before, leaving)
             after = task_queue.replace_tasks(before, tasks, known, operator, now)
         if name in entries.paused:
@@ -379,8 +363,8 @@ class QueueEditor:
             if robot in self._robots and queue.tasks:
                 await self._edit(queue, queue.with_tasks((), edited=True), operator, reason)
 
-    @handles(GetQueue)
-    async def read(self, request: GetQueue) -> Queues:
+    @handles(messages.GetQueue)
+    async def read(self, request: messages.GetQueue) -> messages.Queues:
         """Return queues as they are."""
         if request.robot is not None:
             self._robots.check_known(request.robot)
@@ -395,7 +379,7 @@ class QueueEditor:
             if name in self._robots:
                 state = self._robots.get(name).state
                 found.append(queue_report(queue, state, ended, paths=request.paths))
-        return Queues(found)
+        return messages.Queues(found)
 
     @handles(GetPlacements)
     async def placed_cones(self, request: GetPlacements) -> Placements:
@@ -414,7 +398,7 @@ class QueueEditor:
     def _is_being_aborted(self, robot: str, task: QueuedTask) -> bool:
         return task.command is not None and self._commands.is_being_aborted(robot, task.command)
 
-    async def _pause(self, robot: str, reason: str, operator: str) -> QueueReport:
+    async def _pause(self, robot: str, reason: str, operator: str) -> messages.QueueReport:
         async with self._book.holding([robot]):
             self._robots.check_known(robot)
             queue = self._book.get(robot)
@@ -429,12 +413,12 @@ class QueueEditor:
 
     async def _edit(
         self, before: Queue, after: Queue, operator: str, reason: str | None = None
-    ) -> QueueReport:
+    ) -> messages.QueueReport:
         kept = {task.id for task in after.tasks}
         why = because(f"removed by {operator}", reason)
         now = self._clock.time()
         gone = [
-            task_life.end_task(task, TaskState.REMOVED, now, why)
+            task_life.end_task(task, messages.TaskState.REMOVED, now, why)
             for task in before.tasks
             if task.id not in kept
         ]
@@ -454,7 +438,7 @@ class QueueEditor:
             )
 
     async def _checked(
-        self, request: SetQueue | AddTasks, queue: Queue, leaving: Collection[str] = ()
+        self, request: messages.SetQueue | messages.AddTasks, queue: Queue, leaving: Collection[str] = ()
     ) -> dict[str, task_queue.Whereabouts]:
         """Return which of the tasks were given before; raises RefusedError for one that cannot be driven.
 
@@ -487,21 +471,21 @@ class QueueEditor:
             )
         return await self._database.read(queues.whereabouts, [task.task for task in tasks])
 
-    def _driven(self, task: QueueTask) -> list[SetPath | SetPosEnd]:
+    def _driven(self, task: messages.QueueTask) -> list[SetPath | SetPosEnd]:
         """Return what drives a task; raises RefusedError where that cannot be."""
         driven = commands_of_task(task, self._site.settings.cones.offset)
         check_places(self._site, [(task.x, task.y), *(task.path or ())])
         return driven
 
 
-def _collecting(cone: PlacementReport, turns: bool) -> QueueTask:
+def _collecting(cone: PlacementReport, turns: bool) -> messages.QueueTask:
     """Return the task that collects a cone; one that stands off its robot is taken from the same side."""
-    return QueueTask(
+    return messages.QueueTask(
         task=str(uuid.uuid4()),
         x=cone.x,
         y=cone.y,
         theta=cone.theta if turns else None,
-        kind=TaskKind.COLLECT,
+        kind=messages.TaskKind.COLLECT,
         cone=cone.cone,
         label=cone.label,
         layout=cone.layout,

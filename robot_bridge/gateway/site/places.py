@@ -15,7 +15,7 @@ from ...core.messages.queues import QueueTask
 from ...core.messages.records import ObservationReport
 from ...core.messages.roads import GetRoute
 from ...core.messages.robots import Abort, Command, SetPath, SetPosEnd, SetPosIni
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.robotmap.model import EncodedMap
 from ...core.sites.fences import Fences
 from ...core.sites.settings import SiteSettings

@@ -17,7 +17,7 @@ from ...core.errors import CrsError, MapBinaryError, RefusedError, RobotMapError
 from ...core.geometry import Track
 from ...core.messages.administration import SiteReport
 from ...core.messages.records import ObservationReport
-from ...core.roads.centrelines import Surface
+from ...core.roads.network import Surface
 from ...core.roads.surface_index import NOWHERE
 from ...core.robotmap.binary import encode
 from ...core.robotmap.model import Border, EncodedMap, Obstacle, RobotMap, ShapeType, Window

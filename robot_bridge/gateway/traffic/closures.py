@@ -17,27 +17,18 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
+from ...core.messages import roads as messages
+from ...core.messages.base import MessageError
 from ...core.messages.commands import AbortTask, CommandReport
 from ...core.messages.json_values import to_json
 from ...core.messages.queues import QueueTask
-from ...core.messages.roads import (
-    CloseRoad,
-    ClosureReport,
-    Closures,
-    GetClosures,
-    OpenRoad,
-    ReplannedRobot,
-    RoadClosed,
-)
 from ...core.messages.robots import Command, SetPath, SetPosEnd, path_to_end
-from ...core.messages.validation import MessageError
 from ..commands.active_command import NOTHING, CommandOrder, because
 from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..model.arrival import Point
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests
@@ -104,7 +95,7 @@ class Detours:
 
     async def around(
         self, closure: str, reason: str | None, operator: str, only: Collection[str] | None = None
-    ) -> list[ReplannedRobot]:
+    ) -> list[messages.ReplannedRobot]:
         """Send every robot, or ``only`` some, whose way leads along the road of ``closure`` another way.
 
         The road is closed by now. A robot of which it is not known where it is now is led round later, as
@@ -165,10 +156,10 @@ class Detours:
                 found.append(way)
         return found
 
-    async def _lead(self, way: RobotPath, why: str, operator: str) -> ReplannedRobot:
+    async def _lead(self, way: RobotPath, why: str, operator: str) -> messages.ReplannedRobot:
         if way.robot in self._later:
             text = f"{way.robot} is sent another way when it has said where it is now: {why}. Look after it."
-            return ReplannedRobot(way.robot, "later", text)
+            return messages.ReplannedRobot(way.robot, "later", text)
         try:
             points, none = await asyncio.to_thread(self._other_way, way)
             if points is None:
@@ -176,15 +167,15 @@ class Detours:
             path = path_to_end(way.task, points)
             command = await self.send(way, path, operator, why[:500])
             text = f"{way.robot} was sent another way: {why}"
-            return ReplannedRobot(way.robot, "another way", text, command)
+            return messages.ReplannedRobot(way.robot, "another way", text, command)
         except StoreError as error:
             self._later.add(way.robot)
             text = f"{way.robot} is sent another way when that can be stored: {why}; {error}. Look after it."
-            return ReplannedRobot(way.robot, "later", text)
+            return messages.ReplannedRobot(way.robot, "later", text)
         except (BridgeError, MessageError) as error:
             log.error("robot %s, whose road was closed: %s", way.robot, error)
             text = f"{way.robot} was NOT sent another way: {why}; {error}. Look after it."
-            return ReplannedRobot(way.robot, "failed", text)
+            return messages.ReplannedRobot(way.robot, "failed", text)
 
     def _other_way(self, way: RobotPath) -> tuple[list[Point] | None, str]:
         assert self._roads is not None
@@ -195,12 +186,12 @@ class Detours:
         # Straight over the fields is no other way.
         return (None, planned.note) if planned.note else (list(planned.points), "")
 
-    async def _without_way(self, way: RobotPath, why: str, operator: str) -> ReplannedRobot:
+    async def _without_way(self, way: RobotPath, why: str, operator: str) -> messages.ReplannedRobot:
         if self._site.settings.routes.no_way != "stop":
             text = f"{way.robot} drives on as it was told, though {why}. Look after it."
-            return ReplannedRobot(way.robot, "told only", text)
+            return messages.ReplannedRobot(way.robot, "told only", text)
         command = await self.stop(way.robot, f"no other way: {why}"[:500], operator)
-        return ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)
+        return messages.ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)
 
 
 def _tell(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:
@@ -260,17 +251,17 @@ class ClosureService:
                     log.warning("closure %s: the site, as it is published now, has no such road", id)
         self._announce()
 
-    @handles(GetClosures)
-    async def closed(self) -> Closures:
+    @handles(messages.GetClosures)
+    async def closed(self) -> messages.Closures:
         """Return the roads that are closed."""
         return self.report()
 
-    def report(self) -> Closures:
+    def report(self) -> messages.Closures:
         """Return the roads that are closed."""
-        return Closures([self._reported(row) for row in self._rows.values()])
+        return messages.Closures([self._reported(row) for row in self._rows.values()])
 
-    @handles(CloseRoad)
-    async def close(self, request: CloseRoad, operator: str) -> RoadClosed:
+    @handles(messages.CloseRoad)
+    async def close(self, request: messages.CloseRoad, operator: str) -> messages.RoadClosed:
         """Close a road and send the robots that it concerns another way; the same again changes nothing.
 
         :raises RefusedError: when no road is there; StoreError when it cannot be stored, and is not closed.
@@ -279,7 +270,7 @@ class ClosureService:
         async with self._looked_up():
             known = await self._database.run(closures.find, request.closure)
             if known is not None:
-                return RoadClosed(self._reported(known))
+                return messages.RoadClosed(self._reported(known))
             line, level = await asyncio.to_thread(roads.stretch, (request.x, request.y), request.reach)
             now = self._clock.time()
             row = ClosureRow(
@@ -293,7 +284,7 @@ class ClosureService:
             )
             await self._run(closures.add, row)
             await self._put([row])
-        return RoadClosed(self._reported(row), await self._lead_round(row))
+        return messages.RoadClosed(self._reported(row), await self._lead_round(row))
 
     async def follow(self) -> None:
         """Take in what other gateways of the fleet closed and opened; raises StoreError."""
@@ -311,8 +302,8 @@ class ClosureService:
         for row in list(self._rows.values()):
             await self._lead_round(row, only=placed)
 
-    @handles(OpenRoad)
-    async def open(self, request: OpenRoad, operator: str) -> ClosureReport:
+    @handles(messages.OpenRoad)
+    async def open(self, request: messages.OpenRoad, operator: str) -> messages.ClosureReport:
         """Open a road; the same again changes nothing.
 
         :raises RefusedError: when it was never closed; StoreError when it cannot be stored, and stays closed.
@@ -383,7 +374,9 @@ class ClosureService:
         for row in rows:
             log.warning("%s closed a road%s", row.closed_by, f" ({row.reason})" if row.reason else "")
 
-    async def _lead_round(self, row: ClosureRow, only: Collection[str] | None = None) -> list[ReplannedRobot]:
+    async def _lead_round(
+        self, row: ClosureRow, only: Collection[str] | None = None
+    ) -> list[messages.ReplannedRobot]:
         robots = await self._detours.around(row.id, row.reason, row.closed_by, only)
         for robot in robots:
             self._listeners.announce("replanned", robot.robot, to_json(robot))
@@ -396,7 +389,7 @@ class ClosureService:
             self._doubtful = True
             raise
 
-    async def _open(self, row: ClosureRow, by: str) -> ClosureReport:
+    async def _open(self, row: ClosureRow, by: str) -> messages.ClosureReport:
         at = self._clock.time()
         await self._run(closures.end, row.id, at, by)
         self._rows.pop(row.id, None)
@@ -415,8 +408,8 @@ class ClosureService:
             raise RefusedError("this gateway plans without roads; publish a site with road centrelines")
         return self._roads
 
-    def _reported(self, row: ClosureRow) -> ClosureReport:
-        return ClosureReport(
+    def _reported(self, row: ClosureRow) -> messages.ClosureReport:
+        return messages.ClosureReport(
             closure=row.id,
             line=row.line,
             closed_at=row.closed_at,

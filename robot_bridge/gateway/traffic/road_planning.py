@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.errors import NoRouteError, OffNetworkError, RefusedError, RoadsError
 from ...core.messages.roads import GetRoute, RouteReport, SurfaceMetres
-from ...core.roads.centrelines import Floats
+from ...core.roads.network import Floats
 from ...core.roads.path_smoothing import DensePath, Driving, dense_path
 from ...core.roads.routes import Restrictions, Route, Router, with_ends
 from ...core.sites.site import Site

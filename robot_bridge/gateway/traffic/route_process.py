@@ -25,8 +25,8 @@ from typing import Any
 
 import numpy as np
 
-from ...core.roads.centrelines import Floats, Ints
 from ...core.roads.engines import ContractionEngines, Ends, Engine, RouteGraph, safe_engines
+from ...core.roads.network import Floats, Ints
 
 log = logging.getLogger(__name__)
 

@@ -10,30 +10,16 @@ from typing import Any, NamedTuple
 
 from ...core.clock import Clock
 from ...core.errors import RefusedError
+from ...core.messages import roads as messages
 from ...core.messages.commands import CommandReport
 from ...core.messages.json_values import to_json
-from ...core.messages.roads import (
-    ConflictResolved,
-    Conflicts,
-    GetConflicts,
-    GetRoute,
-    GetSurfaces,
-    GetWaysOut,
-    ResolveConflict,
-    RouteReport,
-    SurfaceAt,
-    Surfaces,
-    WayOut,
-    WaysOut,
-)
 from ...core.messages.robots import path_to_end
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Point
-from ..model.events import Listeners
-from ..model.request_handlers import handles
+from ..model.events import Listeners, handles
 from ..model.robots import Robots
 from ..monitoring import Steps
 from ..site.places import ServedSite, route_in_site_frame
@@ -93,12 +79,12 @@ class TrafficControl:
         self._had_conflicts = False
         self._next = 0.0
 
-    @handles(GetConflicts)
-    async def conflicts(self) -> Conflicts:
+    @handles(messages.GetConflicts)
+    async def conflicts(self) -> messages.Conflicts:
         """Return the conflicts of all robots as they are on their ways now."""
         seen = self.situation()
         found = await asyncio.to_thread(_found, seen)
-        return Conflicts(seen.now, found, self._waiting.report())
+        return messages.Conflicts(seen.now, found, self._waiting.report())
 
     async def watch(self, *, listened_to: bool) -> None:
         """Send on who has waited long enough; tell operators, if they are ``listened_to``, of conflicts."""
@@ -111,19 +97,19 @@ class TrafficControl:
         seen, began = self.situation(), time.monotonic()
         found = await asyncio.to_thread(_found, seen) if seen.underway else []
         self._next = time.monotonic() + (time.monotonic() - began) / SHARE
-        report = Conflicts(seen.now, found, self._waiting.report())
+        report = messages.Conflicts(seen.now, found, self._waiting.report())
         something = bool(report.conflicts or report.waiting)
         if something or self._had_conflicts:
             self._listeners.announce("conflicts", "conflicts", to_json(report))
         self._had_conflicts = something
 
-    @handles(GetWaysOut)
-    async def ways_out(self, request: GetWaysOut) -> WaysOut:
+    @handles(messages.GetWaysOut)
+    async def ways_out(self, request: messages.GetWaysOut) -> messages.WaysOut:
         """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
         return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site.site)
 
-    @handles(ResolveConflict)
-    async def resolve(self, request: ResolveConflict, operator: str) -> ConflictResolved:
+    @handles(messages.ResolveConflict)
+    async def resolve(self, request: messages.ResolveConflict, operator: str) -> messages.ConflictResolved:
         """Let ``robot`` wait for ``other``, or send it another way.
 
         :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
@@ -151,25 +137,25 @@ class TrafficControl:
             self._clock.time(), settings, self._ways.all(), places, self._waiting.rows(), placed
         )
 
-    def _ways_out(self, seen: TrafficSnapshot, request: GetWaysOut, site: Site) -> WaysOut:
+    def _ways_out(self, seen: TrafficSnapshot, request: messages.GetWaysOut, site: Site) -> messages.WaysOut:
         pairs = (request.robot, request.other), (request.other, request.robot)
         ways = [self._giving_way(seen, *pair) for pair in pairs]
         ways += [_aside(seen, site, *pair) for pair in pairs]
-        return WaysOut(seen.now, request.robot, request.other, ways)
+        return messages.WaysOut(seen.now, request.robot, request.other, ways)
 
-    def _giving_way(self, seen: TrafficSnapshot, robot: str, other: str) -> WayOut:
+    def _giving_way(self, seen: TrafficSnapshot, robot: str, other: str) -> messages.WayOut:
         try:
-            plan = self._plan(seen, ResolveConflict(robot, other))
+            plan = self._plan(seen, messages.ResolveConflict(robot, other))
         except RefusedError as error:
-            return WayOut(robot, "give way", False, str(error))
+            return messages.WayOut(robot, "give way", False, str(error))
         if plan.until is None:
             text = f"{robot} takes another way and arrives about {plan.later:.0f} s later"
-            return WayOut(robot, "give way", True, text)
+            return messages.WayOut(robot, "give way", True, text)
         x, y = split_path(plan.points, plan.station)[0][-1]
         text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {other}, about {plan.later:.0f} s"
-        return WayOut(robot, "give way", True, text)
+        return messages.WayOut(robot, "give way", True, text)
 
-    def _plan(self, seen: TrafficSnapshot, request: ResolveConflict) -> YieldPlan:
+    def _plan(self, seen: TrafficSnapshot, request: messages.ResolveConflict) -> YieldPlan:
         """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
         movements = seen.movements()
         for robot in (request.robot, request.other):
@@ -224,21 +210,25 @@ class TrafficControl:
             return None
         return YieldPlan(way, route.points, max(movement.ends - mine.ends, 0.0))
 
-    async def _send_round(self, request: ResolveConflict, plan: YieldPlan, operator: str) -> ConflictResolved:
+    async def _send_round(
+        self, request: messages.ResolveConflict, plan: YieldPlan, operator: str
+    ) -> messages.ConflictResolved:
         robot, reason = plan.way.robot, f"out of the way of {request.other}"
         path = path_to_end(plan.way.task, plan.points)
         command = await self._detours.send(plan.way, path, operator, reason)
         text = f"{robot} was sent another way, {reason}, and arrives about {plan.later:.0f} s later"
-        return ConflictResolved(robot, "another way", text, command, round(plan.later, 1))
+        return messages.ConflictResolved(robot, "another way", text, command, round(plan.later, 1))
 
-    async def _let_wait(self, request: ResolveConflict, plan: YieldPlan, operator: str) -> ConflictResolved:
+    async def _let_wait(
+        self, request: messages.ResolveConflict, plan: YieldPlan, operator: str
+    ) -> messages.ConflictResolved:
         assert plan.until is not None
         robot = plan.way.robot
         first, rest = split_path(plan.points, plan.station)
         command = await self._waiting.send(plan.way, first, rest, request.other, plan.until, operator)
         x, y = first[-1]
         text = f"{robot} waits at ({x:.1f}, {y:.1f}) for {request.other}, about {plan.later:.0f} s"
-        return ConflictResolved(robot, "waits", text, command, round(plan.later, 1))
+        return messages.ConflictResolved(robot, "waits", text, command, round(plan.later, 1))
 
 
 def _found(seen: TrafficSnapshot) -> list[Any]:
@@ -247,7 +237,7 @@ def _found(seen: TrafficSnapshot) -> list[Any]:
     return [conflict_report(one, clearance) for one in find_conflicts(movements, settings.margin_m, seen.now)]
 
 
-def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> WayOut:
+def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> messages.WayOut:
     """Return where a robot that stands goes so that it is in nobody's way, or why it cannot."""
     movements = seen.movements()
     why = ""
@@ -258,17 +248,17 @@ def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> WayOut:
     elif other not in movements:
         why = f"it is not known where {other} is"
     if why:
-        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+        return messages.WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
     others = [movement for name, movement in movements.items() if name != robot]
     points = yield_beside_path(
         movements[robot], others, site, seen.places[robot][1], seen.settings.margin_m, seen.now
     )
     if points is None:
         why = f"no free place within {REACH:g} m that it could reach before others come; stop {other}"
-        return WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
+        return messages.WayOut(robot, "aside", False, f"{robot} cannot go aside: {why}")
     x, y = points[-1]
     text = f"{robot} goes {math.dist(*points):.1f} m aside, to ({x:.1f}, {y:.1f})"
-    return WayOut(robot, "aside", True, text, points)
+    return messages.WayOut(robot, "aside", True, text, points)
 
 
 def _waiting(way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapshot) -> YieldPlan | None:
@@ -282,7 +272,7 @@ def _waiting(way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapsh
     return YieldPlan(way, way.points, wait.seconds, wait.station, until)
 
 
-def _unresolved(request: ResolveConflict, other_moves: bool) -> str:
+def _unresolved(request: messages.ResolveConflict, other_moves: bool) -> str:
     """Return why a robot cannot give way, and what can be done: a robot that stands can only go aside."""
     how = {
         "waiting": "waiting does not resolve it, or it is too late for that",
@@ -342,21 +332,24 @@ class RoadTraffic:
         await self.closures.restore()
         await self.waiting.restore()
 
-    @handles(GetRoute)
-    async def route(self, request: GetRoute) -> RouteReport:
+    @handles(messages.GetRoute)
+    async def route(self, request: messages.GetRoute) -> messages.RouteReport:
         """Return the way along the roads that an operator wants to see; raises RefusedError without one."""
         request = await route_in_site_frame(self._site, request)
         return await route_for_operator(self.planner, self._robots, self.ways, request)
 
-    @handles(GetSurfaces)
-    async def surfaces(self, request: GetSurfaces) -> Surfaces:
+    @handles(messages.GetSurfaces)
+    async def surfaces(self, request: messages.GetSurfaces) -> messages.Surfaces:
         """Return which road surface is at each place; raises RefusedError for a CRS that leads nowhere."""
         try:
             found = await asyncio.to_thread(self._site.surfaces_at, request.points, request.crs)
         except RefusedError as error:
             raise RefusedError(f"get_surface: {error}") from error
-        return Surfaces(
-            [None if one is None else SurfaceAt(one.label, one.origin, one.name or None) for one in found]
+        return messages.Surfaces(
+            [
+                None if one is None else messages.SurfaceAt(one.label, one.origin, one.name or None)
+                for one in found
+            ]
         )
 
     def note_step(self, command: CommandReport) -> None:

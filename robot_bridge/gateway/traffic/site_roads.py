@@ -12,10 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import RefusedError
-from ...core.roads.centrelines import Floats, Ints
 from ...core.roads.engines import EngineFactory, RouteGraph, safe_engines
 from ...core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
-from ...core.roads.network import Network, build_network, flags
+from ...core.roads.network import Floats, Ints, Network, build_network, flags
 from ...core.roads.routes import REACH, Router
 from ...core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...core.sites.geopackage import road_lines

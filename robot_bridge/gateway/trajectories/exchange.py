@@ -22,15 +22,8 @@ from ...core.sites.settings_tables import TrajectorySettings
 from ..storage.database import Database
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories import trajectories
-from ..storage.repositories.trajectories import (
-    DAY,
-    Fix,
-    PackedFix,
-    PageMark,
-    StoredPosition,
-    TrajectoryQuery,
-    pack,
-)
+from ..storage.repositories import trajectories as stored_trajectories
+from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, StoredPosition, TrajectoryQuery
 from .recording import PositionThinning
 
 # --- Trajectories as a GeoPackage: every stored position, and the lines between them with times ---
@@ -285,7 +278,7 @@ def _check_times(drive: RecordedDrive, settings: TrajectorySettings, now: float)
             f"the drive of robot {drive.robot!r} is from {drive.span}, which is not over yet; give when it "
             "began with --begin"
         )
-    if drive.begin < now - settings.keep_days * DAY:
+    if drive.begin < now - settings.keep_days * stored_trajectories.DAY:
         raise BridgeError(
             f"the drive of robot {drive.robot!r} is from {drive.span}; the gateway deletes what is older "
             f"than {settings.keep_days:g} days (trajectories.keep_days of site.toml). Give another time with "
@@ -302,8 +295,8 @@ def _thinned(fixes: Iterable[Fix], settings: TrajectorySettings) -> Iterator[Pac
     thinning = PositionThinning()
     for fix in fixes:
         if thinning.keeps(fix, settings):
-            yield pack(fix)
-    yield from map(pack, thinning.silent())
+            yield stored_trajectories.pack(fix)
+    yield from map(stored_trajectories.pack, thinning.silent())
 
 
 def _batches(fixes: Iterator[PackedFix]) -> Iterator[list[PackedFix]]:

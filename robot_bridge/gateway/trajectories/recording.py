@@ -18,12 +18,12 @@ from ...core.messages.robots import SendPos
 from ...core.sites.settings import SettingsSource
 from ...core.sites.settings_tables import TrajectorySettings
 from ..model.arrival import standing
-from ..model.request_handlers import handles
+from ..model.events import handles
 from ..model.robots import RobotPose, Robots
 from ..storage.database import Database, to_its_end
-from ..storage.owner_fence import SOLE_FENCE, OwnerFence
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories import trajectories
+from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, TrajectoryQuery, pack
 from ..storage.rows import Row
 

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import msgspec
 
 from ...core.json_decoder import toml_tables
-from ...core.messages.validation import ROBOT_NAME
+from ...core.messages.base import ROBOT_NAME
 from .errors import LinkError
 from .frames import FrameSettings
 

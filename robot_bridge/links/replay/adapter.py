@@ -18,8 +18,8 @@ from typing import ClassVar
 import msgspec
 
 from ...core.messages.administration import Playback, PlaybackReport
+from ...core.messages.base import SPEED, MessageError, check_robot_name
 from ...core.messages.robots import SendPos
-from ...core.messages.validation import SPEED, MessageError, check_robot_name
 from ...core.sites.frame import SiteFrame
 from ...recordings.csv_table import TableForm
 from ...recordings.readers import ReadingOptions, read_recording

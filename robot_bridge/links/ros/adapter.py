@@ -11,7 +11,7 @@ from typing import Any, Generic, TypeVar
 
 from ...core.files import write_state
 from ...core.json_decoder import DecodingError, decode_json
-from ...core.messages.validation import MessageError, check_robot_name
+from ...core.messages.base import MessageError, check_robot_name
 from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError, LinkError
 from .robot import RosRobot

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.images import encode_png, media_type_of
+from ...core.messages.base import MessageError
 from ...core.messages.robots import SetPath, SetPosEnd, SetPosIni
-from ...core.messages.validation import MessageError
 from ...core.robotmap.binary import decode
 from ...core.robotmap.exporters.nav2 import RasterGrid, occupancy_of
 from ..base.frames import LinkFrame

@@ -10,9 +10,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Generic, Protocol, TypeVar, cast
 
+from ...core.messages.base import LONGEST_LABEL, MessageError, one_line
 from ...core.messages.robots import SendGPS, SendImage, SendPos, SetMap, SetPath, SetPosEnd, SetPosIni
 from ...core.messages.safety import Ability
-from ...core.messages.validation import LONGEST_LABEL, MessageError, one_line
 from ...core.sites.frame import SiteFrame
 from ..base.adapter import Command, Link
 from ..base.errors import CommandRefusedError

@@ -8,8 +8,8 @@ import time
 from dataclasses import dataclass, replace
 from typing import Any
 
+from ...core.messages.base import ACCURACY, ALTITUDE, COORDINATE, SPEED, MessageError
 from ...core.messages.robots import SendGPS, SendPos
-from ...core.messages.validation import ACCURACY, ALTITUDE, COORDINATE, SPEED, MessageError
 from ..base.frames import LinkFrame
 from .errors import FaultError
 from .messages import FIX, ODOMETRY, POSE, POSE_WITH_COVARIANCE, READ, TF

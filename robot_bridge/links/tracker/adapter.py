@@ -14,7 +14,7 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages.validation import LONGEST_OPERATOR, MessageError, check_robot_name, one_line
+from ...core.messages.base import LONGEST_OPERATOR, MessageError, check_robot_name, one_line
 from ..base.adapter import Adapter, Command, Link
 from ..base.errors import CommandRefusedError, LinkError
 from ..base.settings import LinkSettings, read_settings

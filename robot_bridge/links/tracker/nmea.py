@@ -15,8 +15,8 @@ from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from ...core.messages.base import MessageError
 from ...core.messages.robots import SendGPS
-from ...core.messages.validation import MessageError
 from .osmand import KNOT, MOVING, ReportError, TrackerReport
 
 # --- NMEA 0183 as GPS receivers speak it: sentences in, fixes out; no I/O ---

@@ -13,8 +13,8 @@ from typing import Any
 from urllib.parse import parse_qsl, urlsplit
 
 from ...core.json_decoder import DecodingError, JsonBounds, decode_json
+from ...core.messages.base import MessageError
 from ...core.messages.robots import SendGPS
-from ...core.messages.validation import MessageError
 
 # --- The OsmAnd protocol, which Traccar Client and others speak over HTTP: texts in, fixes out; no I/O
 # A report is the query of a GET or the form of a POST, or (newer clients) JSON. Speeds are knots in the

@@ -19,18 +19,10 @@ from ..base.adapter import Adapter, Command, Link, summary
 from ..base.errors import CommandRefusedError
 from ..base.frames import LinkFrame
 from ..base.settings import LinkSettings, read_settings
+from . import messages
 from .broker import Broker
 from .ledger import Effect, Halted, Keep, Publish, Settled, VehicleReport
-from .messages import (
-    MessageWriter,
-    Order,
-    Topics,
-    Vda5050Error,
-    VdaHeader,
-    VehicleId,
-    VehicleMessageError,
-    decode_message,
-)
+from .messages import MessageWriter, Order, Topics, Vda5050Error, VdaHeader, VehicleId, VehicleMessageError
 from .presence import MapFrame
 from .settings import (
     AnyMap,
@@ -213,7 +205,7 @@ class Vda5050Adapter(Adapter):
             return
         identity, kind = parsed
         try:
-            message = decode_message(kind, payload, self._topics.major)
+            message = messages.decode_message(kind, payload, self._topics.major)
             if isinstance(message, VdaHeader) and identity != VehicleId(
                 message.manufacturer, message.serial_number
             ):

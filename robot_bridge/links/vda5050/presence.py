@@ -7,8 +7,8 @@ from collections import deque
 from collections.abc import Mapping
 from typing import Protocol
 
+from ...core.messages.base import LONGEST_STATUS, one_line
 from ...core.messages.robots import SendPos
-from ...core.messages.validation import LONGEST_STATUS, one_line
 from .messages import LEVELS, Connection, Factsheet, Position, State, VehicleFault, Velocity, Visualization
 
 # --- Two vehicles under one serial number, as they show in header numbers and in the broker's last wills

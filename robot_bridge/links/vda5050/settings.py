@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 import msgspec
 from msgspec import field
 
-from ...core.messages.validation import ROBOT_NAME
+from ...core.messages.base import ROBOT_NAME
 from ...protocol.credentials import AccessError, client_context
 from ..base.errors import LinkError
 from ..base.frames import FrameSettings, LinkFrame

@@ -9,8 +9,8 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from ...core.messages.base import MessageError
 from ...core.messages.robots import Alive, Request, SetPath, SetPosEnd, SetPosIni, Stopped
-from ...core.messages.validation import MessageError
 from .ledger import Effect, Ledger, PositionInit
 from .messages import Connection, Factsheet, FreshNames, Inbound, State, VehicleId, Visualization
 from .presence import MapFrame, VehiclePresence

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.admin.token_dialog import day_and_time
 from fleet_supervisor.robot_bridge.core.messages.administration import TokenState
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from qgis.PyQt.QtWidgets import QAction, QToolButton
 
 from tests.plugin.admin.accounts_desk import BUTTONS, CHANGES, MADE_AT
@@ -41,7 +41,7 @@ def test_it_is_in_the_menu_of_the_connections_too(at_accounts, plugin):
 
 
 def test_while_connected_no_other_connection_can_be_picked(at_accounts, plugin):
-    from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
+    from fleet_supervisor.plugin.settings.profile import Connections, GatewayConnection
 
     Connections().store(GatewayConnection("Track", "ws://127.0.0.1:1/desk"))
     menu = plugin.window.dock.connection_panel.menu.menu

@@ -8,7 +8,7 @@ import numpy as np
 import zxingcpp
 from fleet_supervisor.plugin.admin.token_dialog import TokenDialog, day_and_time
 from fleet_supervisor.robot_bridge.core.messages.administration import NewToken
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from qgis.core import QgsApplication, QgsSettings
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt

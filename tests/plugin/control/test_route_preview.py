@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.control.request_tracker import SLOW_AFTER
-from fleet_supervisor.plugin.control.roads import (
-    SHORTEST,
-    RoutePreferences,
-    RoutePreferencesDialog,
-    surfaces_of,
-)
 from fleet_supervisor.plugin.control.route_queries import (
+    SHORTEST,
     UNANSWERED_AFTER,
+    RoutePreferences,
     RouteQuery,
     RouteQuestion,
     route_in_words,
 )
 from fleet_supervisor.plugin.gateway_client.fleet_state import RequestResult
+from fleet_supervisor.plugin.map.tools.route_tool import RoutePreferencesDialog, surfaces_of
 from fleet_supervisor.robot_bridge.core.messages.roads import RouteReport, SurfaceMetres
 from qgis.PyQt.QtWidgets import QLineEdit, QPushButton, QWidget
 

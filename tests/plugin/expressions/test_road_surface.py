@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.expressions.functions import ExpressionFunctions
-from fleet_supervisor.plugin.expressions.robot_snapshot import SnapshotHolder
+from fleet_supervisor.plugin.expressions import ExpressionFunctions, SnapshotHolder
 from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
 from fleet_supervisor.plugin.layers.roles import ROAD_SURFACE, set_role
 from qgis.core import (

@@ -6,8 +6,7 @@ import time
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.expressions.functions import ExpressionFunctions
-from fleet_supervisor.plugin.expressions.robot_snapshot import RobotSnapshot, SnapshotHolder
+from fleet_supervisor.plugin.expressions import ExpressionFunctions, RobotSnapshot, SnapshotHolder
 from fleet_supervisor.plugin.layers.road_surfaces import SurfaceStore
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from qgis.core import (

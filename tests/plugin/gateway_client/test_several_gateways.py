@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
-from fleet_supervisor.plugin.settings.connections import GATEWAYS, GatewayConnection, KnownGateways
+from fleet_supervisor.plugin.settings.profile import GATEWAYS, GatewayConnection, KnownGateways
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from fleet_supervisor.robot_bridge.core.gateway_addresses import FleetGateways
 from qgis.core import QgsSettings

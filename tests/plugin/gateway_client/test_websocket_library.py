@@ -17,8 +17,7 @@ PLUGIN_FILES = (
     "__init__.py",
     "plugin/__init__.py",
     "plugin/ui/errors.py",
-    "plugin/vendored.py",
-    "plugin/gateway_client/websocket_library.py",
+    "plugin/ui/vendored.py",
 )
 
 UNTRANSLATED = """
@@ -64,7 +63,7 @@ def run(folder: Path, script: str, *more_paths: Path) -> str:
 
 FIND = """
     from fleet_supervisor.plugin.ui.errors import LibraryMissingError
-    from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
+    from fleet_supervisor.plugin.ui.vendored import websocket_library
     before = list(sys.path)
     try:
         print(websocket_library().__name__)
@@ -120,7 +119,7 @@ async def test_the_plugins_own_copy_talks_to_a_real_server(released):
         port = server.sockets[0].getsockname()[1]
         script = f"""
             import asyncio
-            from fleet_supervisor.plugin.gateway_client.websocket_library import websocket_library
+            from fleet_supervisor.plugin.ui.vendored import websocket_library
             library = websocket_library()
             async def talk():
                 async with library.connect("ws://127.0.0.1:{port}", proxy=None) as socket:

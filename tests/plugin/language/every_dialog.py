@@ -12,12 +12,15 @@ from fleet_supervisor.plugin.admin.accounts_dialog import (
     ChangeRoleDialog,
     NewAccountDialog,
     RenewTokenDialog,
+    TokenDialog,
     confirm_revocation,
 )
-from fleet_supervisor.plugin.admin.recordings import RecordingsDialog
-from fleet_supervisor.plugin.admin.robot_removal import RemovalDialog
-from fleet_supervisor.plugin.admin.site_choice import SiteChoiceDialog, confirm_site_choice
-from fleet_supervisor.plugin.admin.token_dialog import TokenDialog
+from fleet_supervisor.plugin.admin.supervision import (
+    RecordingsDialog,
+    RemovalDialog,
+    SiteChoiceDialog,
+    confirm_site_choice,
+)
 from fleet_supervisor.plugin.control.pending_command import CONE, PendingCommand
 from fleet_supervisor.plugin.help import START, HelpWindow
 from fleet_supervisor.plugin.layers.role_editor.roles_dialog import RolesDialog
@@ -27,8 +30,8 @@ from fleet_supervisor.plugin.panel.alarms.rules import Thresholds
 from fleet_supervisor.plugin.panel.command_sources import CoordinatesDialog
 from fleet_supervisor.plugin.panel.emergency import ClearDialog
 from fleet_supervisor.plugin.panel.pending_command_panel import OverrideDialog
-from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
 from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsDialog
+from fleet_supervisor.plugin.settings.profile import Connections, GatewayConnection
 from fleet_supervisor.plugin.ui.language import tr
 from fleet_supervisor.robot_bridge.core.messages.administration import (
     NewToken,
@@ -36,7 +39,7 @@ from fleet_supervisor.robot_bridge.core.messages.administration import (
     SiteOffer,
     TokenState,
 )
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport
 from qgis.core import QgsProject
 from qgis.PyQt.QtWidgets import QDialog

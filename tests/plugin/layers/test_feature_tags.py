@@ -11,7 +11,7 @@ from fleet_supervisor.plugin.layers.obstacle_layers import read_outlines
 from fleet_supervisor.plugin.layers.road_layers import read_centrelines
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, find_profile, read_profile
 from fleet_supervisor.plugin.layers.site_transform import SiteGeoreference
-from fleet_supervisor.robot_bridge.core.roads.centrelines import BACKWARD, BOTH, FORWARD
+from fleet_supervisor.robot_bridge.core.roads.network import BACKWARD, BOTH, FORWARD
 from fleet_supervisor.robot_bridge.core.sites.frame import SiteFrame
 from osgeo import gdal, ogr, osr
 from qgis.core import (

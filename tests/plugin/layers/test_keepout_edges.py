@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.layers.road_layers import edges_through
-from fleet_supervisor.robot_bridge.core.roads.centrelines import centrelines
-from fleet_supervisor.robot_bridge.core.roads.network import build_network
+from fleet_supervisor.robot_bridge.core.roads.network import build_network, centrelines
 from fleet_supervisor.robot_bridge.core.sites.fences import KeepoutIndex
 
 pytestmark = pytest.mark.usefixtures("qgis_app")

@@ -14,10 +14,10 @@ from fleet_supervisor.plugin.gateway_client.connection_status import (
     OperatorCredentials,
 )
 from fleet_supervisor.plugin.panel.connection_panel import AccessFields
-from fleet_supervisor.plugin.settings.connections import TokenStore
+from fleet_supervisor.plugin.settings.profile import TokenStore
 from fleet_supervisor.plugin.ui.errors import AddressError
+from fleet_supervisor.robot_bridge.core.messages.base import Role
 from fleet_supervisor.robot_bridge.core.messages.commands import AbortAll, Send
-from fleet_supervisor.robot_bridge.core.messages.operator_requests import Role
 from fleet_supervisor.robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from qgis.core import QgsApplication, QgsSettings
 from qgis.gui import QgsFileWidget

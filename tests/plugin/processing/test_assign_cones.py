@@ -13,7 +13,7 @@ import pytest
 import shapely
 from fleet_supervisor.plugin.processing.algorithms import assign_cones
 from fleet_supervisor.plugin.processing.common import road_sources
-from fleet_supervisor.robot_bridge.core.assignment import job, pyvrp_search, solver
+from fleet_supervisor.robot_bridge.core.assignment import job, pyvrp_search, schedules, solver
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, check_plan, plan_from_json
 from qgis.core import QgsProcessingContext, QgsProcessingException, QgsProject
 
@@ -144,7 +144,7 @@ PHASES = {
     "savings": (solver, "trips_by_savings"),
     "improving": (solver, "improved"),
     "pyvrp": (pyvrp_search, "trips_by_pyvrp"),
-    "paths": (solver, "plan_of"),
+    "paths": (schedules, "plan_of"),
     "writing": (assign_cones, "write_whole"),
 }
 """What comes one after the other, and who does it."""

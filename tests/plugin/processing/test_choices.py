@@ -5,8 +5,9 @@ from __future__ import annotations
 import pytest
 from fleet_supervisor.plugin.cone_texts import FINISHES, METHODS, OBJECTIVES, RESULT_QUALITY, TASKS
 from fleet_supervisor.plugin.processing.algorithms.export_navigation_map import FORMAT_NAMES
-from fleet_supervisor.plugin.processing.algorithms.find_route import ENGINE_NAMES, QGIS
+from fleet_supervisor.plugin.processing.algorithms.road_network import ENGINE_NAMES
 from fleet_supervisor.plugin.processing.common.navigation_files import FORMAT_WRITERS
+from fleet_supervisor.plugin.processing.common.road_sources import QGIS
 from fleet_supervisor.robot_bridge.core.assignment import job, schedules, solver
 from fleet_supervisor.robot_bridge.core.roads.engines import ENGINES
 from qgis.core import QgsProcessingContext, QgsProcessingParameterEnum

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
-from fleet_supervisor.plugin.processing.algorithms.find_route import FindRoute, GraphEngine
+from fleet_supervisor.plugin.processing.algorithms.road_network import FindRoute
+from fleet_supervisor.plugin.processing.common.road_sources import GraphEngine
 from fleet_supervisor.robot_bridge.core.errors import NoRouteError
 from fleet_supervisor.robot_bridge.core.roads import network as noding
-from fleet_supervisor.robot_bridge.core.roads.centrelines import centrelines
-from fleet_supervisor.robot_bridge.core.roads.network import build_network
+from fleet_supervisor.robot_bridge.core.roads.network import build_network, centrelines
 from fleet_supervisor.robot_bridge.core.roads.routes import Router
 from qgis.core import (
     QgsProcessingContext,

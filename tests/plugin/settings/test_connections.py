@@ -5,8 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
-from fleet_supervisor.plugin.settings.preferences import Preferences, export_path, write_preferences
+from fleet_supervisor.plugin.settings.profile import (
+    Connections,
+    GatewayConnection,
+    Preferences,
+    export_path,
+    write_preferences,
+)
 from qgis.core import QgsSettings
 
 

@@ -6,8 +6,8 @@ import json
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.settings.connections import TITLE, Connections, GatewayConnection, TokenStore
 from fleet_supervisor.plugin.settings.connections_widget import ConnectionDialog, ConnectionsWidget
+from fleet_supervisor.plugin.settings.profile import TITLE, Connections, GatewayConnection, TokenStore
 from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

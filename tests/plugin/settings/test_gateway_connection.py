@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from fleet_supervisor.plugin.settings.connections import GatewayConnection, connections_in, connections_text
+from fleet_supervisor.plugin.settings.profile import GatewayConnection, connections_in, connections_text
 from fleet_supervisor.plugin.ui.errors import FleetError
 
 YARD = GatewayConnection("Yard", "wss://yard:8765/desk", "anna", "/site/ca.pem", "abc1234")

@@ -7,7 +7,7 @@ import os
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
 from fleet_supervisor.plugin.panel.window import MENU, FleetWindow
-from fleet_supervisor.plugin.settings.connections import GatewayConnection
+from fleet_supervisor.plugin.settings.profile import GatewayConnection
 from fleet_supervisor.plugin.tour.practice_fleet import PracticeFleet, find_program
 from fleet_supervisor.plugin.tour.tour_panel import FLEET, OFFERED, PROJECT, STEPS, TourAction
 from qgis.core import QgsSettings

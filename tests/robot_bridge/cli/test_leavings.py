@@ -18,7 +18,7 @@ from robot_bridge.gateway.auth.client_connection import ClientConnection
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
-from robot_bridge.gateway.model.request_handlers import RequestHandlers
+from robot_bridge.gateway.model.events import RequestHandlers
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database
 

@@ -23,7 +23,7 @@ from robot_bridge.gateway.auth.authorisation import AuthGate
 from robot_bridge.gateway.field.page import FieldPage
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from robot_bridge.gateway.fleet.service import Fleet
-from robot_bridge.gateway.model.request_handlers import RequestHandlers
+from robot_bridge.gateway.model.events import RequestHandlers
 from robot_bridge.gateway.retention import Retention
 from robot_bridge.gateway.site.site_maps import SiteMaps
 from robot_bridge.gateway.storage.database import Database

@@ -2,9 +2,9 @@
 
 import pytest
 
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.records import GetTrajectory
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.storage.database import Database, read_address
 from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack

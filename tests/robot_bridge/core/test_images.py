@@ -11,7 +11,7 @@ from PIL import Image
 
 from robot_bridge.core.errors import RefusedError
 from robot_bridge.core.images import check_size, media_type_of
-from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.core.messages.base import MessageError
 
 
 def picture(kind: str) -> bytes:

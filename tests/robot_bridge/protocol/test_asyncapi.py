@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS
 from robot_bridge.core.messages.robots import ANSWERS, REQUESTS
 from robot_bridge.protocol.asyncapi import asyncapi, documents
 from robot_bridge.protocol.json_schemas import NOTIFICATIONS

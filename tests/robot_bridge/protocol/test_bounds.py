@@ -7,8 +7,8 @@ import math
 
 import pytest
 
+from robot_bridge.core.messages.base import LARGEST_MESSAGE, LONGEST_STATUS, MessageError
 from robot_bridge.core.messages.robots import SendGPS
-from robot_bridge.core.messages.validation import LARGEST_MESSAGE, LONGEST_STATUS, MessageError
 from robot_bridge.gateway.model.position_checks import GroundTracks
 from robot_bridge.protocol import jsonrpc
 from robot_bridge.protocol.asyncapi import documents

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS, MessageError
 from robot_bridge.core.messages.robots import (
     ANSWERS,
     PAYLOADS,
@@ -19,7 +19,6 @@ from robot_bridge.core.messages.robots import (
     SetPath,
     SetPosEnd,
 )
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.protocol.asyncapi import documents, link_documents, served
 from robot_bridge.protocol.codec import decode_request
 from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, plain_text, schema_of

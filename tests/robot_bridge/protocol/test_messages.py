@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from robot_bridge.core.messages.administration import Hello, SiteReport
+from robot_bridge.core.messages.base import DESK_REQUESTS, MessageError, check_robot_name
 from robot_bridge.core.messages.commands import (
     AbortAll,
     CommandReport,
@@ -21,7 +22,6 @@ from robot_bridge.core.messages.commands import (
     TargetPosition,
 )
 from robot_bridge.core.messages.json_values import command_report, robot_report, site_report, to_json
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
 from robot_bridge.core.messages.positions import (
     AlarmLimits,
     FindRobots,
@@ -53,7 +53,6 @@ from robot_bridge.core.messages.robots import (
     Stopped,
 )
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.core.messages.validation import MessageError, check_robot_name
 from robot_bridge.protocol.codec import (
     UnknownOperationError,
     decode_answer,

@@ -6,9 +6,8 @@ import json
 
 import pytest
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS, MessageError
 from robot_bridge.core.messages.robots import REQUESTS
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.protocol.asyncapi import documents
 from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_position, decode_request
 

@@ -14,7 +14,7 @@ from typing import Any
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS
 from robot_bridge.core.messages.robots import REQUESTS
 from tests.support.patience import BUSY
 

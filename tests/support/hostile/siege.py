@@ -20,7 +20,7 @@ from typing import Any
 from hypothesis import strategies as st
 from websockets.exceptions import ConnectionClosed
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS, Role
+from robot_bridge.core.messages.base import DESK_REQUESTS, Role
 from robot_bridge.core.messages.robots import REQUESTS
 from robot_bridge.gateway.auth.accounts import add_link, add_operator, issue_robot_token
 from robot_bridge.gateway.storage import revisions

@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 import msgspec
 from sqlalchemy import Connection, text
 
+from ....core.messages.base import DeskRequest
 from ....core.messages.json_values import to_json
-from ....core.messages.operator_requests import DeskRequest
 from .gateways import Member
 
 _NOW = "extract(epoch from clock_timestamp())::double precision"

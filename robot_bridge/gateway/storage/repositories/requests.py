@@ -24,9 +24,9 @@ from sqlalchemy import (
 )
 
 from ....core.json_decoder import SHORT, DecodingError, decode_json
+from ....core.messages.base import LARGEST_MESSAGE
 from ....core.messages.json_values import to_json
 from ....core.messages.robots import COMMANDS, Abort, Answer, SetMap
-from ....core.messages.validation import LARGEST_MESSAGE
 from ..rows import TOGETHER, Row, add_messages, delete_messages
 from ..schema import rr, sa
 

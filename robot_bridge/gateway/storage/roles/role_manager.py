@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from sqlalchemy import Connection, text
 
 from ....core.errors import BridgeError
-from ....core.messages.validation import check_robot_name
+from ....core.messages.base import check_robot_name
 
 LARGEST_PARAMS = 64 << 10
 """Bytes of a request's parameters."""

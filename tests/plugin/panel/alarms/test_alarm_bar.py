@@ -5,8 +5,8 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.panel.alarms.alarm_bar import AlarmBar
 from fleet_supervisor.plugin.panel.alarms.rules import Alarm, AlarmChange, AlarmEvent, AlarmKind
+from fleet_supervisor.plugin.panel.alarms.watch import AlarmBar
 from qgis.core import Qgis
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import QObject, pyqtSignal

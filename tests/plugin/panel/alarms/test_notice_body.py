@@ -1,8 +1,7 @@
 """A notice with buttons in QGIS's message bar, in a window whose panels leave it more room or less."""
 
 import pytest
-from fleet_supervisor.plugin.control.messages import MessageBar, MessageLabel
-from fleet_supervisor.plugin.panel.alarms.alarm_bar import NoticeBody
+from fleet_supervisor.plugin.control.messages import MessageBar, MessageLabel, NoticeBody
 from qgis.core import Qgis
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import Qt

@@ -11,8 +11,7 @@ from robot_bridge.core.assignment.job import AssignmentJob, ConeTarget, PlanRobo
 from robot_bridge.core.assignment.plan import check_plan
 from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
 from robot_bridge.core.errors import OffNetworkError, UnservedError
-from robot_bridge.core.roads.centrelines import BOTH, FORWARD, centrelines
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import BOTH, FORWARD, build_network, centrelines
 from robot_bridge.core.roads.path_smoothing import Driving
 from robot_bridge.core.roads.routes import Router
 

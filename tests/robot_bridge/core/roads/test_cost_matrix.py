@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import NoRouteError
-from robot_bridge.core.roads.centrelines import BOTH, centrelines
 from robot_bridge.core.roads.cost_matrix import road_matrix
-from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.network import BOTH, Network, build_network, centrelines
 from robot_bridge.core.roads.routes import Restrictions, Router
 
 

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from robot_bridge.core.roads.centrelines import centrelines
 from robot_bridge.core.roads.map_matching import NearestEdge, edges_along, edges_of_closure
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import build_network, centrelines
 from robot_bridge.core.roads.routes import Router
 
 

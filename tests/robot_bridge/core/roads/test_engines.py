@@ -19,7 +19,7 @@ NAMES = [name for name in ENGINES if name != "automatic"]
 IN_TWO_THREADS = """
 import threading
 import numpy as np
-from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.network import centrelines
 from robot_bridge.core.roads.network import build_network
 from robot_bridge.core.roads.routes import Router
 
@@ -38,7 +38,7 @@ print(router.engine_name, router.route((0, 0), (100, 0)).metres)
 """
 
 WITHOUT_ROADS = """
-from robot_bridge.core.roads.centrelines import centrelines
+from robot_bridge.core.roads.network import centrelines
 from robot_bridge.core.errors import OffNetworkError
 from robot_bridge.core.roads.network import build_network
 from robot_bridge.core.roads.routes import Router

@@ -7,9 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from robot_bridge.core.roads.centrelines import centrelines
 from robot_bridge.core.roads.map_matching import NearestEdge
-from robot_bridge.core.roads.network import build_network, foot_on
+from robot_bridge.core.roads.network import build_network, centrelines, foot_on
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([3.0, 20.0, 400.0]))

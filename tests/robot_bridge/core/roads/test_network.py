@@ -8,8 +8,16 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import RoadInputError
-from robot_bridge.core.roads.centrelines import BOTH, FORWARD, Centrelines, centrelines
-from robot_bridge.core.roads.network import SAME, CancelCheck, Network, build_network
+from robot_bridge.core.roads.network import (
+    BOTH,
+    FORWARD,
+    SAME,
+    CancelCheck,
+    Centrelines,
+    Network,
+    build_network,
+    centrelines,
+)
 from robot_bridge.core.roads.network_checks import (
     RoadFinding,
     RoadFindingKind,

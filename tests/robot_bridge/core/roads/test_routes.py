@@ -11,9 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from robot_bridge.core.errors import MissingEngineError, NoRouteError, OffNetworkError
-from robot_bridge.core.roads.centrelines import BOTH, FORWARD, centrelines
 from robot_bridge.core.roads.engines import ENGINES, RouteGraph, engines_for
-from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.network import BOTH, FORWARD, Network, build_network, centrelines
 from robot_bridge.core.roads.routes import Restrictions, Router
 from robot_bridge.core.sites.fences import KeepoutIndex
 

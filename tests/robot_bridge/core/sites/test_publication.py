@@ -13,7 +13,7 @@ import pytest
 import shapely
 
 from robot_bridge.core.errors import LayerError, SettingsError, SiteError
-from robot_bridge.core.roads.centrelines import GENERATED, Surface
+from robot_bridge.core.roads.network import GENERATED, Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.robotmap.text_format import write_text

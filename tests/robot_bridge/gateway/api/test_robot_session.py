@@ -20,7 +20,7 @@ from robot_bridge.gateway.fleet.outbox import RequestOutcome
 from robot_bridge.gateway.fleet.registration import ConnectionClaims
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.monitoring import Counters
-from robot_bridge.gateway.storage.owner_fence import FencedError
+from robot_bridge.gateway.storage.repositories.robots import FencedError
 from robot_bridge.links.base.linked_robots import frame_of
 from robot_bridge.protocol import jsonrpc
 

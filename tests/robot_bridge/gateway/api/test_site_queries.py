@@ -15,7 +15,7 @@ from osgeo import gdal, ogr
 from websockets.datastructures import Headers
 from websockets.http11 import Request
 
-from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.sites.frame import lonlat_of
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway.api.http_pages import MOST_AT_ONCE, MOST_FIELDS, SiteQueries, read_query

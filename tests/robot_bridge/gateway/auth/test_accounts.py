@@ -10,8 +10,7 @@ import pytest
 
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.administration import GetAudit, GetSessions
-from robot_bridge.core.messages.operator_requests import Role
-from robot_bridge.core.messages.validation import MessageError
+from robot_bridge.core.messages.base import MessageError, Role
 from robot_bridge.gateway.auth import accounts, audit
 from robot_bridge.gateway.auth import audit as session_rows
 from robot_bridge.gateway.auth.accounts import AccountCache, TokenKind, digest

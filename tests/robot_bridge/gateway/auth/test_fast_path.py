@@ -5,8 +5,7 @@ from __future__ import annotations
 import pytest
 from websockets.frames import Frame, Opcode
 
-from robot_bridge.gateway.auth.client_connection import FastPath
-from robot_bridge.gateway.auth.rate_limit import RateLimit
+from robot_bridge.gateway.auth.client_connection import FastPath, RateLimit
 
 REQUEST = b"GET /robot HTTP/1.1\r\nHost: x\r\n\r\n"
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.core.messages.operator_requests import Role
+from robot_bridge.core.messages.base import Role
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.forked_programs import write_shell_command

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from robot_bridge.core.messages.operator_requests import DESK_REQUESTS
+from robot_bridge.core.messages.base import DESK_REQUESTS
 from robot_bridge.protocol.jsonrpc import FORBIDDEN
 from tests.support.wire import RefusedError
 

@@ -7,8 +7,8 @@ import hashlib
 import pytest
 
 from robot_bridge.gateway.auth.accounts import TokenKind, bearer, digest, new_token
+from robot_bridge.gateway.auth.client_connection import RateLimit
 from robot_bridge.gateway.auth.port import check_reach
-from robot_bridge.gateway.auth.rate_limit import RateLimit
 from robot_bridge.protocol.credentials import AccessError, ClientCredentials, read_token
 
 

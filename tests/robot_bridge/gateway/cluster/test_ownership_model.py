@@ -24,9 +24,9 @@ from sqlalchemy import text
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.gateway.cluster.membership import LEASE_S, TRUST_S, LeaseTrust, OwnedRobots, leads
 from robot_bridge.gateway.storage.database import open_engine, read_address
-from robot_bridge.gateway.storage.owner_fence import CHECK_VALID_S
 from robot_bridge.gateway.storage.repositories import gateways
 from robot_bridge.gateway.storage.repositories.gateways import Member, NoMemberError
+from robot_bridge.gateway.storage.repositories.robots import CHECK_VALID_S
 
 NAMES, ROBOTS = ("a", "b", "c"), ("r1", "r2")
 RUNS = itertools.count(1)

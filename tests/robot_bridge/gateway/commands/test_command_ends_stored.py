@@ -8,9 +8,9 @@ import time
 import pytest
 
 from robot_bridge.core.errors import RefusedError, UncertainError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import AbortAll, AbortTask, GetCommands, Send
 from robot_bridge.core.messages.robots import Ready, SendPos
-from robot_bridge.core.messages.validation import MessageError
 
 LOOP = [(10.0, 10.0), (20.0, 10.0), (20.0, 20.0), (10.0, 20.0), (10.0, 10.0)]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import AbortAll, GetCommands, Send, SetPositions, TargetPosition
-from robot_bridge.core.messages.validation import MessageError
 
 FULL_LIFE = ["queued", "delivered", "acknowledged", "reached"]
 

@@ -8,10 +8,10 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send, SetPositions, TargetPosition
 from robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd, SetPosIni
 from robot_bridge.core.messages.safety import EmergencyStop
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.commands import requests as order_module
 from robot_bridge.gateway.commands.active_command import NOTHING, CommandOrder
 

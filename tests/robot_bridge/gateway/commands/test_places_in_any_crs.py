@@ -5,8 +5,8 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages.validation import MessageError
-from robot_bridge.gateway.model.request_handlers import RequestHandlers
+from robot_bridge.core.messages.base import MessageError
+from robot_bridge.gateway.model.events import RequestHandlers
 from robot_bridge.protocol.codec import decode_desk_request
 
 ON_SITE = (66.0, 44.0)

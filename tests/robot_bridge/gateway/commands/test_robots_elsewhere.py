@@ -6,7 +6,7 @@ import pytest
 
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.commands.active_command import CommandOrder
-from robot_bridge.gateway.storage.owner_fence import FencedError, SoleFence
+from robot_bridge.gateway.storage.repositories.robots import FencedError, SoleFence
 
 PATHS = {"r1": [(20.0, 40.0), (60.0, 40.0)], "r2": [(20.0, 50.0), (60.0, 50.0)]}
 

@@ -10,9 +10,9 @@ import uuid
 import pytest
 
 from robot_bridge.core.errors import RefusedError, StoreError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import GetCommands, Send
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.fleet import emergency_stop
 
 

@@ -10,9 +10,9 @@ import os
 import pytest
 
 from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.records import GetImage, GetObservations, ObservationState, ReviewObservation
 from robot_bridge.core.messages.robots import SendImage, SetObject
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.settings_tables import ObservationSettings
 

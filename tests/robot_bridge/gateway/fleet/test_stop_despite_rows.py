@@ -19,10 +19,10 @@ from robot_bridge.gateway.commands import service as book_module
 from robot_bridge.gateway.commands.persistence import write_late
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.model.events import CommandChanged
-from robot_bridge.gateway.storage.owner_fence import FencedError
 from robot_bridge.gateway.storage.repositories import emergency_stops, requests
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories import robots as stored_robots
+from robot_bridge.gateway.storage.repositories.robots import FencedError
 from tests.support.databases.database_client import DatabaseClient
 
 LOST = 5.0

@@ -20,6 +20,7 @@ from robot_bridge.core.assignment.job import (
 from robot_bridge.core.assignment.plan import document_of
 from robot_bridge.core.assignment.solver import Objective, assign
 from robot_bridge.core.errors import OutdatedError, RefusedError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.plans import (
     ClearPlan,
     ConfirmReplan,
@@ -34,7 +35,6 @@ from robot_bridge.core.messages.plans import (
 )
 from robot_bridge.core.messages.queues import TaskState
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.plans.service import PlanService
 

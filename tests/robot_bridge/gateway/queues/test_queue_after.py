@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.queues import MoveTask, RemoveTask
-from robot_bridge.core.messages.validation import MessageError
 from tests.support.bridge.queue_line import PLACES, task
 
 

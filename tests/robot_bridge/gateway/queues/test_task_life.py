@@ -7,9 +7,9 @@ import math
 import pytest
 
 from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.queues import QueueTask, TaskKind
 from robot_bridge.core.messages.robots import SetPath, SetPosEnd
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.gateway.queues.task_life import (
     commands_of_task,
     cone_place,

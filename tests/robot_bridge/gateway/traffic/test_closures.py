@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import RefusedError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.roads import CloseRoad
 from robot_bridge.core.messages.robots import GetPath
 from robot_bridge.core.messages.safety import EmergencyStop
-from robot_bridge.core.messages.validation import MessageError
 from tests.support.bridge.road_places import SOUTH, highest
 
 

@@ -7,7 +7,7 @@ import time
 
 import numpy as np
 
-from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.network import Surface
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.sites.frame import SiteBounds

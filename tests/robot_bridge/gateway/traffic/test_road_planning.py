@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.roads.centrelines import Surface
+from robot_bridge.core.roads.network import Surface
 from robot_bridge.core.roads.path_smoothing import Driving
 from robot_bridge.core.robotmap.model import ShapeType
 from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines

@@ -13,9 +13,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from robot_bridge.core.roads.centrelines import centrelines
 from robot_bridge.core.roads.engines import ContractionEngines
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import build_network, centrelines
 from robot_bridge.core.roads.routes import Restrictions, Router
 from robot_bridge.gateway.traffic import route_process
 from robot_bridge.gateway.traffic.route_process import ProcessEngines

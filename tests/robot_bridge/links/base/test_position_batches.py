@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.json_decoder import DecodingError
+from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.core.messages.validation import MessageError
 from robot_bridge.core.position_frame import entries_in, packed_frame, poses_in_frame
 from robot_bridge.links.base.linked_robots import frame_of
 

@@ -101,7 +101,7 @@ class Endurance:
                 yield 0.1
 
     def _keep_connection(self) -> None:
-        from fleet_supervisor.plugin.settings.connections import Connections, GatewayConnection
+        from fleet_supervisor.plugin.settings.profile import Connections, GatewayConnection
 
         kept = GatewayConnection(CONNECTION, self._plan["gateway"], self._plan["operator"])
         Connections().store(kept)

@@ -8,8 +8,7 @@ import pyogrio.raw
 import pytest
 import shapely
 
-from robot_bridge.core.roads.centrelines import centrelines
-from robot_bridge.core.roads.network import Network, build_network
+from robot_bridge.core.roads.network import Network, build_network, centrelines
 from robot_bridge.core.roads.routes import Restrictions, Router
 
 

@@ -8,11 +8,10 @@ import pytest
 import shapely
 
 from robot_bridge.core.errors import RoadExportError
-from robot_bridge.core.roads.centrelines import BACKWARD, FORWARD, centrelines
 from robot_bridge.core.roads.graph_export import open_roads
 from robot_bridge.core.roads.lanelet2_export import Lane, Lanes, lanes_of, misread_places
 from robot_bridge.core.roads.lanelet2_export import lanelet2_document as written
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import BACKWARD, FORWARD, build_network, centrelines
 
 lanelet2 = pytest.importorskip("lanelet2", reason="make setup installs lanelet2 where there is one")
 

@@ -9,9 +9,8 @@ import networkx
 import numpy as np
 import pytest
 
-from robot_bridge.core.roads.centrelines import BACKWARD, FORWARD, centrelines
 from robot_bridge.core.roads.graph_export import LayoutNames, lif_document, open_roads
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import BACKWARD, FORWARD, build_network, centrelines
 
 parser = pytest.importorskip("vdma_lif.parser", reason="make setup installs vdma-lif, which reads layouts")
 interpolate = pytest.importorskip("scipy.interpolate", reason="make setup installs scipy")

@@ -9,9 +9,8 @@ import networkx
 import numpy as np
 import pytest
 
-from robot_bridge.core.roads.centrelines import BACKWARD, FORWARD, centrelines
 from robot_bridge.core.roads.graph_export import largest_error, nav2_route_graph, open_roads
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import BACKWARD, FORWARD, build_network, centrelines
 
 LARGEST_ID = 2**32 - 1
 

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import RoadExportError
-from robot_bridge.core.roads.centrelines import centrelines
 from robot_bridge.core.roads.graph_export import open_roads
-from robot_bridge.core.roads.network import build_network
+from robot_bridge.core.roads.network import build_network, centrelines
 
 CROSS = [[(0, 0), (10, 0)], [(10, 0), (10, 10)], [(10, 0), (20, 5)]]
 

@@ -11,7 +11,7 @@ import pytest
 import shapely
 
 from robot_bridge.core.errors import RoadsCancelledError, RoadsError
-from robot_bridge.core.roads.centrelines import DRAWN, FORWARD, GENERATED, Surface, centrelines
+from robot_bridge.core.roads.network import DRAWN, FORWARD, GENERATED, Surface, centrelines
 from robot_bridge.core.roads.surface_generation import generate_surfaces, polygon_of
 from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from robot_bridge.core.sites.site import read_site

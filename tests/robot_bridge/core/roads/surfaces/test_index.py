@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from robot_bridge.core.errors import RoadInputError
-from robot_bridge.core.roads.centrelines import GENERATED, Surface
+from robot_bridge.core.roads.network import GENERATED, Surface
 from robot_bridge.core.roads.surface_generation import polygon_of, rings_of
 from robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 

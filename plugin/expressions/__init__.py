@@ -1,1 +1,0 @@
-"""Expression functions for QGIS, and the snapshot of the robots that they read."""
