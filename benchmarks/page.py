@@ -60,6 +60,7 @@ BENCH = [
     "field_page",
     "fleet_views",
     "appliance",
+    "full_disk",
     "cluster",
     "cluster_kills",
     "before",

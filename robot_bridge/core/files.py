@@ -43,18 +43,30 @@ def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool =
 
 
 def write_state_into(room: Path, file: Path, content: bytes) -> None:
-    """Replace ``file`` by ``room``, a file of spaces, with ``content`` at its beginning: on a full disk.
+    """Replace ``file`` by ``room``, with ``content`` and spaces behind it: on a full disk.
+
+    What was ``file`` is the room for the next time, where it is as large.
 
     :raises OSError: where there is no room, or it is too small; ``file`` is as it was.
     """
     with room.open("r+b") as stream:
-        if len(content) > os.fstat(stream.fileno()).st_size:
+        size = os.fstat(stream.fileno()).st_size
+        if len(content) > size:
             raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        stream.write(content)
+        stream.write(content.ljust(size))
         stream.flush()
         os.fsync(stream.fileno())
+    earlier = file.with_name(f".{file.name}.earlier")
+    with suppress(OSError):
+        earlier.unlink(missing_ok=True)
+        os.link(file, earlier)
     room.replace(file)
     _sync_folder(file.parent)
+    with suppress(OSError):
+        if earlier.stat().st_size >= size:
+            earlier.replace(room)
+        else:
+            earlier.unlink()
 
 
 @contextmanager

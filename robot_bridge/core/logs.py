@@ -8,6 +8,7 @@ import logging
 import re
 import secrets
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -117,6 +118,31 @@ def log_and_continue(
         raise
     except Exception:
         log.exception("%s failed; what comes after it is done all the same", what)
+
+
+# --- What goes wrong for as long as a disk is full or a database away: at its beginning, and once a minute
+
+SAY_AGAIN_AFTER = 60.0
+
+
+class TroubleNews:
+    """Knows what the log was told of troubles that last: another text is news, the same one once a minute."""
+
+    def __init__(self) -> None:
+        self._last: dict[str, tuple[str, float]] = {}
+
+    def has(self, what: str, text: str) -> bool:
+        """Tell whether the log is to be told that ``what`` fails with ``text``; it counts as told then."""
+        now = time.monotonic()
+        last, at = self._last.get(what, ("", 0.0))
+        if text == last and now - at <= SAY_AGAIN_AFTER:
+            return False
+        self._last[what] = text, now
+        return True
+
+    def is_over(self, what: str) -> None:
+        """Note that ``what`` has gone well: when it fails again, that is news."""
+        self._last.pop(what, None)
 
 
 # --- Lines of the log that one robot or operator causes again and again: the first in full, then counted

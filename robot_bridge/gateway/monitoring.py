@@ -20,6 +20,7 @@ from prometheus_client.exposition import CONTENT_TYPE_LATEST, generate_latest
 
 from ..core.clock import SYSTEM_CLOCK, Clock
 from ..core.errors import BridgeError, FatalError
+from ..core.logs import TroubleNews
 
 log = logging.getLogger(__name__)
 
@@ -159,7 +160,6 @@ LAST_ATTEMPT = 20
 """failures in a row that nobody foresaw, after which the process had better be started again."""
 SOUND = 60.0
 """seconds of work without a failure after which earlier ones no longer count."""
-SAY_AGAIN_AFTER = 60.0
 
 
 async def keep_all_going(works: Mapping[str, Work], tally: Counters) -> None:
@@ -201,7 +201,7 @@ class RetryState:
         self._name = name
         self._pause = FIRST_PAUSE
         self._unforeseen = 0
-        self._last_logged = ("", 0.0)
+        self._news = TroubleNews()
 
     def record_failure(self, error: Exception, lasted: float) -> float:
         """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
@@ -223,14 +223,11 @@ class RetryState:
         return pause
 
     def _tell(self, error: Exception, foreseen: bool, pause: float) -> None:
-        text, logged_at = self._last_logged
-        now = time.monotonic()
         if not foreseen:
             name = type(error).__name__
             log.exception("%s: unexpected %s; trying again in %g s", self._name, name, pause)
-        elif str(error) != text or now - logged_at > SAY_AGAIN_AFTER:
+        elif self._news.has(self._name, str(error)):
             log.error("%s: %s; trying again until it works", self._name, error)
-            self._last_logged = (str(error), now)
 
 
 class Steps:
@@ -238,7 +235,7 @@ class Steps:
 
     def __init__(self, name: str) -> None:
         self._name = name
-        self._last_logged: dict[str, tuple[str, float]] = {}
+        self._news = TroubleNews()
 
     async def run(self, steps: Mapping[str, Work]) -> None:
         """Do every step in its order; the log is told of each that fails, once a minute while it does.
@@ -252,7 +249,7 @@ class Steps:
         for step, work in steps.items():
             try:
                 await work()
-                self._last_logged.pop(step, None)
+                self._news.is_over(step)
             except BridgeError as error:
                 failed.append(error)
                 if self._is_news(step, error):
@@ -264,12 +261,7 @@ class Steps:
             raise failed[0]
 
     def _is_news(self, step: str, error: Exception) -> bool:
-        text, now = f"{type(error).__name__} {error}", time.monotonic()
-        last_text, at = self._last_logged.get(step, ("", 0.0))
-        if text == last_text and now - at <= SAY_AGAIN_AFTER:
-            return False
-        self._last_logged[step] = text, now
-        return True
+        return self._news.has(step, f"{type(error).__name__} {error}")
 
 
 async def wait_at_most(event: asyncio.Event, seconds: float) -> None:

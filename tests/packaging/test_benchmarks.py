@@ -37,7 +37,7 @@ PROGRAMS = sorted(
     path for part in ("benchmarks", "tests/support", "tools") for path in (ROOT / part).rglob("*.py")
 )
 PLACEHOLDER, CODE = re.compile(r"\{[^{}]*\}"), re.compile(r"`[^`]*`")
-NAMES = re.compile(r"E-n51-k5|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
+NAMES = re.compile(r"E-n51-k5|\bext4\b|\b1969\b|\bcodec \d|\bp\d\d\b|EPSG:\d+|10\*\*|ROS 2|VDA 5050|\bNav2\b")
 """What has a digit and is no figure: a public instance and its year, formats, percentiles, standards."""
 UNIT = r"(?:ms|s|min|h|Hz|[kKMG]i?B|bytes|m|cm|mm|km|%|×|times|(?:milli)?seconds?|minutes?|hours?)"
 FIGURE = re.compile(rf"(?<![\w.])\d[\d .,]*\s?{UNIT}(?![\w/])")

@@ -3,22 +3,27 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import json
 import os
+import re
 import ssl
 import sys
 import time
 import urllib.error
 import urllib.parse
 import urllib.request
+from collections.abc import Callable
 from contextlib import closing
 from http.client import HTTPSConnection
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from osgeo import gdal, ogr
 from qgis.core import (
+    Qgis,
     QgsMapRendererParallelJob,
     QgsMapSettings,
     QgsProject,
@@ -28,7 +33,7 @@ from qgis.core import (
 )
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QImage
-from sqlalchemy import insert
+from sqlalchemy import insert, make_url
 
 from robot_bridge.core.sites.settings import read_settings
 from robot_bridge.gateway.auth import certificates
@@ -37,6 +42,7 @@ from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.map_views import map_views_on, virtual_layers
 from robot_bridge.gateway.storage.schema import robots, trajectories
 from tests.support.databases.database_server import find_program
+from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 from tests.support.processes import Processes, free_port
 from tools import serve_maps
@@ -52,11 +58,16 @@ NGINX_WRITES = ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
 ENVIRONMENT = {"QT_QPA_PLATFORM": "offscreen"}
 
 
-class Services:
-    """QGIS Server on the sample project, with a fleet in a SQLite file."""
+IN_POSTGIS = "Robots_in_PostGIS"
+"""A layer of the same robots in PostgreSQL."""
 
-    def __init__(self, folder: Path, processes: Processes) -> None:
+
+class Services:
+    """QGIS Server on the sample project, with a fleet in a SQLite file, and robots on ``postgis``."""
+
+    def __init__(self, folder: Path, processes: Processes, postgis: PostgreSql | None = None) -> None:
         self.folder, self.processes = folder, processes
+        self.postgis = postgis
         self.database = f"sqlite:///{folder}/fleet.db"
         self.fleet, self.project = folder / "fleet.vrt", folder / "written.qgs"
         run_once(self.database, revisions.create)
@@ -64,6 +75,8 @@ class Services:
         self.fleet.write_text(virtual_layers(f"{folder}/fleet.db", FRAME), "utf-8")
         self.port = free_port()
         command = [PROGRAM, "--fleet", self.fleet]
+        if postgis is not None:
+            command += ["--project", self._with_postgis(postgis)]
         assert run_here([*command, "--write", self.project]) == 0
         command = [sys.executable, *command, "--port", str(self.port)]
         processes.start("services", command, env={**os.environ, **ENVIRONMENT})
@@ -88,6 +101,33 @@ class Services:
             urllib.request.urlopen(address, data=body, timeout=120)
         assert refused.value.code == 400
         return refused.value.read().decode()
+
+    def statements(self, do: Callable[[], Any]) -> list[str]:
+        """Return what reaches the views of PostgreSQL while something is done, from the server's own log."""
+        log = self.postgis.folder / "server.log"
+        begin = log.stat().st_size
+        do()
+        lines = log.read_bytes()[begin:].decode().splitlines()
+        return [line for line in lines if "fleet_map" in line]
+
+    def _with_postgis(self, server: PostgreSql) -> Path:
+        """Return a copy of the sample project with a layer of the robots in PostgreSQL."""
+        url = server.new_database()
+        name = make_url(url).database
+        server.sql("create extension postgis", name)
+        server.sql(f"alter database \"{name}\" set log_statement = 'all'", name)
+        run_once(url, revisions.create)
+        run_once(url, self._fill)
+        project = QgsProject()
+        assert project.read(str(serve_maps.SAMPLE))
+        layer = serve_maps.fleet_layers(url)[-1]
+        layer.setName(IN_POSTGIS)
+        project.addMapLayer(layer)
+        project.setFilePathStorage(Qgis.FilePathType.Absolute)
+        file = self.folder / "with_postgis.qgs"
+        assert project.write(str(file))
+        project.clear()
+        return file
 
     @staticmethod
     def _fill(connection) -> None:
@@ -114,16 +154,27 @@ def run_here(words) -> int | str | None:
 
 
 @pytest.fixture(scope="module")
-def services(tmp_path_factory, qgis_app):
+def services(request, tmp_path_factory, qgis_app):
     try:
         find_program("qgis_mapserver", "/usr/bin")
     except StageError as error:
         pytest.skip(f"{error}; run: make setup")
+    try:
+        postgis = request.getfixturevalue("postgis_server")
+    except pytest.skip.Exception:
+        postgis = None
     folder = tmp_path_factory.mktemp("services")
     # GDAL keeps tiles below the folder that it runs in.
     gdal.SetConfigOption("GDAL_DEFAULT_WMS_CACHE_PATH", str(folder / "tiles"))
     with Processes(folder / "logs") as processes:
-        yield Services(folder, processes)
+        yield Services(folder, processes, postgis)
+
+
+@pytest.fixture
+def postgis(services):
+    if services.postgis is None:
+        pytest.skip("PostgreSQL with PostGIS is not installed; run: make setup")
+    return services
 
 
 def places(layer) -> dict[str, tuple[float, float]]:
@@ -299,6 +350,33 @@ def test_what_reaches_beyond_the_project_is_refused(services, query, said):
     assert said in services.refusal(**query)
 
 
+INJECTIONS = (
+    "\"robot\" = 'r1' or pg_sleep(9) IS NULL",
+    "\"robot\" = (select(pg_read_file('/etc/passwd')))",
+    "\"robot\" = 'r1'; drop table robots",
+    "\"robot\" = 'r1' -- '",
+    "\"robot\" = 'r1' /* ' */",
+    '"robot"::regclass IS NULL',
+    "\"robot\" = cast('r1' AS text)",
+    "\"robot\" = E'\\' or true --'",
+    "\"robot\" = U&'\\0072'",
+    'U&"\\0072obot" IS NULL',
+    '"robot" = $$r1$$',
+    '"robot" = $a$r1$a$',
+    '"a""b" = 1 OR "c" ( 1 )',
+    "\"robot\" ~ 'r'",
+    # Functions by a point, and what is a letter or a space for one side alone.
+    '"robots"."row_to_json" IS NOT NULL',
+    '"robots" . "pg_typeof" IS NOT NULL',
+    '"robot" I\u017f NULL',
+    "\"robot\" L\u0130KE 'r1'",
+    '"x" =\u00a05',
+    # PostgreSQL reads up to there.
+    "\"robot\" = 'r1\0'",
+    '"robot\0" IS NULL',
+)
+
+
 @pytest.mark.parametrize("request_", [MAP, INFO], ids=["GetMap", "GetFeatureInfo"])
 @pytest.mark.parametrize(
     "condition",
@@ -327,6 +405,121 @@ def test_features_at_a_place_are_those_of_the_layers_and_of_the_filter(services)
     assert found(FILTER="Robots:\"robot\" IN ( 'r2' , 'r3' ) AND \"v\" >= 0.5;") == {"r2"}
 
 
+@pytest.mark.parametrize("layer", ["Robots", IN_POSTGIS])
+@pytest.mark.parametrize(
+    ("condition", "robots"),
+    [
+        ("\"robot\" = 'r2'", {"r2"}),
+        ("'r1' = \"robot\"", {"r1"}),
+        ("\"robot\" != 'r2'", {"r1"}),
+        ("\"robot\" IN ( 'r2' , 'r3' )", {"r2"}),
+        ("\"robot\" NOT IN ( 'r2' )", {"r1"}),
+        ("\"robot\" like 'r%'", {"r1", "r2"}),
+        ("\"robot\" NOT LIKE '_2'", {"r1"}),
+        ("\"robot\" ILIKE 'R2'", {"r2"}),
+        ('"robot" IS NULL', set()),
+        ('NOT "robot" IS NULL', {"r1", "r2"}),
+        ('"theta" >= -5 AND ( "theta" < 0.75 OR "v" = 0.5 )', {"r1", "r2"}),
+        ('"seen_at" > \'2026-09-21\' AND "v" = 1', {"r1", "r2"}),
+        ("\"seen_at\" > '2026-09-22'", set()),
+        ("\"robot\" = 'ő' OR \"link\" = '--'", set()),
+    ],
+)
+def test_a_filter_of_a_map_chooses_the_same_on_each_database(postgis, layer, condition, robots):
+    asked = INFO | {"LAYERS": layer, "QUERY_LAYERS": layer, "FILTER": f"{layer}:{condition}"}
+    assert robots_in(postgis.get(**asked)) == robots
+
+
+def robots_in(page: bytes) -> set[str]:
+    return {one["properties"]["robot"] for one in json.loads(page)["features"]}
+
+
+@pytest.mark.parametrize("condition", INJECTIONS)
+def test_no_statement_comes_of_what_is_no_comparison(postgis, condition):
+    asked = MAP | {"LAYERS": IN_POSTGIS, "FILTER": f"{IN_POSTGIS}:{condition}"}
+    assert postgis.statements(lambda: postgis.refusal(**asked)) == []
+
+
+def test_a_comparison_reaches_the_database_as_it_is(postgis):
+    asked = MAP | {"LAYERS": IN_POSTGIS, "FILTER": f"{IN_POSTGIS}:\"robot\" = 'r1'"}
+    assert any("\"robot\" = 'r1'" in line for line in postgis.statements(lambda: postgis.get(**asked)))
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        "r1' OR pg_sleep(9) IS NULL --",
+        "\\' OR pg_sleep(9) IS NULL --",
+        "r1'; select pg_sleep(9); --",
+        "$$ || pg_sleep(9) || $$",
+        'r1" OR pg_sleep(9) IS NULL --',
+        "' || pg_read_file('/etc/passwd') || '",
+    ],
+)
+def test_a_value_that_features_are_compared_with_stays_one(postgis, value):
+    features = f"wfs3/collections/{IN_POSTGIS}/items"
+    asked = GET_FEATURE | {"TYPENAME": IN_POSTGIS}
+
+    def ask() -> None:
+        for path, query in (
+            ("", asked | {"FILTER": equal("robot", value)}),
+            ("", asked | {"FILTER": equal(value, "r1")}),
+            ("", asked | {"FEATUREID": f"{IN_POSTGIS}.{value}"}),
+            (f"{features}.json", {"robot": value}),
+            (f"{features}/{urllib.parse.quote(value, safe='')}.json", {}),
+        ):
+            with contextlib.suppress(urllib.error.HTTPError):
+                postgis.get(path, **query)
+
+    said = [without_texts(line) for line in postgis.statements(ask)]
+    assert said
+    assert [line for line in said if "pg_sleep" in line or "pg_read" in line] == []
+
+
+def without_texts(statement: str) -> str:
+    """Return a statement without its texts in single quotes and its names in double quotes."""
+    return re.sub(r"""E'(?:[^'\\]|\\.|'')*'|'(?:[^']|'')*'|"(?:[^"]|"")*\"""", "", statement)
+
+
+def equal(name: str, value: str) -> str:
+    same = f"<PropertyName>{name}</PropertyName><Literal>{value}</Literal>"
+    return f"<Filter><PropertyIsEqualTo>{same}</PropertyIsEqualTo></Filter>"
+
+
+@pytest.mark.parametrize("layer", ["Robots", IN_POSTGIS])
+def test_filters_of_clients_choose_the_same_on_each_database(postgis, layer, qgis_app):
+    from lxml.etree import tostring
+    from owslib.fes import PropertyIsLike
+    from owslib.wfs import WebFeatureService
+
+    like = tostring(PropertyIsLike("robot", "*2", wildCard="*", singleChar=".", escapeChar="!").toXML())
+    wfs = WebFeatureService(postgis.url, version="1.1.0")
+    read = wfs.getfeature([layer], filter=f"<Filter>{like.decode()}</Filter>", outputFormat="GeoJSON").read()
+    assert robots_in(read) == {"r2"}
+    for address in (f"WFS:{postgis.url}?SERVICE=WFS&VERSION=1.1.0", f"OAPIF:{postgis.url}wfs3"):
+        source = ogr.Open(address)
+        rows = source.GetLayerByName(layer)
+        rows.SetAttributeFilter("robot = 'r2'")
+        assert [one["robot"] for one in rows] == ["r2"], address
+    chosen = "\"robot\" = \\'r2\\'"
+    features = QgsVectorLayer(
+        f"url='{postgis.url}' typename='{layer}' version='1.1.0' filter='{chosen}'", "f", "WFS"
+    )
+    assert features.isValid(), features.error().summary()
+    assert [one["robot"] for one in features.getFeatures()] == ["r2"]
+
+
+def test_what_is_refused_of_ogc_api_features_is_the_error_that_its_description_has(services):
+    described = json.loads(services.get("wfs3/api"))
+    answers = described["paths"]["/wfs3/collections"]["get"]["responses"]["default"]["content"]
+    error = described["components"]["schemas"]["exception"]["properties"]
+    with pytest.raises(urllib.error.HTTPError) as refused:
+        services.get("wfs3/collections", MAP="/srv/other.qgz")
+    assert refused.value.code == 400 and refused.value.headers["Content-Type"] in answers
+    said = json.loads(refused.value.read())
+    assert set(said) == set(error) and "MAP is no parameter" in said["description"]
+
+
 def test_no_error_says_where_on_this_computer_something_is(services):
     wrong = [
         *({**MAP, name: "none"} for name in ("LAYERS", "BBOX", "CRS", "FORMAT", "STYLES")),
@@ -348,8 +541,7 @@ def test_a_body_is_refused_and_so_is_what_it_would_write(services):
 
 
 def test_filters_and_orders_that_clients_ask_for_are_answered(services):
-    same = "<PropertyName>robot</PropertyName><Literal>r2</Literal>"
-    chosen = f"<Filter><PropertyIsEqualTo>{same}</PropertyIsEqualTo></Filter>"
+    chosen = equal("robot", "r2")
     page = json.loads(services.get(**GET_FEATURE, OUTPUTFORMAT="GeoJSON", FILTER=chosen, SORTBY="robot D"))
     assert [one["properties"]["robot"] for one in page["features"]] == ["r2"]
     assert services.get(**(MAP | {"FILTER": "Robots:\"robot\" = 'r2'"})).startswith(b"\x89PNG")

@@ -14,6 +14,7 @@ from websockets.exceptions import ConnectionClosed, ConnectionClosedOK
 from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
+from ...core.logs import Key
 from ...core.messages.base import LARGEST_MESSAGE, MessageError
 from ...core.messages.json_values import to_json
 from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
@@ -176,7 +177,7 @@ class RobotSession:
         await self._settled()
         if large and self._admitted:
             self._fleet.refuse_large(self.robot, self._channel.name, str(error))
-        self._warn("frames", f"{self._who}: {error}")
+        self._warn(self._key_of("frames"), f"{self._who}: {error}")
         await self._channel.send(self._channel.error(error.id, error.code, str(error)))
 
     async def _settled(self) -> None:
@@ -216,7 +217,7 @@ class RobotSession:
                 reader = self._delivery.reader
                 await self._fleet.mailboxes.finish([outcome], [], acks=False, reader=reader)
         except (MessageError, BridgeError) as error:
-            self._warn(call.method, f"{self._who}: {error}")
+            self._warn(self._key_of(call.method, error), f"{self._who}: {error}")
             await channel.send(channel.error(call.id, error_code(error), str(error)))
             return
         except ConnectionClosed:
@@ -275,23 +276,27 @@ class RobotSession:
             # Asked again it would say the same again, and for ever.
             log.error("%s: %s; what it said is left out", self._who, error)
         except StoreError as error:
-            log.warning("%s: %s; it will be asked again", self._who, error)
+            line = f"{self._who}: {error}; it will be asked again"
+            self._fleet.repeated.warn(log, self._key_of("replies", error), line)
             self.ask_again()
         except (MessageError, BridgeError) as error:
-            self._warn("replies", f"{self._who}: {error}")
+            self._warn(self._key_of("replies", error), f"{self._who}: {error}")
         except Exception:
             # There is no answer to an answer: what went wrong is between the log and whoever reads it.
             self._note_unforeseen("replies", f"{self._who}, acknowledgement {id}")
 
-    def _warn(self, method: str, line: str) -> None:
+    def _warn(self, key: Key, line: str) -> None:
         """Count a refusal, and write it into the log unless it comes again and again."""
         self._fleet.tally.refused[self._channel.name] += 1
-        self._fleet.repeated.warn(log, self._key_of(method), line)
+        self._fleet.repeated.warn(log, key, line)
 
     def _note_unforeseen(self, method: str, who: str) -> str:
         return self._fleet.repeated.note_unforeseen(log, self._key_of(method), who)
 
-    def _key_of(self, method: str) -> tuple[str, ...]:
+    def _key_of(self, method: str, error: Exception | None = None) -> Key:
+        """Return what lines of the log are counted by: a database that is full is so for all robots."""
+        if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
+            return f"link {self._channel.name}:", "database"
         what = method if method in REQUESTS or method in _OTHERS else "unknown operations"
         return f"link {self._channel.name}:", "robot", repr(self.robot), what
 

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from typing import NamedTuple
 
 from ...core.errors import DataRefusedError, NotReadyError, OtherRunError, RefusedError, StoreError
-from ...core.logs import log_unforeseen
+from ...core.logs import TroubleNews, log_unforeseen
 from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name
 from ...core.messages.robots import PAYLOADS, REQUESTS, OpAck
 from ...protocol.codec import decode_request, parse_params
@@ -47,6 +47,7 @@ class SqlInterface:
         self._waited_up_to: int | None = None
         """the newest request from before this link read any; None until it is known."""
         self._greeted: set[str] = set()
+        self._news = TroubleNews()
         self._turn_ends = 0.0
 
     async def run(self) -> None:
@@ -61,7 +62,8 @@ class SqlInterface:
                     self._fleet.tally.beat(BEAT)
                     await wakeup.wait(found=found)
                 except StoreError as error:
-                    log.error("link sql: %s; trying again in %g s", error, RETRY_AFTER)
+                    if self._news.has("link sql", str(error)):
+                        log.error("link sql: %s; trying again until it works", error)
                     await asyncio.sleep(RETRY_AFTER)
         finally:
             await wakeup.close()

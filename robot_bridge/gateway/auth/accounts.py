@@ -330,7 +330,7 @@ class AccountCache:
 
     async def refresh(self) -> bool:
         """Take over what changed and tell whether anything did; raises StoreError."""
-        found = await self._database.run(_read, self._fingerprint)
+        found = await self._database.read(_read, self._fingerprint)
         if found is None:
             return False
         self._fingerprint, grants = found

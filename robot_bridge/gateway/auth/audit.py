@@ -12,7 +12,8 @@ from typing import Any
 from sqlalchemy import Connection, bindparam, insert, select, update
 
 from ...core.clock import SYSTEM_CLOCK, Clock
-from ...core.errors import StoreError
+from ...core.errors import DataRefusedError, StoreError
+from ...core.logs import TroubleNews
 from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from ..storage.rows import delete_oldest
@@ -219,6 +220,7 @@ class AuditJournal:
         self._event = asyncio.Event()
         self._dropped = 0
         self._batch = BATCH
+        self._news = TroubleNews()
         self._writing = asyncio.Lock()
 
     def note(
@@ -262,7 +264,8 @@ class AuditJournal:
                 self._event.clear()
                 await self.flush()
             except StoreError as error:
-                log.error("%s; the audit log is written later", error)
+                if self._news.has("audit log", str(error)):
+                    log.error("%s; the audit log is written later", error)
                 await asyncio.sleep(RETRY_AFTER)
                 self._event.set()
 
@@ -280,18 +283,20 @@ class AuditJournal:
         try:
             await self._database.run(_do_all, batch)
         except StoreError as error:
-            if count == 1 and (await self._succeeds(batch) or await self._says_lost(error)):
+            if count == 1 and (await self._succeeds(batch) or await self._is_given_up(error)):
                 return
             self._waiting.extendleft(reversed(batch))
             self._batch = max(1, count // 2)
             raise
         self._batch = min(BATCH, 2 * self._batch)
 
-    async def _says_lost(self, error: StoreError) -> bool:
-        """Give up one piece, which must not keep back all that come after it, and write that it is missing.
+    async def _is_given_up(self, error: StoreError) -> bool:
+        """Give up a piece that is refused, which must not keep back all after it; write that it is missing.
 
-        A database that cannot be written, such as on a full disk, does not take that either: the piece waits.
+        On a full disk it waits, though there may be room for a smaller one.
         """
+        if not isinstance(error, DataRefusedError):
+            return False
         gap = AuditEntry(
             self._clock.time(), "gateway", "audit", False, detail=f"an entry is missing here: {error}"
         )

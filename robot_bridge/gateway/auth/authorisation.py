@@ -243,7 +243,7 @@ class AuthGate:
             if (fault := self._fault(identity)) is not None:
                 self._guests.end(visitor, REVOKED, fault)
         desks = self._guests.sessions
-        ended = await self._database.run(audit.ended_sessions, list(desks))
+        ended = await self._database.read(audit.ended_sessions, list(desks))
         # A gateway that starts cannot tell which are those of the one that it was before.
         left = [session for session, reason in ended.items() if reason == audit.GATEWAY_ENDED]
         if left:

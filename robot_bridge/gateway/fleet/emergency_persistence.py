@@ -23,6 +23,7 @@ from sqlalchemy.exc import ProgrammingError
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
 from ...core.files import write_state, write_state_into
 from ...core.json_decoder import DecodingError, decode_json
+from ...core.logs import TroubleNews
 from ...core.messages.base import MessageError, check_command_id
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import CommandOrder
@@ -65,7 +66,8 @@ class StopJournal:
 
     def __init__(self, file: Path) -> None:
         self._file = file
-        self._room = file.with_name(f".{file.name}.room")
+        # Two: the second stop on a full disk is noted before the first one's room is free again.
+        self._rooms = [file.with_name(f".{file.name}.{name}") for name in ("room", "spare")]
         # One thread: what is written last is what stands there in the end.
         self._thread = ThreadPoolExecutor(1, "emergency stops")
 
@@ -140,13 +142,17 @@ class StopJournal:
         except OSError as error:
             if error.errno not in FULL:
                 raise
-            write_state_into(self._room, self._file, text)
+            rooms = [room for room in self._rooms if room.is_file()]
+            if not rooms:
+                raise
+            write_state_into(rooms[0], self._file, text)
 
     def _set_room_aside(self) -> None:
         # On a disk that is full already there is none; what cannot be noted then is told to the log.
-        with contextlib.suppress(OSError):
-            if not self._room.is_file():
-                write_state(self._room, b" " * ROOM, mode=0o600)
+        for room in self._rooms:
+            with contextlib.suppress(OSError):
+                if not room.is_file():
+                    write_state(room, b" " * ROOM, mode=0o600)
 
 
 def _plain(stop: StopRow) -> dict[str, object]:
@@ -184,6 +190,7 @@ class StopWriter:
     def __init__(self, book: CommandService, database: Database) -> None:
         self._book = book
         self._database = database
+        self._news = TroubleNews()
         self._owed: dict[str, StopRow] = {}
         self._have_bare: set[str] = set()
         """those of them that were sent a bare Abort."""
@@ -219,7 +226,10 @@ class StopWriter:
         except UncertainError:
             raise
         except Exception as error:
-            _explain(error, "the emergency stop cannot be stored in one transaction and is stored in several")
+            text = "the emergency stop cannot be stored in one transaction and is stored in several"
+            # On a full disk this is tried every few seconds for as long as that lasts.
+            if self._news.has(text, str(error)):
+                _explain(error, text)
         is_listed = await self._list(stop)
         self.owe(stop, robots)
         failed = await self._halve(robots, self._send_bare)

@@ -196,9 +196,15 @@ class DatabaseWorker:
             return [(job, result, None) for job, result in zip(jobs, results, strict=True)]
         except StoreError as error:
             # One piece of work may be at fault; but not each of them is to wait for the database as long.
-            one_is_wrong = self._connection is not None and time.monotonic() - began < WRONG_AT_ONCE_S
+            at_once = time.monotonic() - began < WRONG_AT_ONCE_S
+            one_is_wrong = self._connection is not None and at_once
             if len(jobs) == 1 or not (one_is_wrong or isinstance(error, DataRefusedError)):
-                return [(job, None, error) for job in jobs]
+                # A full disk takes no commit, and can be read.
+                reads = [job for job in jobs if job.mode is Durability.READ] if at_once else []
+                others = [job for job in jobs if job not in reads]
+                if not (reads and others):
+                    return [(job, None, error) for job in jobs]
+                return [*((job, None, error) for job in others), *self._do(reads)]
         except BaseException as error:
             if len(jobs) == 1:
                 return [(jobs[0], None, error)]

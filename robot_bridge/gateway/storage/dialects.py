@@ -278,6 +278,8 @@ def _postgresql_limits(patience: float) -> Any:
 log = logging.getLogger(__name__)
 
 LOCK_PAUSE_S = 0.0005
+_DESCRIPTORS = Path("/proc/self/fd")
+"""The files that this process has open, where the system has that."""
 _GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
 
 
@@ -288,6 +290,7 @@ class SQLite(Dialect):
     advice = "check that it exists, that it may be written and that its disk has room"
     made_by_serve = True
     has_version = True
+    _keeper: tuple[_Opened, sqlite3.Connection] | None = None
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         self._timeout = PATIENCE_S if patience is None else patience
@@ -299,7 +302,9 @@ class SQLite(Dialect):
         )
         event.listen(engine, "do_connect", self._make_file)
         event.listen(engine, "connect", _prepare)
+        event.listen(engine, "connect", self._keep_open)
         event.listen(engine, "connect", self._close_to_others)
+        event.listen(engine, "engine_disposed", self._let_go)
         event.listen(engine, "begin", self._begin)
         return engine
 
@@ -343,6 +348,26 @@ class SQLite(Dialect):
         path = str(arguments[0])
         if path != ":memory:" and not path.startswith("file:"):
             make_sqlite_file(Path(path))
+
+    def _keep_open(self, _connection: Any, record: Any) -> None:
+        """Have a connection that does nothing stay open beside others, and the disk hold SQLite's index.
+
+        With the last one SQLite removes its index; where a commit fails, the connection is a new one, and a
+        full disk takes the new index in part only: whoever writes there ends by SIGBUS.
+        """
+        opened: _Opened | None = record.info.get("opened")
+        if opened is None or (self._keeper is not None and self._keeper[0] == opened):
+            return
+        self._let_go()
+        keeper = sqlite3.connect(opened.path, timeout=self._timeout, check_same_thread=False)
+        keeper.execute("PRAGMA schema_version").fetchone()
+        self._keeper = opened, keeper
+        _hold_room_of_index(Path(f"{opened.path}-shm"))
+
+    def _let_go(self, _engine: Any = None) -> None:
+        keeper, self._keeper = self._keeper, None
+        if keeper is not None:
+            keeper[1].close()
 
     @staticmethod
     def _close_to_others(_connection: Any, record: Any) -> None:
@@ -423,6 +448,20 @@ def _prepare(connection: Any, record: Any) -> None:
     cursor.execute("PRAGMA secure_delete = FAST")
     cursor.close()
     record.info["opened"] = _Opened.by(connection)
+
+
+def _hold_room_of_index(path: Path) -> None:
+    """Have the disk hold all of SQLite's index at ``path``, which lies in memory.
+
+    Where it does not, the process ends when it writes there and the disk is full.
+    SQLite writes a byte of each 4 kB, which a file system of smaller blocks takes for that block alone. Its
+    own descriptor does it: to open and close another one would end its locks.
+    """
+    for name in _DESCRIPTORS.iterdir() if _DESCRIPTORS.is_dir() else ():
+        with contextlib.suppress(OSError):
+            if name.readlink() == path:
+                descriptor = int(name.name)
+                os.posix_fallocate(descriptor, 0, os.fstat(descriptor).st_size)
 
 
 def make_sqlite_file(path: Path) -> None:

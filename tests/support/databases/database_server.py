@@ -65,8 +65,11 @@ class DatabaseServer(abc.ABC):
     programs: Sequence[str]
     ending: signal.Signals = signal.SIGTERM
 
-    def __init__(self, *, durable: bool = False, through: Sequence[str] = ()) -> None:
+    def __init__(
+        self, *, durable: bool = False, through: Sequence[str] = (), within: Path = Path("/tmp")
+    ) -> None:
         self.durable = durable
+        self._within = within
         self._through = through
         self.port = 0
         self.admin_password = secrets.token_hex(8)
@@ -75,7 +78,7 @@ class DatabaseServer(abc.ABC):
         self._process: subprocess.Popen[bytes] | None = None
 
     def __enter__(self) -> DatabaseServer:
-        self.folder = Path(tempfile.mkdtemp(prefix=f"fleet-{self.scheme}-", dir="/tmp"))
+        self.folder = Path(tempfile.mkdtemp(prefix=f"fleet-{self.scheme}-", dir=self._within))
         self._remover = _remove_when_this_program_ends(self.folder)
         try:
             self._give(self.folder)
@@ -116,6 +119,11 @@ class DatabaseServer(abc.ABC):
             # What a killed server leaves behind may hold up the next one for a moment.
             if self._process is None or self._process.poll() is not None:
                 self._launch()
+
+    def start_again(self) -> None:
+        """Start the server unless it runs; return when it takes connections. Raises StageError."""
+        if self._process is None or self._process.poll() is not None:
+            self.start()
 
     def _launch(self) -> None:
         with (self.folder / "server.log").open("ab") as log:

@@ -8,6 +8,7 @@ nothing else. It also says where the layers of the fleet lie.
 
 from __future__ import annotations
 
+import json
 import os
 import re
 from collections.abc import Mapping
@@ -36,6 +37,8 @@ REQUESTS = {
 """What each service is asked for. What writes, prints, or says how the project is made is not among them."""
 FEATURES = "/wfs3"
 """Where OGC API Features is. Its parameters are names of fields, too, which it compares with the layer's."""
+BAD_REQUEST = "Bad request error"
+"""What it calls a wrong request in its errors."""
 REPEATED = ("layers", "layer", "query_layers")
 """Where a layer may be named once: it is painted as often as it is named, and all others wait meanwhile."""
 NAMES = {
@@ -48,14 +51,15 @@ MOST_LETTERS = 4000
 MOST = {"width": 4096, "height": 4096, "dpi": 1200, "map_resolution": 1200}
 """QGIS Server bounds the picture of a map only; GetFeatureInfo makes one, too."""
 NUMBER = re.compile(r"[0-9]+(\.[0-9]+)?")
-FIELD = r"""\"[^'";\\]*"(?!\s*\()"""
-TEXT = r"""'[^'";\\]*'"""
-WORD = rf"(?:[\s0-9.(),=<>]|!=|-(?=[0-9])|{TEXT}|{FIELD}|(?:AND|OR|NOT|IN|IS|NULL|I?LIKE)\b)"
+FIELD = r"""\"[^'";\\\x00-\x1f]*"(?!\s*\()"""
+TEXT = r"""'[^'";\\\x00-\x1f]*'"""
+WORD = rf"(?:[\s0-9(),=<>]|\.(?=[0-9])|!=|-(?=[0-9])|{TEXT}|{FIELD}|(?:AND|OR|NOT|IN|IS|NULL|I?LIKE)\b)"
 CONDITION = rf"""[^:;<'"]+:{WORD}+"""
-CONDITIONS = re.compile(rf"{CONDITION}(;{CONDITION})*;?", re.IGNORECASE)
+CONDITIONS = re.compile(rf"{CONDITION}(;{CONDITION})*;?", re.IGNORECASE | re.ASCII)
 """FILTER of WMS, which goes to the database. The check of QGIS Server takes for a text what has quotes at
-both ends, such as 'a'||f()||'b', and for a field a function whose name has quotes."""
-XML = re.compile(r"\(?<.*>\)?", re.DOTALL)
+both ends, such as 'a'||f()||'b', and for a field a function whose name has quotes. PostgreSQL calls functions
+by a point, too: "robots"."row_to_json". At a NUL the statement is cut."""
+XML = re.compile(r"\s*\(?<.*>\)?\s*", re.DOTALL)
 
 
 class RefusedError(Exception):
@@ -72,6 +76,10 @@ class RequestGuard(QgsServerFilter):
             check(handler.path(), handler.parameterMap(), bytes(handler.data()))
         except RefusedError as refusal:
             handler.setServiceException(QgsServerException(str(refusal), 400))
+            if is_of_features(handler.path(), handler.parameterMap()):
+                handler.clearBody()
+                handler.setResponseHeader("Content-Type", "application/json")
+                handler.appendBody(json.dumps({"code": BAD_REQUEST, "description": str(refusal)}).encode())
         else:
             place_layers()
 
@@ -95,8 +103,14 @@ def check(path: str, parameters: Mapping[str, str], body: bytes) -> None:
         _check_value(name, value)
 
 
+def is_of_features(path: str, parameters: Mapping[str, str]) -> bool:
+    """Tell whether OGC API Features is asked, whose errors are JSON."""
+    has_service = any(name.lower() == "service" for name in parameters)
+    return not has_service and (path == FEATURES or path.startswith((FEATURES + "/", FEATURES + ".")))
+
+
 def _check_features(path: str, given: Mapping[str, str]) -> None:
-    if path != FEATURES and not path.startswith((FEATURES + "/", FEATURES + ".")):
+    if not is_of_features(path, given):
         raise RefusedError(f"Give SERVICE and REQUEST, or a path below {FEATURES}.")
     if "map" in given:
         raise RefusedError("MAP is no parameter that is served here.")

@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.core.logs import RepeatedLines
+from robot_bridge.core.logs import IN_FULL, RepeatedLines
 from robot_bridge.core.messages.robots import OpAck
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.api.robot_session import MOST_DUE, RobotConnection, RobotSessions
@@ -116,6 +116,23 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}}))
     await own.session._settled()
     assert begun == again
+
+
+async def test_a_full_disk_is_told_to_the_log_of_all_that_a_robot_says_together(own, caplog):
+    async def receive(*_):
+        raise StoreError("the disk is full")
+
+    own.session._fleet.receive = own.session._fleet.acknowledge = receive
+    place = {"x": 1.0, "y": 2.0}
+    for method, params in (
+        ("SetObject", place | {"object": "cone"}),
+        ("GetMap", place | {"width": 9.0, "height": 9.0}),
+    ):
+        for id in range(9):
+            await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "method": method, "params": params}))
+            await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
+    await own.session._settled()
+    assert caplog.text.count("the disk is full") == IN_FULL
 
 
 async def test_nothing_is_sent_again_over_a_connection_that_has_ended(own, monkeypatch):

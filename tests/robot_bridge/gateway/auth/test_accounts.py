@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import gc
+import math
 
 import pytest
 
@@ -234,11 +235,39 @@ class FullDisk:
 
     def __init__(self, database):
         self.database, self.has_room = database, False
+        self.refusals, self.has_room_after = 0, math.inf
 
     async def run(self, work, pieces):
-        if pieces and not self.has_room:
+        if pieces and not self.has_room and self.refusals < self.has_room_after:
+            self.refusals += 1
             raise StoreError("database or disk is full")
         return await self.database.run(work, pieces)
+
+
+async def test_what_a_full_disk_has_no_room_for_is_not_given_up_for_something_smaller(
+    database, clock, caplog
+):
+    full = FullDisk(database)
+    journal = AuditJournal(full, clock)
+    journal.note("Ada", "sent")
+    full.has_room_after = 2
+    with pytest.raises(StoreError):
+        await journal.flush()
+    await journal.flush()
+    assert [entry.action for entry in await written(database)] == ["sent"]
+    assert "lost" not in caplog.text
+
+
+async def test_a_disk_that_stays_full_is_told_to_the_log_once_a_minute(database, clock, caplog, monkeypatch):
+    monkeypatch.setattr("robot_bridge.gateway.auth.audit.RETRY_AFTER", 0.0)
+    full = FullDisk(database)
+    journal = AuditJournal(full, clock)
+    journal.note("Ada", "sent")
+    running = asyncio.create_task(journal.run())
+    while full.refusals < 9:
+        await asyncio.sleep(0.001)
+    running.cancel()
+    assert caplog.text.count("the audit log is written later") == 1
 
 
 async def test_a_piece_that_failed_while_the_database_came_back_is_written(database, clock, caplog):

@@ -237,3 +237,22 @@ async def test_a_full_disk_takes_a_stop_and_has_room_for_the_next_one_afterwards
             assert StopJournal(file).read() == [SECOND]
     except StageError as error:
         pytest.skip(str(error))
+
+
+async def test_a_full_disk_takes_one_stop_after_the_other(tmp_path):
+    """Whatever else waits for room has it before the next stop."""
+    try:
+        with Disk(tmp_path / "disk", megabytes=1) as disk:
+            file = disk.folder / "fleet.db.stop"
+            journal = StopJournal(file)
+            journal.check()
+            noted = []
+            for number in range(5):
+                disk.fill()
+                noted.append(
+                    FIRST._replace(id=f"stop-000{number}", reason="x" * 900 if number == 2 else None)
+                )
+                await journal.write(noted[-3:])
+                assert StopJournal(file).read() == noted[-3:]
+    except StageError as error:
+        pytest.skip(str(error))
