@@ -60,6 +60,7 @@ class SqlInterface:
                     if not found and await wakeup.doze():
                         found = await self.poll()
                     self._fleet.tally.beat(BEAT)
+                    self._news.is_over("link sql")
                     await wakeup.wait(found=found)
                 except StoreError as error:
                     if self._news.has("link sql", str(error)):

@@ -263,6 +263,7 @@ class AuditJournal:
                 await self._event.wait()
                 self._event.clear()
                 await self.flush()
+                self._news.is_over("audit log")
             except StoreError as error:
                 if self._news.has("audit log", str(error)):
                     log.error("%s; the audit log is written later", error)

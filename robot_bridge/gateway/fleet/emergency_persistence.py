@@ -207,6 +207,7 @@ class StopWriter:
     def clear(self) -> None:
         """Owe no robot an Abort: no stop is in force."""
         self._owed.clear()
+        self._news = TroubleNews()
 
     def owe(self, stop: StopRow, robots: Sequence[str]) -> None:
         """Have the next :meth:`write_owed` send ``robots`` the Abort of ``stop``."""
@@ -228,7 +229,7 @@ class StopWriter:
         except Exception as error:
             text = "the emergency stop cannot be stored in one transaction and is stored in several"
             # On a full disk this is tried every few seconds for as long as that lasts.
-            if self._news.has(text, str(error)):
+            if self._news.has(stop.id, str(error)):
                 _explain(error, text)
         is_listed = await self._list(stop)
         self.owe(stop, robots)
