@@ -54,7 +54,7 @@ LAYERS = ("Orthophoto", "Road surfaces", "Buildings", "Walls", "Robots")
 MAPS_NICE = 5
 """As the unit of the map services has it."""
 FRAME = read_settings(SITE / "site.toml").frame
-PANEL = ROOT / "plugin" / "settings" / "preferences.py"
+PANEL = ROOT / "plugin" / "settings" / "profile.py"
 PAGE = ROOT / "robot_bridge" / "gateway" / "field" / "assets" / "budget.js"
 
 TEXT = """\
