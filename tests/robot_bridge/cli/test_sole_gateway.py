@@ -158,7 +158,9 @@ def test_gateways_of_a_fleet_look_at_a_new_database_at_the_same_moment(new_datab
     with engine.begin() as first, ThreadPoolExecutor(1) as thread:
         fact(first, singleton_lock.RUN, "{}")
         second = thread.submit(check_no_sole_gateway, address)
-        with open_engine(address)[0].connect() as onlooker:
+        # In one transaction it would see again and again what it saw at first.
+        watching = open_engine(address)[0].execution_options(isolation_level="AUTOCOMMIT")
+        with watching.connect() as onlooker:
             wait_until(lambda: onlooker.scalar(text(waits)) or second.done())
         assert not second.done()
         first.commit()
