@@ -98,6 +98,7 @@ class Robot(Node):
         if "deaf-stop" not in options.odd:
             self.create_subscription(Twist, "cmd_vel", self.twist_came, 10)
             self.create_service(Trigger, "stop", self.stop_called)
+            self.led = self.create_timer(0.1, self.find_leader)
         self.create_service(Trigger, "place_cone", self.cone_called)
         if options.asks_map:
             self.map_client = self.create_client(GetMap, "get_map")
@@ -257,6 +258,12 @@ class Robot(Node):
         self.braked = False
         self.points = [(pose.pose.position.x, pose.pose.position.y)]
         say("goal pose", points=self.points)
+
+    def find_leader(self):
+        """Say once that somebody may tell it its speed: what is said before that it does not hear."""
+        if self.count_publishers("cmd_vel"):
+            say("led")
+            self.led.cancel()
 
     def twist_came(self, twist: Any):
         """Stand when told so."""

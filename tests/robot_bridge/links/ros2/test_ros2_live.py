@@ -191,11 +191,12 @@ def test_an_abort_cancels_what_nav2_does_and_the_robot_stands(desk, robot, nodes
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged")
+    wait_until(lambda: events(nodes, name, "led"), 30)
     desk.send(f"stop-{name}", name, "Abort")
     desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
     assert events(nodes, name, "cancel asked") and events(nodes, name, "stop")
-    assert events(nodes, name, "zero twist")
+    wait_until(lambda: events(nodes, name, "zero twist"))
     assert events(nodes, name, "goal ended")[0]["status"] == 5
 
 

@@ -165,6 +165,7 @@ def test_an_abort_calls_the_stop_service_and_says_speed_0(desk, robot, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
+    wait_until(lambda: events(nodes, name, "led"), 30)
     desk.send(f"stop-{name}", name, "Abort")
     desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
