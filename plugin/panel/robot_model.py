@@ -60,7 +60,7 @@ COLUMNS = (
         tr("How far it is beside its path, or from the target that it reached last"),
         True,
     ),
-    Column("Link", tr("Link"), "ws", tr("How it is connected; @ and a name: at another gateway")),
+    Column("Link", tr("Link"), "@north", tr("How it is connected; @ and a name: at another gateway")),
     Column(
         "Position",
         tr("Position"),
