@@ -9,7 +9,7 @@ from functools import partial
 from typing import Protocol
 
 from ...core.clock import Clock
-from ...core.errors import RefusedError, StoreError, listed_names
+from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.administration import KeptRobot, RemoveRobots, RobotsRemoved
 from ...core.messages.positions import link_elsewhere
@@ -65,6 +65,8 @@ class Takeover:
         self._database = database
         self._clock = clock
         self._events = events
+        self._waiting: dict[str, asyncio.Future[None]] = {}
+        self._taking_up: asyncio.Task[None] | None = None
 
     async def claim(self, robot: str) -> None:
         """Have a robot that says Ready here, whoever had it, and take up what is stored of it.
@@ -73,7 +75,7 @@ class Takeover:
         """
         before = self._robots.gateway_of(robot)
         if await self._ownership.claim(robot) or before is not None:
-            await self._take_up([robot])
+            await self._take_up_together(robot)
             if before is not None:
                 self._exchange.wake("owners", before)
 
@@ -105,6 +107,40 @@ class Takeover:
                 robot.gateway = gateways[robot.name]
                 robot.link = link_elsewhere(robot.gateway)
                 self._robots.restore(robot, self._clock.time())
+
+    async def _take_up_together(self, robot: str) -> None:
+        """Take up a robot in one piece with those that come meanwhile: all those of a gateway that died."""
+        waiting = self._waiting.get(robot)
+        if waiting is None:
+            waiting = self._waiting[robot] = asyncio.get_running_loop().create_future()
+            if self._taking_up is None or self._taking_up.done():
+                self._taking_up = asyncio.create_task(self._take_up_waiting())
+        await asyncio.shield(waiting)
+
+    async def _take_up_waiting(self) -> None:
+        while self._waiting:
+            some, self._waiting = self._waiting, {}
+            await self._take_up_for(some)
+
+    async def _take_up_for(self, some: dict[str, asyncio.Future[None]]) -> None:
+        """Take up robots for those who wait for them; what is wrong with one concerns that one."""
+        try:
+            await self._take_up(list(some))
+        except asyncio.CancelledError:
+            raise
+        except BaseException as error:
+            is_away = isinstance(error, StoreError) and not isinstance(error, DataRefusedError)
+            if len(some) > 1 and not is_away:
+                for robot, waiting in some.items():
+                    await self._take_up_for({robot: waiting})
+                return
+            for waiting in some.values():
+                waiting.set_exception(error)
+                # Whoever waited may have gone.
+                waiting.exception()
+        else:
+            for waiting in some.values():
+                waiting.set_result(None)
 
     async def _take_up(self, names: Sequence[str]) -> None:
         for begin in range(0, len(names), AT_ONCE):
