@@ -66,6 +66,8 @@ class Takeover:
         self._clock = clock
         self._events = events
         self._waiting: dict[str, asyncio.Future[None]] = {}
+        self._left: set[str] = set()
+        """the gateways that had those who wait."""
         self._taking_up: asyncio.Task[None] | None = None
 
     async def claim(self, robot: str) -> None:
@@ -75,9 +77,9 @@ class Takeover:
         """
         before = self._robots.gateway_of(robot)
         if await self._ownership.claim(robot) or before is not None:
-            await self._take_up_together(robot)
             if before is not None:
-                self._exchange.wake("owners", before)
+                self._left.add(before)
+            await self._take_up_together(robot)
 
     async def claim_left(self) -> None:
         """Have the robots that no living gateway has, if this gateway leads; raises StoreError."""
@@ -120,7 +122,10 @@ class Takeover:
     async def _take_up_waiting(self) -> None:
         while self._waiting:
             some, self._waiting = self._waiting, {}
+            left, self._left = self._left, set()
             await self._take_up_for(some)
+            for gateway in sorted(left):
+                self._exchange.wake("owners", gateway)
 
     async def _take_up_for(self, some: dict[str, asyncio.Future[None]]) -> None:
         """Take up robots for those who wait for them; what is wrong with one concerns that one."""

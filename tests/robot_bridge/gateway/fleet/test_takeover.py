@@ -35,9 +35,11 @@ def ownership():
 @pytest.fixture
 def takeover(ownership, monkeypatch):
     """A takeover that notes what it reads together; ``faults`` by robot are raised then."""
-    robots, exchange = SimpleNamespace(gateway_of=lambda _: None), SimpleNamespace(wake=None)
+    woken: list[tuple[str, str]] = []
+    robots = SimpleNamespace(gateway_of=lambda robot: None if robot == "r1" else "b")
+    exchange = SimpleNamespace(wake=lambda what, gateway: woken.append((what, gateway)))
     takeover = Takeover(ownership, exchange, robots, *[None] * 7)
-    takeover.read, takeover.faults = [], {}
+    takeover.read, takeover.faults, takeover.woken = [], {}, woken
 
     async def read(names):
         takeover.read.append(list(names))
@@ -67,6 +69,7 @@ async def test_robots_that_are_claimed_together_are_read_together_and_later_ones
     await takeover.claim("r5")
     assert await first == dict.fromkeys(ROBOTS)
     assert takeover.read == [ROBOTS, ["r5"]]
+    assert takeover.woken == [("owners", "b")] * 2, "who had them drops them, told once for all"
 
 
 async def test_what_cannot_be_read_of_one_robot_keeps_no_other_out(takeover, ownership):
