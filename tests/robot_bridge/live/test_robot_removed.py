@@ -12,6 +12,12 @@ def plugged(bridge, name, **options) -> RobotWire:
     return robot
 
 
+def is_without_r1(told):
+    """Tell whether r1 is told to be gone; a desk that a busy gateway was late for is told who is left."""
+    left = [robot["robot"] for robot in told["robots"]]
+    return told.get("removed") == ["r1"] or (told.get("everything") and left == ["r2"])
+
+
 def test_a_robot_that_is_removed_is_gone_from_the_desks_and_stays_gone(
     start_bridge, sample_site, accounts_of
 ):
@@ -23,7 +29,7 @@ def test_a_robot_that_is_removed_is_gone_from_the_desks_and_stays_gone(
     desk.wait_for_robots("r1", "r2")
     desk.send("command-0001", "r1", "SetPosEnd", x=30.0, y=8.0)
     accounts_of(bridge).do("robots", "remove", "r1")
-    desk.until(lambda: any(told.get("removed") == ["r1"] for told in desk.snapshots))
+    desk.until(lambda: any(map(is_without_r1, desk.snapshots)))
     failed = desk.wait_for_step("command-0001", "failed")
     assert failed["steps"][-1]["reason"] == "the robot was removed"
     assert [robot["robot"] for robot in desk.ask("get_positions")["robots"]] == ["r2"]
