@@ -238,8 +238,7 @@ class RequestRelay:
 
     async def _ask(self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str) -> list[str]:
         rows = [NewRequest.of(robot, request) for robot, request in requests]
-        # No step of this waits for the disk: what comes of a request does, and with it all before it.
-        ids = await self._database.jot(relayed.add, rows, operator, self._membership.name)
+        ids = await self._database.run(relayed.add, rows, operator, self._membership.name)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)
         # The robots may have come here meanwhile.
@@ -256,7 +255,7 @@ class RequestRelay:
             while len(answers) < len(ids):
                 left = [id for id in ids if id not in answers]
                 event.clear()
-                answers.update(await self._database.jot(relayed.collect, left))
+                answers.update(await self._database.run(relayed.collect, left))
                 pause = min(LOOK_S, until - asyncio.get_running_loop().time())
                 if len(answers) == len(ids):
                     break
@@ -288,7 +287,7 @@ class RequestRelay:
 
     async def begin_waiting(self) -> None:
         """Begin with what waits for robots of this gateway; raises StoreError."""
-        for request in await self._database.jot(relayed.begin, self._membership.me, MOST_AT_ONCE):
+        for request in await self._database.run(relayed.begin, self._membership.me, MOST_AT_ONCE):
             task = asyncio.create_task(self._do(request))
             self._doing.add(task)
             task.add_done_callback(self._doing.discard)
