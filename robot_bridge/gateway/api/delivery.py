@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import asyncio
 import base64
+import contextlib
 import logging
+from collections.abc import Coroutine
 from contextlib import AbstractAsyncContextManager
 from typing import Any, Protocol
 
@@ -66,6 +68,12 @@ class Channel(Protocol):
         """
 
 
+async def while_connected(work: Coroutine[Any, Any, None]) -> None:
+    """Do ``work``, to which the end of the connection is an end like any other."""
+    with contextlib.suppress(ConnectionClosed):
+        await work
+
+
 # --- How a robot's outbox goes out over its connection, and an emergency stop before anything else ---
 
 log = logging.getLogger(__name__)
@@ -119,19 +127,13 @@ class Delivery:
         """
         self.outdate()
         frame = self._channel.call(Abort.__name__, to_json(Abort(emergency=emergency)), call_id)
-        task = asyncio.create_task(self._send(frame))
+        task = asyncio.create_task(while_connected(self._channel.send(frame)))
         self._stopping.add(task)
         task.add_done_callback(self._stopping.discard)
 
     def outdate(self) -> None:
         """Send nothing of what was read before: the robot is being told to stop."""
         self._stops += 1
-
-    async def _send(self, frame: str) -> None:
-        try:
-            await self._channel.send(frame)
-        except ConnectionClosed:
-            return
 
     async def _deliver(self, after: float = 0.0) -> None:
         await asyncio.sleep(after)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import logging
 from collections.abc import AsyncIterator, Awaitable, Coroutine, Iterator
 from contextlib import AbstractAsyncContextManager, nullcontext
@@ -27,7 +26,7 @@ from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims
 from ..fleet.service import Fleet
 from ..storage.database import to_its_end
-from .delivery import Channel, Delivery
+from .delivery import Channel, Delivery, while_connected
 
 log = logging.getLogger(__name__)
 
@@ -136,7 +135,7 @@ class RobotSession:
     # --- what comes in ------------------------------------------------------------------------------------
 
     def take_pose(self, pose: SendPos) -> bool:
-        """Take in a position, at once; false from a robot that is not let in, and nothing was done."""
+        """Take in a position at once; false where :meth:`listens` says no, and nothing was done."""
         if not self.listens():
             return False
         rest: Awaitable[None] | Exception | None
@@ -149,7 +148,7 @@ class RobotSession:
         return True
 
     def listens(self) -> bool:
-        """Tell whether a position can be taken in: that waits for nothing that is being stored."""
+        """Tell whether the robot is let in, and not too much of what it said is still being stored."""
         return self._admitted and self._closing is None and len(self._due) < MOST_DUE
 
     def follow_up(self, rest: Awaitable[None] | Exception) -> None:
@@ -157,7 +156,7 @@ class RobotSession:
         self._begin(self._answer(POSITION, self._outcome(rest)))
 
     async def receive_pose(self, pose: SendPos) -> None:
-        """Take in a position that may be the first, or come from a robot that is not let in."""
+        """Take in a position, at once where that can be; else behind what is being stored, or refuse it."""
         if not self.take_pose(pose):
             await self._settled()
             await self._answer(POSITION, self._ask(pose, None))
@@ -186,13 +185,9 @@ class RobotSession:
             await asyncio.wait(self._due)
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(self._while_connected(work))
+        task = asyncio.create_task(while_connected(work))
         self._due.add(task)
         task.add_done_callback(self._due.discard)
-
-    async def _while_connected(self, work: Coroutine[Any, Any, None]) -> None:
-        with contextlib.suppress(ConnectionClosed):
-            await work
 
     @property
     def _who(self) -> str:

@@ -32,6 +32,7 @@ from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
 from ..model.events import RobotLeft
 from ..model.robots import RobotPose
+from .delivery import while_connected
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
 
@@ -175,7 +176,7 @@ class LinkConnection:
             del self._places[place.robot]
 
     def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(_while_connected(work))
+        task = asyncio.create_task(while_connected(work))
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
@@ -348,11 +349,6 @@ def _decoded(cls: type[Message], call: jsonrpc.Call) -> Message:
     except (msgspec.ValidationError, MessageError) as error:
         raise MessageError(f"{call.method}: {error}") from None
     return message
-
-
-async def _while_connected(work: Coroutine[Any, Any, None]) -> None:
-    with contextlib.suppress(ConnectionClosed):
-        await work
 
 
 # --- Robots on WebSocket, by connections of their own and by links: which of them holds which robot ---
