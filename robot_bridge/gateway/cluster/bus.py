@@ -226,7 +226,7 @@ class NatsBus:
 
     @property
     def connected(self) -> bool:
-        """Whether the connection stands."""
+        """Whether the connection stands, and the server knows what this gateway listens to."""
         return self._client is not None and bool(self._client.is_connected)
 
     def publish(self, subject: str, content: bytes) -> bool:
@@ -288,11 +288,6 @@ class NatsBus:
                 log_unforeseen(log, f"bus {self._where}")
             finally:
                 self._outgoing.clear()
-                client, self._client = self._client, None
-                if client is not None:
-                    with contextlib.suppress(Exception):
-                        async with asyncio.timeout(FLUSH_S):
-                            await client.close()
             await asyncio.sleep(NATS_RETRY_S)
 
     async def _serve(self, receive: Receive) -> None:
@@ -310,8 +305,21 @@ class NatsBus:
             client = await self._connect(
                 log_fault, allow_reconnect=False, disconnected_cb=ended, closed_cb=ended
             )
-        self._client = client
-        check_version(self._where, client.connected_server_version)
+        try:
+            check_version(self._where, client.connected_server_version)
+            await self._subscribe(client, receive)
+            self._client = client
+            self._said.clear()
+            await self._send_until_lost(client, lost)
+        finally:
+            self._client = None
+            with contextlib.suppress(Exception):
+                async with asyncio.timeout(FLUSH_S):
+                    await client.close()
+        raise OSError("the connection is lost")
+
+    async def _subscribe(self, client: Any, receive: Receive) -> None:
+        """Return when the server knows what this gateway listens to: what is said before is not heard."""
         cut = len(self._prefix) + 1
 
         async def hear(message: Any) -> None:
@@ -320,7 +328,9 @@ class NatsBus:
         for subject in self._subjects:
             # Each has a queue of its own: no stop waits behind positions.
             await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-        self._said.clear()
+        await client.flush(FLUSH_S)
+
+    async def _send_until_lost(self, client: Any, lost: asyncio.Event) -> None:
         sending = asyncio.create_task(self._send(client))
         losing = asyncio.create_task(_disconnection(client, lost))
         try:
@@ -331,7 +341,6 @@ class NatsBus:
             for task in (sending, losing):
                 task.cancel()
             await asyncio.gather(sending, losing, return_exceptions=True)
-        raise OSError("the connection is lost")
 
     async def _send(self, client: Any) -> None:
         while True:

@@ -36,6 +36,7 @@ from robot_bridge.gateway.cluster.messages import (
     in_batches,
 )
 from robot_bridge.gateway.storage.database import read_address
+from tests.support.faults.proxy import Proxy
 from tests.support.patience import BUSY
 
 KEY = b"k" * 32
@@ -206,6 +207,40 @@ async def test_what_is_said_while_the_server_is_away_is_not_sent_when_it_is_back
     assert "connecting again until it works" in caplog.text
     task.cancel()
     await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_it_is_connected_only_when_the_server_knows_what_it_listens_to(nats):
+    heard, connected = [], []
+    with Proxy(nats.port) as proxy:
+
+        class Delayed(NatsBus):
+            async def _connect(self, *how, **options):
+                client = await super()._connect(*how, **options)
+                if not connected:
+                    proxy.stall()
+                connected.append(client)
+                return client
+
+        one, other = (
+            NatsBus([nats.url], "a", "fleet.f3"),
+            Delayed([f"nats://127.0.0.1:{proxy.port}"], "b", "fleet.f3"),
+        )
+        tasks = [
+            asyncio.create_task(one.run(lambda *_: None)),
+            asyncio.create_task(other.run(lambda *message: heard.append(message))),
+        ]
+        try:
+            await until(lambda: one.connected and connected)
+            await asyncio.sleep(0.5)
+            assert not other.connected
+            proxy.forward()
+            await until(lambda: other.connected)
+            assert one.publish(STOP, b"a stop")
+            await until(lambda: heard == [(STOP, b"a stop")])
+        finally:
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
 
 
 @pytest.mark.parametrize("how", ["it says nothing of it", "what is sent fails"])
