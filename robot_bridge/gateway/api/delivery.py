@@ -20,9 +20,8 @@ from ...core.messages.json_values import to_json
 from ...core.messages.robots import PAYLOADS, Abort, SetMap
 from ...protocol.codec import parse_params, with_base64
 from ..fleet.emergency_persistence import HELD_BACK
-from ..fleet.outbox import Reader
 from ..fleet.service import Fleet
-from ..storage.repositories.requests import AnswerRow
+from ..storage.repositories.requests import AnswerRow, Outbox
 
 
 class Channel(Protocol):
@@ -101,7 +100,7 @@ class Delivery:
         self._stopping: set[asyncio.Task[None]] = set()
 
     @property
-    def reader(self) -> Reader:
+    def reader(self) -> Outbox:
         """The answers to read for the robot: what comes behind what it was sent."""
         return self._robot, self._last[False], self._last[True]
 

@@ -23,6 +23,7 @@ from ..storage.repositories import requests as answers
 from ..storage.repositories.commands import StoredCommand
 from ..storage.repositories.queues import QueueHold
 from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
+from ..storage.rows import BatchedWork, do_together
 from .active_command import ActiveCommand, CommandOrder, Recall, because, note
 
 # --- How commands and their messages in SA are written, in one transaction; called in the database's thread
@@ -88,10 +89,17 @@ def insert_commands(
     return WrittenCommands(issued, changed)
 
 
-def write_steps(connection: Connection, steps: Sequence[ActiveCommand]) -> None:
+def _write_all_steps(
+    connection: Connection, asked: Sequence[tuple[Sequence[ActiveCommand]]]
+) -> Sequence[None]:
     """Write the newest step of commands; what ended takes its message out of SA."""
+    steps = [command for (some,) in asked for command in some]
     commands.save_all(connection, [_stored(command) for command in steps])
     answers.remove_answers(connection, [c.sa_id for c in steps if not c.report.state.is_open])
+    return [None] * len(asked)
+
+
+write_steps = BatchedWork(_write_all_steps)
 
 
 def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[ActiveCommand]:
@@ -113,13 +121,15 @@ def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]
     return {r.queued.sa_id for r in recalls if r.queued.sa_id in by_robot[r.queued.report.robot]}
 
 
-def write_acknowledged(
-    connection: Connection, robot: str, sa_id: int | None, steps: Sequence[ActiveCommand]
-) -> None:
-    """Write what a robot's OpAck of message ``sa_id`` changes, and take that out of SA."""
-    if sa_id is not None:
-        answers.remove_own(connection, robot, sa_id)
-    write_steps(connection, steps)
+def _write_all_acknowledged(
+    connection: Connection, asked: Sequence[tuple[str, int | None, Sequence[ActiveCommand]]]
+) -> Sequence[None]:
+    """Write what robots' OpAcks of messages in SA change, and take those out of SA."""
+    answers.remove_own(connection, [(robot, sa_id) for robot, sa_id, _ in asked if sa_id is not None])
+    return _write_all_steps(connection, [(steps,) for _, _, steps in asked])
+
+
+write_acknowledged = BatchedWork(_write_all_acknowledged)
 
 
 def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> CommandReport | None:
@@ -128,7 +138,7 @@ def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> Com
     A robot may have read the message of a command that ended while it was on its way: then its log says so,
     once, and is returned.
     """
-    answers.remove_own(connection, robot, sa_id)
+    answers.remove_own(connection, [(robot, sa_id)])
     stored = commands.find_message(connection, robot, sa_id)
     if stored is None or stored.report.state.is_open or any(s.by == robot for s in stored.report.steps):
         return None
@@ -157,7 +167,7 @@ def write_again(
     write_steps(connection, ended)
     again = sorted(again, key=lambda command: command.sa_id)
     answers.remove_answers(connection, [command.sa_id for command in again])
-    answers.remove_kinds(connection, robot, [*FORGOTTEN, *answers.ORDERS])
+    answers.remove_kinds(connection, [robot], [*FORGOTTEN, *answers.ORDERS])
     answers.add_answers(connection, [(robot, message) for message in welcome])
     ids = answers.add_numbered(connection, [(c.report.robot, c.message) for c in again])
     renewed = [dataclasses.replace(command, sa_id=id) for command, id in zip(again, ids, strict=True)]
@@ -301,7 +311,7 @@ class RobotLocks:
         try:
             if self._fence is SOLE_FENCE:
                 return await self._database.run(work, *arguments)
-            return await self._database.run(_fenced, self._fence, sorted(set(names)), work, *arguments)
+            return await self._database.run(_fenced, self._fence, list(names), work, arguments)
         except UncertainError:
             self._doubts += 1
             raise
@@ -312,11 +322,20 @@ class RobotLocks:
             await self._database.read(self._fence.check, names)
 
 
-def _fenced(
-    connection: Connection, fence: OwnerFence, names: Sequence[str], work: Callable[..., T], *arguments: Any
-) -> T:
-    fence.check(connection, names)
-    return work(connection, *arguments)
+def _do_fenced(
+    connection: Connection, asked: Sequence[tuple[OwnerFence, Sequence[str], Callable[..., Any], Any]]
+) -> list[Any]:
+    """Do what each asks for as ``(fence, robots, work, arguments)``; raises FencedError for all of them."""
+    robots: dict[OwnerFence, set[str]] = {}
+    for fence, names, *_ in asked:
+        robots.setdefault(fence, set()).update(names)
+    for fence, some in robots.items():
+        fence.check(connection, sorted(some))
+    done = do_together(connection, [(work, arguments) for *_, work, arguments in asked])
+    return [result for _, result in sorted(done, key=lambda one: one.number)]
+
+
+_fenced = BatchedWork(_do_fenced)
 
 
 # --- What a robot says of its commands, in its order: acknowledgements stored, positions judged behind them

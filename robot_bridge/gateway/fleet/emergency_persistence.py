@@ -321,8 +321,7 @@ def _write_stop(stop: StopRow, connection: Connection) -> None:
 
 
 def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:
-    for robot in robots:
-        requests.remove_kinds(connection, robot, HELD_BACK)
+    requests.remove_kinds(connection, robots, HELD_BACK)
 
 
 def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
@@ -332,8 +331,7 @@ def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
     except ProgrammingError as error:
         # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
         log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
-        for robot in robots:
-            requests.remove_kinds(connection, robot, HELD_BACK)
+        requests.remove_kinds(connection, robots, HELD_BACK)
     requests.add_answers(connection, [(robot, Abort(emergency=True)) for robot in robots])
 
 

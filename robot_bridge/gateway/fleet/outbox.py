@@ -15,16 +15,14 @@ from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import requests as answers
 from ..storage.repositories import trajectories
-from ..storage.repositories.requests import AnswerRow
+from ..storage.repositories.requests import AnswerRow, Outbox
 from ..storage.repositories.trajectories import PackedFix
+from ..storage.rows import BatchedWork
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_persistence import HELD_BACK
 from .emergency_stop import EmergencyStops
 
 # --- What comes of robots' requests, and how it is written: answers into SA, and requests out of RR ---
-
-Reader = tuple[str, int, int]
-"""A robot, and what it was sent last: the ids of a message and of an urgent one."""
 
 WHOLE_SITE = SetMap(b"")
 """The map of the whole site for a robot that reads no rows itself: what delivers it has the map at hand.
@@ -91,8 +89,11 @@ def finish_requests(
     fixes: Sequence[PackedFix],
 ) -> None:
     """Write what comes of requests, and where robots were, and delete the requests."""
+    void: defaultdict[str, set[str]] = defaultdict(set)
     for outcome in outcomes:
-        remove_voided(connection, outcome.robot, outcome.voided())
+        void[outcome.robot].update(outcome.voided())
+    answers.remove_void(connection, void)
+    for outcome in outcomes:
         if request_ids and outcome.admitted and isinstance(outcome.answer, SetMap):
             # It may have come over another link before, and is to read the rows itself from now on.
             answers.fill_maps(connection, outcome.robot, outcome.answer.map)
@@ -101,24 +102,35 @@ def finish_requests(
     answers.remove_requests(connection, request_ids)
 
 
+def _finish_all(
+    connection: Connection, asked: Sequence[tuple[Sequence[RequestOutcome], Sequence[tuple[str, Answer]]]]
+) -> Sequence[None]:
+    """Write what comes of requests that were made over no table, without where robots were."""
+    outcomes: list[RequestOutcome] = []
+    rows: list[tuple[str, Answer]] = []
+    for more, their_rows in asked:
+        # What comes of a robot's second request may make the answer to its first one void.
+        if {one.robot for one in more} & {one.robot for one in outcomes}:
+            finish_requests(connection, outcomes, rows, [], [])
+            outcomes, rows = [], []
+        outcomes += more
+        rows += their_rows
+    finish_requests(connection, outcomes, rows, [], [])
+    return [None] * len(asked)
+
+
+finish_calls = BatchedWork(_finish_all)
+
+
 def finish_and_read(
     connection: Connection,
     outcomes: Sequence[RequestOutcome],
     rows: Sequence[tuple[str, Answer]],
-    reader: Reader,
+    reader: Outbox,
 ) -> list[AnswerRow]:
     """Write what comes of requests, and return what then waits for one robot."""
     finish_requests(connection, outcomes, rows, [], [])
     return answers.read_answers(connection, *reader)
-
-
-def remove_voided(connection: Connection, robot: str, kinds: Sequence[str]) -> None:
-    """Delete the robot's answers of ``kinds``; of maps those that nothing waits behind which needs one."""
-    others = [kind for kind in kinds if kind != SetMap.__name__]
-    if len(others) < len(kinds):
-        answers.remove_maps(connection, robot)
-    if others:
-        answers.remove_kinds(connection, robot, others)
 
 
 def read_requests(connection: Connection, sent: Sequence[int]) -> tuple[list[answers.RequestRow], set[int]]:
@@ -152,7 +164,7 @@ class RobotOutboxes:
         self._saving = saving
         self._events: dict[str, asyncio.Event] = {}
         self._changes: Counter[str] = Counter()
-        self._fresh: dict[str, tuple[Reader, list[AnswerRow]]] = {}
+        self._fresh: dict[str, tuple[Outbox, list[AnswerRow]]] = {}
         """what was read as an answer was written, until anything else is written for that robot."""
         self.parts: asyncio.Queue[str] = asyncio.Queue()
         """the robots for which a map of a part of the site was stored in place of the whole one."""
@@ -172,7 +184,7 @@ class RobotOutboxes:
         reader = robot, after, after_urgent
         read, rows = self._fresh.pop(robot, (None, []))
         if read != reader:
-            rows = await self._database.read(answers.read_answers, *reader)
+            rows = await self._database.read(answers.read_outbox, *reader)
         return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
 
     async def hand_over(self, robot: str, id: int) -> bool:
@@ -225,7 +237,7 @@ class RobotOutboxes:
         request_ids: list[int],
         *,
         acks: bool,
-        reader: Reader | None = None,
+        reader: Outbox | None = None,
     ) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
 
@@ -244,10 +256,10 @@ class RobotOutboxes:
                 # It may have waited for long: where the robot was then must not be in memory alone.
                 await self._saving.jot_with(finish_requests, outcomes, rows, request_ids)
             elif not all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes):
-                await self._database.run(finish_requests, outcomes, rows, request_ids, [])
+                await self._database.run(finish_calls, outcomes, rows)
             # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
             elif reader is None:
-                await self._database.jot(finish_requests, outcomes, rows, request_ids, [])
+                await self._database.jot(finish_calls, outcomes, rows)
             else:
                 changes = self._changes[reader[0]]
                 read = await self._database.jot(finish_and_read, outcomes, rows, reader)

@@ -20,6 +20,7 @@ from ...core.errors import DataRefusedError, StoreError, UncertainError
 from . import revisions
 from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
 from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_blocking_sessions
+from .rows import WorkDone, do_together
 from .wakeups import GATEWAY_CHANNEL, AdaptiveWakeup, LogWakeup, NotifiedWakeup, PollingWakeup, Wakeup
 
 # --- Where a database is: reading its URL, and writing it so that no password is in it ---
@@ -117,8 +118,9 @@ Outcome = tuple[DatabaseJob, Any, BaseException | None]
 
 
 class DatabaseWorker:
-    """Does jobs in the order they came. What waits together is committed together, and fails by itself.
+    """Does jobs in the order they came, batched work with the first of its kind.
 
+    What waits together is committed together, told in the order in which it was done, and fails by itself.
     A transaction that the database gave up, or whose connection turned out to be dead before its commit, is
     done again: work changes nothing but the database.
     """
@@ -192,13 +194,12 @@ class DatabaseWorker:
     def _do(self, jobs: list[DatabaseJob]) -> list[Outcome]:
         began = time.monotonic()
         try:
-            results = self._insist(jobs)
-            return [(job, result, None) for job, result in zip(jobs, results, strict=True)]
+            return [(jobs[done.number], done.result, None) for done in self._insist(jobs)]
         except StoreError as error:
             # One piece of work may be at fault; but not each of them is to wait for the database as long.
             at_once = time.monotonic() - began < WRONG_AT_ONCE_S
-            one_is_wrong = self._connection is not None and at_once
-            if len(jobs) == 1 or not (one_is_wrong or isinstance(error, DataRefusedError)):
+            one_is_wrong = _is_of_work(error) or (at_once and self._connection is not None)
+            if len(jobs) == 1 or not one_is_wrong:
                 # A full disk takes no commit, and can be read.
                 reads = [job for job in jobs if job.mode is Durability.READ] if at_once else []
                 others = [job for job in jobs if job not in reads]
@@ -210,7 +211,7 @@ class DatabaseWorker:
                 return [(jobs[0], None, error)]
         return [outcome for job in jobs for outcome in self._do([job])]
 
-    def _insist(self, jobs: Sequence[DatabaseJob]) -> list[Any]:
+    def _insist(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""
         for attempt in range(1, ATTEMPTS + 1):
             fresh = self._connection is None
@@ -249,15 +250,16 @@ class DatabaseWorker:
             self._rest()
         return True
 
-    def _attempt(self, jobs: Sequence[DatabaseJob]) -> list[Any]:
+    def _attempt(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         connection = self._connected()
+        asked = [(job.work, job.arguments) for job in jobs]
         try:
             if jobs[0].alone:
-                found = [job.work(connection, *job.arguments) for job in jobs]
+                done = do_together(connection, asked)
                 self._rest()
-                return found
+                return done
             transaction = self._dialect.begin(connection, max(job.mode for job in jobs))
-            results = [job.work(connection, *job.arguments) for job in jobs]
+            done = do_together(connection, asked)
         except BaseException:
             self._roll_back(connection)
             raise
@@ -270,7 +272,7 @@ class DatabaseWorker:
             raise
         finally:
             self._rest()
-        return results
+        return done
 
     def _connected(self) -> Connection:
         if self._connection is None:
@@ -315,6 +317,11 @@ class DatabaseWorker:
         return f"database {self._where}: {self._dialect.cause(error)}; {self._dialect.advice}"
 
 
+def _is_of_work(error: StoreError) -> bool:
+    """Whether a piece of work, or a value of one, is what is wrong, and not the database."""
+    return isinstance(error, DataRefusedError) or not isinstance(error.__cause__, SQLAlchemyError)
+
+
 def _tell(outcomes: list[Outcome]) -> None:
     loops = {outcome[0].loop for outcome in outcomes}
     for loop in loops:
@@ -344,7 +351,8 @@ class Database:
 
     ``work`` is called as ``work(connection, *arguments)`` in the database's thread. Its transaction is
     committed when ``run`` returns and rolled back when it raises. It must do nothing but use the database:
-    where a transaction has to be done again, it is called again; work that waits together shares one.
+    where a transaction has to be done again, it is called again; work that waits together shares one, and
+    its statements where it is a :class:`.BatchedWork`.
 
     ``patience`` is how many seconds a statement may take; None is for work that takes long.
     """

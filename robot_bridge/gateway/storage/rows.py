@@ -1,4 +1,4 @@
-"""Rows in bulk: thousands written or read at once, old ones deleted a few at a time."""
+"""Rows in bulk: thousands written or read at once, work of many done together, old rows deleted in pieces."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import json
 import logging
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
-from typing import Any, TypeVar
+from typing import Any, Generic, NamedTuple, TypeVar
 
 from msgspec import ValidationError
 from sqlalchemy import Column, ColumnElement, Connection, Table, delete, select
@@ -28,6 +28,50 @@ _DELETE_BY_KEY = (
 Row = tuple[Any, ...]
 T = TypeVar("T")
 R = TypeVar("R")
+
+
+class BatchedWork(Generic[T]):
+    """Work that is done in the same statements for all that wait for it; called, it is done for one.
+
+    ``do_all`` is given the arguments of each, and returns a result for each in that order. Where it raises,
+    nothing was done for anybody: it is called again for each by itself.
+    """
+
+    def __init__(self, do_all: Callable[[Connection, Sequence[Any]], Sequence[T]]) -> None:
+        self.do_all = do_all
+
+    def __call__(self, connection: Connection, *arguments: Any) -> T:
+        """Do it for one."""
+        (result,) = self.do_all(connection, [arguments])
+        return result
+
+
+class WorkDone(NamedTuple):
+    """What came of a piece of work, by its number."""
+
+    number: int
+    result: Any
+
+
+def do_together(
+    connection: Connection, asked: Sequence[tuple[Callable[..., Any], tuple[Any, ...]]]
+) -> list[WorkDone]:
+    """Do pieces of work in their order, those of one batched work at the place of the first of them.
+
+    Return what came of them in the order in which they were done.
+    """
+    together: dict[BatchedWork[Any], list[int]] = {}
+    for number, (work, _) in enumerate(asked):
+        if isinstance(work, BatchedWork):
+            together.setdefault(work, []).append(number)
+    done: list[WorkDone] = []
+    for number, (work, arguments) in enumerate(asked):
+        if not isinstance(work, BatchedWork):
+            done.append(WorkDone(number, work(connection, *arguments)))
+        elif numbers := together.pop(work, None):
+            results = work.do_all(connection, [asked[one][1] for one in numbers])
+            done += [WorkDone(*one) for one in zip(numbers, results, strict=True)]
+    return done
 
 
 def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]) -> Iterator[T]:
@@ -103,6 +147,15 @@ def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) ->
         _delete_rows(connection, table, "id", ids)
     elif ids:
         connection.exec_driver_sql(_DELETE_BY_KEY.format(table=table.name), (json.dumps(list(ids)),))
+
+
+def padded(values: Sequence[T]) -> list[T]:
+    """Return ``values`` for an IN, with the last one repeated until they are 1, 2, 4, 8 … of them.
+
+    Drivers and servers keep a statement ready for each number that comes up.
+    """
+    missing = (1 << (len(values) - 1).bit_length()) - len(values) if values else 0
+    return [*values, *values[-1:] * missing]
 
 
 def _delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:

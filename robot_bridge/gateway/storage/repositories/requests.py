@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import NamedTuple
 
 from sqlalchemy import (
@@ -27,7 +27,7 @@ from ....core.json_decoder import SHORT, DecodingError, decode_json
 from ....core.messages.base import LARGEST_MESSAGE
 from ....core.messages.json_values import to_json
 from ....core.messages.robots import COMMANDS, Abort, Answer, SetMap
-from ..rows import TOGETHER, Row, add_messages, delete_messages
+from ..rows import TOGETHER, BatchedWork, Row, add_messages, delete_messages, padded
 from ..schema import rr, sa
 
 # --- Table RR: robots insert, the gateway reads and deletes ---
@@ -146,11 +146,13 @@ _LATER = or_(
     and_(sa.c.urgent == 0, sa.c.id > bindparam("after")),
     and_(sa.c.urgent > 0, sa.c.id > bindparam("after_urgent")),
 )
-_READ_ANSWERS = (
-    select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
-    .where(sa.c.robot == bindparam("of"), _LATER)
-    .order_by(sa.c.urgent.desc(), sa.c.id)
+_ANSWER = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
+_READ_ANSWERS = _ANSWER.where(sa.c.robot == bindparam("of"), _LATER).order_by(sa.c.urgent.desc(), sa.c.id)
+_READ_THESE = _ANSWER.add_columns(sa.c.robot).where(sa.c.id.in_(bindparam("ids", expanding=True)))
+_OF_ROBOTS = select(sa.c.id, sa.c.robot, sa.c.urgent).where(
+    sa.c.robot.in_(bindparam("robots", expanding=True))
 )
+_ROBOT_OF = select(sa.c.id, sa.c.robot).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 _UNFILLED_MAPS = select(sa.c.id).where(
     sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None)
 )
@@ -162,11 +164,10 @@ _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 # Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
-_LAST_ORDER = select(func.max(sa.c.id)).where(sa.c.robot == bindparam("of"), sa.c.op.in_(ORDERS))
-_MAPS_BEHIND_ORDERS = select(sa.c.id).where(
-    sa.c.robot == bindparam("of"),
-    sa.c.op == SetMap.__name__,
-    sa.c.id > func.coalesce(_LAST_ORDER.scalar_subquery(), 0),
+_KINDS_OF_ROBOTS = (
+    select(sa.c.id, sa.c.robot, sa.c.op)
+    .where(sa.c.robot.in_(bindparam("robots", expanding=True)), sa.c.op.in_(bindparam("ops", expanding=True)))
+    .order_by(sa.c.id.desc())
 )
 
 
@@ -221,14 +222,50 @@ def read_answers(
     return [AnswerRow(*row[:4], urgent=bool(row[4])) for row in found]
 
 
+Outbox = tuple[str, int, int]
+"""A robot, and what it was sent last: the ids of a message and of an urgent one."""
+
+
+def _read_outboxes(connection: Connection, asked: Sequence[Outbox]) -> list[list[AnswerRow]]:
+    if len(asked) == 1:
+        return [read_answers(connection, *asked[0])]
+    # Of what was sent already the payload, which may be megabytes, is not to be read again.
+    oldest: dict[str, tuple[int, int]] = {}
+    for robot, *last in asked:
+        after, after_urgent = oldest.get(robot, last)
+        oldest[robot] = min(after, last[0]), min(after_urgent, last[1])
+    ids = [
+        row.id
+        for row in connection.execute(_OF_ROBOTS, {"robots": padded(list(oldest))})
+        if row.robot in oldest and row.id > oldest[row.robot][row.urgent > 0]
+    ]
+    found: dict[str, list[AnswerRow]] = {robot: [] for robot in oldest}
+    for begin in range(0, len(ids), AT_ONCE):
+        for row in connection.execute(_READ_THESE, {"ids": padded(ids[begin : begin + AT_ONCE])}):
+            found[row.robot].append(AnswerRow(*row[:4], urgent=bool(row.urgent)))
+    for rows in found.values():
+        rows.sort(key=lambda row: (not row.urgent, row.id))
+    return [[row for row in found[robot] if row.id > last[row.urgent]] for robot, *last in asked]
+
+
+read_outbox = BatchedWork(_read_outboxes)
+"""As :func:`read_answers`."""
+
+
 def remove_answers(connection: Connection, ids: Sequence[int]) -> None:
     """Delete answers that were delivered, or that are void."""
     delete_messages(connection, sa, ids)
 
 
-def remove_own(connection: Connection, robot: str, id: int) -> None:
-    """Delete answer ``id`` if it is the robot's own."""
-    connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
+def remove_own(connection: Connection, answers: Sequence[tuple[str, int]]) -> None:
+    """Delete answers by robot and id, if they are the robot's own."""
+    if len(answers) == 1:
+        connection.execute(_REMOVE_OWN, dict(zip(("of", "one"), answers[0], strict=True)))
+    elif answers:
+        # Found first, as the kinds below. A robot may have deleted some by then.
+        own = set(answers)
+        found = connection.execute(_ROBOT_OF, {"ids": padded([id for _, id in answers])})
+        remove_answers(connection, [id for id, robot in found if (robot, id) in own])
 
 
 def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
@@ -240,14 +277,32 @@ def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
     return {id for id in ids if connection.execute(_REMOVE_ONE, {"one": id}).rowcount}
 
 
-def remove_kinds(connection: Connection, robot: str, ops: Sequence[str]) -> None:
-    """Delete the robot's answers of the kinds ``ops``."""
-    remove_answers(connection, list(connection.scalars(_KINDS.where(sa.c.robot == robot), {"ops": ops})))
+def remove_kinds(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
+    """Delete the answers of the kinds ``ops`` for ``robots``."""
+    for begin in range(0, len(robots), TOGETHER):
+        some = {"robots": padded(robots[begin : begin + TOGETHER]), "ops": ops}
+        remove_answers(connection, list(connection.scalars(_KINDS_OF_ROBOTS, some)))
 
 
-def remove_maps(connection: Connection, robot: str) -> None:
-    """Delete the robot's maps, but for those that something waits behind which needs a map first."""
-    remove_answers(connection, list(connection.scalars(_MAPS_BEHIND_ORDERS, {"of": robot})))
+def remove_void(connection: Connection, void: Mapping[str, Collection[str]]) -> None:
+    """Delete the answers of the kinds that are ``void`` for each robot.
+
+    Of maps those that nothing waits behind which needs one.
+    """
+    ops = sorted({op for kinds in void.values() for op in kinds} | set(ORDERS))
+    robots = [robot for robot, kinds in void.items() if kinds]
+    for begin in range(0, len(robots), TOGETHER):
+        gone, needing = [], set()
+        # The newest first.
+        for id, robot, op in connection.execute(
+            _KINDS_OF_ROBOTS, {"robots": padded(robots[begin : begin + TOGETHER]), "ops": ops}
+        ):
+            kinds = void.get(robot, ())
+            if op in kinds and not (op == SetMap.__name__ and robot in needing):
+                gone.append(id)
+            if op in ORDERS:
+                needing.add(robot)
+        remove_answers(connection, gone)
 
 
 def fill_maps(connection: Connection, robot: str, content: bytes) -> None:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
+
 import pytest
 
 from robot_bridge.core.messages.robots import Abort
@@ -46,3 +49,11 @@ async def test_aborts_of_the_others_that_were_kept_are_stored(two, book):
         ("r2", "Abort")
     ]
     assert book._unstored.robots() == ["r1"]
+
+
+async def test_what_waits_for_the_database_beside_them_is_stored(two, book):
+    busy = two.database.run(lambda _: time.sleep(0.3))
+    ended = [book.give_up(robot, "gone") for robot in PATHS]
+    _, theirs, ours = await asyncio.gather(busy, *ended, return_exceptions=True)
+    assert isinstance(theirs, FencedError) and ours is None
+    assert await two.states() == {"path-r1": "acknowledged", "path-r2": "failed"}

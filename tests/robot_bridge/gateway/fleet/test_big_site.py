@@ -194,7 +194,7 @@ async def test_an_answer_goes_out_without_being_read_unless_more_was_written_mea
         assert [row.op for row in await boxes.outbox("r1", 0, 0)] == ["SetMap"]
         assert not looked
         (row,) = await boxes.outbox("r1", 0, 0)
-        assert row.payload == b"a map" and looked == [requests.read_answers]
+        assert row.payload == b"a map" and looked == [requests.read_outbox]
 
         await ask()
         assert await boxes.outbox("r1", 1000) == []

@@ -13,7 +13,8 @@ import pytest
 from sqlalchemy import insert, select, text
 
 from robot_bridge.core.errors import DataRefusedError, StoreError
-from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.database import WRONG_AT_ONCE_S, Database
+from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
 
 
@@ -121,6 +122,60 @@ async def test_work_that_waits_together_is_committed_together_and_fails_alone(da
     transactions.clear()
     await asyncio.gather(*(database.run(begun, f"s{n}") for n in range(10)))
     assert len(set(map(id, transactions))) < 10
+
+
+async def test_batched_work_that_waits_is_done_at_once_and_told_in_the_order_in_which_it_was_done(database):
+    calls, told = [], []
+
+    def add_all(connection, asked):
+        calls.append([robot for (robot,) in asked])
+        for (robot,) in asked:
+            add(connection, robot)
+        return [robot.upper() for (robot,) in asked]
+
+    async def ask(work, *arguments):
+        told.append(await database.run(work, *arguments))
+
+    batched = BatchedWork(add_all)
+    # What comes while the first is under way is done together.
+    await asyncio.gather(
+        ask(lambda _: time.sleep(0.3)), ask(batched, "r1"), ask(names), ask(batched, "r2"), ask(batched, "r3")
+    )
+    assert calls == [["r1", "r2", "r3"]]
+    # Who read what the others wrote hears of it after them.
+    assert told == [None, "R1", "R2", "R3", ["r1", "r2", "r3"]]
+
+
+async def test_batched_work_that_fails_for_one_is_done_for_each_of_the_others(database):
+    calls = []
+
+    def add_all(connection, asked):
+        calls.append(len(asked))
+        for (robot,) in asked:
+            add(connection, robot)
+        if ("r2",) in asked:
+            raise StoreError("r2 is another gateway's")
+        return [None] * len(asked)
+
+    batched = BatchedWork(add_all)
+    work = [partial(database.run, batched, f"r{n}") for n in range(5)]
+    sleep = partial(database.run, lambda _: time.sleep(0.3))
+    done = await asyncio.gather(sleep(), *(one() for one in work), return_exceptions=True)
+    assert [n - 1 for n, result in enumerate(done) if isinstance(result, StoreError)] == [2]
+    assert calls == [5, 1, 1, 1, 1, 1]
+    assert await database.run(names) == ["r0", "r1", "r3", "r4"]
+
+
+async def test_work_that_is_refused_fails_nobody_elses_though_the_database_is_slow(database):
+    def refuse(_):
+        raise StoreError("another gateway has the robot")
+
+    slow = partial(time.sleep, WRONG_AT_ONCE_S + 0.1)
+    # What comes while the first is under way is done together.
+    work = [lambda _: time.sleep(0.3), lambda _: slow(), refuse, partial(add, robot="r1")]
+    done = await asyncio.gather(*map(database.run, work), return_exceptions=True)
+    assert [isinstance(result, StoreError) for result in done] == [False, False, True, False]
+    assert await database.run(names) == ["r1"]
 
 
 async def test_a_statement_that_is_wrong_fails_nobody_elses_work(database):

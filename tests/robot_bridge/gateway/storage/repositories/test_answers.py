@@ -61,6 +61,43 @@ def test_what_was_sent_before_is_not_read_again_of_each_kind(connection, after, 
     assert ids(requests.read_answers(connection, "r1", after, after_urgent)) == left
 
 
+MARKS = [("r1", 0, 0), ("r2", 1, 0), ("r3", 6, 3), ("r1", 1, 9), ("nobody", 0, 0), ("r2", 5, 8)]
+
+
+@pytest.mark.parametrize("count", range(len(MARKS) + 1))
+def test_many_outboxes_are_read_at_once_as_each_by_itself(connection, count):
+    for answer in (TARGET, Abort(emergency=True), SetMap(b"map")):
+        requests.add_answers(connection, [(robot, answer) for robot in ("r1", "r2", "r3")])
+    asked = []
+    event.listen(connection, "before_cursor_execute", lambda *call: asked.append(call[2]))
+    found = requests.read_outbox.do_all(connection, MARKS[:count])
+    assert len(asked) <= 2
+    assert found == [requests.read_answers(connection, *mark) for mark in MARKS[:count]]
+    assert count < 4 or [len(rows) for rows in found[:4]] == [3, 3, 2, 1]
+
+
+def test_of_many_acknowledged_only_those_of_the_robot_itself_are_removed(connection):
+    requests.add_answers(connection, [("r1", TARGET), ("r2", TARGET), ("r1", Start()), ("r2", Start())])
+    requests.remove_own(connection, [("r1", 1), ("r1", 2), ("r2", 4), ("r2", 9), ("nobody", 3)])
+    assert ids(requests.read_answers(connection, "r1")) == [3]
+    assert ids(requests.read_answers(connection, "r2")) == [2]
+    requests.remove_own(connection, [])
+
+
+def test_void_answers_of_many_are_removed_but_for_a_map_that_an_order_waits_behind(connection):
+    waiting = [SetMap(b"1"), TARGET, Start(), SetMap(b"2"), Abort()]
+    requests.add_answers(connection, [(robot, one) for robot in ("r1", "r2", "r3", "r4") for one in waiting])
+    requests.remove_void(connection, {"r1": {"SetMap"}, "r2": {"SetMap", "Start"}, "r3": {"Start"}, "r4": ()})
+
+    def left(robot):
+        return [row.op for row in requests.read_answers(connection, robot)]
+
+    assert left("r1") == ["SetMap", "SetPosEnd", "Start", "Abort"]
+    assert left("r2") == ["SetMap", "SetPosEnd", "Abort"]
+    assert left("r3") == ["SetMap", "SetPosEnd", "SetMap", "Abort"]
+    assert left("r4") == ["SetMap", "SetPosEnd", "Start", "SetMap", "Abort"]
+
+
 def test_many_are_written_each_for_its_robot(connection):
     requests.add_answers(connection, [("r1", TARGET), ("r2", Abort(emergency=True))])
     requests.add_answers(connection, [])
@@ -85,8 +122,8 @@ def test_what_was_delivered_is_removed_and_nothing_else(connection):
 
 def test_a_robot_removes_only_its_own(connection):
     requests.add_numbered(connection, [("r1", TARGET), ("r1", TARGET), ("r2", TARGET)])
-    requests.remove_own(connection, "r1", 3)
-    requests.remove_own(connection, "r1", 1)
+    requests.remove_own(connection, [("r1", 3)])
+    requests.remove_own(connection, [("r1", 1)])
     assert (ids(requests.read_answers(connection, "r1")), ids(requests.read_answers(connection, "r2"))) == (
         [2],
         [3],
@@ -104,7 +141,7 @@ def test_kinds_are_removed_for_one_robot_or_for_all(connection):
     requests.add_numbered(
         connection, [(robot, one) for robot in ("r1", "r2") for one in (TARGET, Start(), Abort())]
     )
-    requests.remove_kinds(connection, "r1", ("SetPosEnd", "Start"))
+    requests.remove_kinds(connection, ["r1"], ("SetPosEnd", "Start"))
     assert [row.op for row in requests.read_answers(connection, "r1")] == ["Abort"]
     assert [row.op for row in requests.read_answers(connection, "r2")] == ["SetPosEnd", "Start", "Abort"]
     requests.remove_everywhere(connection, ("SetPosEnd", "Abort"))

@@ -25,7 +25,7 @@ async def test_a_map_that_a_robot_has_acknowledged_costs_little_to_delete(tmp_pa
     try:
         id = await database.run(requests.add, "r1", SetMap(MAP))
         empty_log(tmp_path / "fleet.db")
-        await database.run(requests.remove_own, "r1", id)
+        await database.run(requests.remove_own, [("r1", id)])
         assert await database.read(requests.read_answers, "r1") == []
         assert (tmp_path / "fleet.db-wal").stat().st_size < len(MAP) / 4
     finally:

@@ -57,7 +57,7 @@ async def gateways_turn(yard) -> float:
     try:
         await database.run(requests.read_requests)
         for robot in (MINE, OTHER):
-            await database.run(answers.remove_kinds, robot, ["Start"])
+            await database.run(answers.remove_kinds, [robot], ["Start"])
             await database.run(answers.add, robot, Abort())
         return time.monotonic() - began
     finally:
