@@ -154,8 +154,9 @@ def padded(values: Sequence[T]) -> list[T]:
 
     Drivers and servers keep a statement ready for each number that comes up.
     """
-    missing = (1 << (len(values) - 1).bit_length()) - len(values) if values else 0
-    return [*values, *values[-1:] * missing]
+    if not values:
+        return []
+    return [*values, *itertools.repeat(values[-1], (1 << (len(values) - 1).bit_length()) - len(values))]
 
 
 def _delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:

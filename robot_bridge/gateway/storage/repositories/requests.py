@@ -242,7 +242,8 @@ def _read_outboxes(connection: Connection, asked: Sequence[Outbox]) -> list[list
     found: dict[str, list[AnswerRow]] = {robot: [] for robot in oldest}
     for begin in range(0, len(ids), AT_ONCE):
         for row in connection.execute(_READ_THESE, {"ids": padded(ids[begin : begin + AT_ONCE])}):
-            found[row.robot].append(AnswerRow(*row[:4], urgent=bool(row.urgent)))
+            id, op, params, payload, urgent, robot = row
+            found[robot].append(AnswerRow(id, op, params, payload, bool(urgent)))
     for rows in found.values():
         rows.sort(key=lambda row: (not row.urgent, row.id))
     return [[row for row in found[robot] if row.id > last[row.urgent]] for robot, *last in asked]
