@@ -132,19 +132,37 @@ def _write_all_acknowledged(
 write_acknowledged = BatchedWork(_write_all_acknowledged)
 
 
-def write_late(connection: Connection, robot: str, sa_id: int, at: float) -> CommandReport | None:
-    """Take message ``sa_id``, which no open command waits for, out of SA.
+def _write_all_late(
+    connection: Connection, asked: Sequence[tuple[str, int, float]]
+) -> list[CommandReport | None]:
+    """Take messages, by robot, id and time, which no open command waits for, out of SA.
 
     A robot may have read the message of a command that ended while it was on its way: then its log says so,
-    once, and is returned.
+    once, and its report is what comes of it.
     """
-    answers.remove_own(connection, [(robot, sa_id)])
-    stored = commands.find_message(connection, robot, sa_id)
-    if stored is None or stored.report.state.is_open or any(s.by == robot for s in stored.report.steps):
+    messages = [(robot, sa_id) for robot, sa_id, _ in asked]
+    answers.remove_own(connection, messages)
+    found = commands.find_messages(connection, messages)
+    noted: list[StoredCommand] = []
+    reports: list[CommandReport | None] = []
+    for robot, sa_id, at in asked:
+        stored = found.get((robot, sa_id))
+        report = None if stored is None else _noted_late(stored.report, at)
+        if stored is not None and report is not None:
+            noted.append(stored._replace(report=report))
+            found[robot, sa_id] = noted[-1]
+        reports.append(report)
+    commands.save_all(connection, noted)
+    return reports
+
+
+write_late = BatchedWork(_write_all_late)
+
+
+def _noted_late(report: CommandReport, at: float) -> CommandReport | None:
+    if report.state.is_open or any(step.by == report.robot for step in report.steps):
         return None
-    report = note(stored.report, at, robot, "the robot had read it by then, and acknowledged it")
-    commands.save_all(connection, [stored._replace(report=report)])
-    return report
+    return note(report, at, report.robot, "the robot had read it by then, and acknowledged it")
 
 
 def write_again(

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Select, bindparam, delete, func, insert, sele
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
-from ..rows import beside_the_time, delete_oldest, readable
+from ..rows import beside_the_time, delete_oldest, padded, readable
 from ..schema import command_steps, commands
 
 # --- Commands and every step of their lives ---
@@ -31,8 +31,9 @@ _SAVE = (
     )
 )
 _BY_ID = select(commands).where(commands.c.id.in_(bindparam("ids", expanding=True)))
-_BY_MESSAGE = select(commands).where(
-    commands.c.robot == bindparam("of"), commands.c.sa_id == bindparam("message")
+_BY_MESSAGES = select(commands).where(
+    commands.c.robot.in_(bindparam("robots", expanding=True)),
+    commands.c.sa_id.in_(bindparam("messages", expanding=True)),
 )
 _STEPS = (
     select(command_steps)
@@ -91,7 +92,7 @@ def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
 
 def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
     """Return those of some commands that are stored, by their ids."""
-    found = _load(connection, _BY_ID, {"ids": list(ids)}) if ids else []
+    found = _load(connection, _BY_ID, {"ids": padded(ids)}) if ids else []
     return {command.report.command: command for command in found}
 
 
@@ -101,9 +102,16 @@ def find(connection: Connection, command: str) -> CommandReport | None:
     return None if found is None else found.report
 
 
-def find_message(connection: Connection, robot: str, sa_id: int) -> StoredCommand | None:
-    """Return the robot's command whose message is, or was, row ``sa_id`` of SA."""
-    return next(iter(_load(connection, _BY_MESSAGE, {"of": robot, "message": sa_id})), None)
+def find_messages(
+    connection: Connection, messages: Sequence[tuple[str, int]]
+) -> dict[tuple[str, int], StoredCommand]:
+    """Return the commands of robots whose ``messages`` are, or were, those rows of SA, by robot and id."""
+    if not messages:
+        return {}
+    robots, ids = (padded(sorted(set(some))) for some in zip(*messages, strict=True))
+    # Both are in the index; of the robots' commands with another one's number nothing is returned.
+    found = _load(connection, _BY_MESSAGES, {"robots": robots, "messages": ids})
+    return {key: command for command in found if (key := (command.report.robot, command.sa_id)) in messages}
 
 
 def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
@@ -160,7 +168,7 @@ def _load(
 ) -> list[StoredCommand]:
     rows = connection.execute(query, values).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
-    found = connection.execute(_STEPS, {"commands": list(steps)}).mappings() if rows else ()
+    found = connection.execute(_STEPS, {"commands": padded(list(steps))}).mappings() if rows else ()
     for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
         steps[command].append(step)
     return list(
@@ -229,15 +237,17 @@ class GivenTrack(NamedTuple):
     state: CommandState
 
 
+_LAST_OF = (
+    select(commands.c.op, commands.c.params, commands.c.state)
+    .where(commands.c.robot == bindparam("of"), commands.c.op.in_(bindparam("ops", expanding=True)))
+    .order_by(commands.c.created_at.desc(), commands.c.sa_id.desc())
+    .limit(1)
+)
+
+
 def last_given_track(connection: Connection, robot: str, ops: Sequence[str]) -> GivenTrack | None:
     """Return the robot's newest command of ``ops``."""
-    query = (
-        select(commands.c.op, commands.c.params, commands.c.state)
-        .where(commands.c.robot == robot, commands.c.op.in_(ops))
-        .order_by(commands.c.created_at.desc(), commands.c.sa_id.desc())
-        .limit(1)
-    )
-    row = connection.execute(query).one_or_none()
+    row = connection.execute(_LAST_OF, {"of": robot, "ops": ops}).one_or_none()
     return None if row is None else GivenTrack(row[0], decode_json(row[1]), CommandState(row[2]))
 
 

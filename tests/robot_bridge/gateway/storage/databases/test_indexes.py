@@ -15,7 +15,7 @@ from robot_bridge.gateway.storage.repositories.trajectories import PageMark, Tra
 LONG = {"commands", "command_steps", "queue_tasks", "placements", "trajectories", "observations", "audit"}
 """Tables that grow."""
 QUESTIONS = {
-    "the message of a late acknowledgement": (commands.find_message, "r1", 7),
+    "the message of a late acknowledgement": (commands.find_messages, [("r1", 7), ("r2", 8), ("r3", 9)]),
     "what is open": (commands.still_open,),
     "the newest commands": (commands.newest, None, 200),
     "the newest commands of a robot": (commands.newest, "r1", 200),
