@@ -195,6 +195,8 @@ class TrajectoryWriter:
         self._complained: set[str] = set()
         """robots of which the log was told that something cannot be stored."""
         self._writing = asyncio.Lock()
+        self._begun = self._done = 0
+        """how often robots were written: the number of the last time, and of the last one that succeeded."""
 
     def begin(self, robots: Iterable[str]) -> None:
         """Go on with ``robots``, which an earlier gateway stored."""
@@ -225,7 +227,7 @@ class TrajectoryWriter:
         Whoever waits meanwhile for robots of his own has them stored together with all others.
         """
         self._unsaved.update(robots)
-        await to_its_end(self._save(robots))
+        await to_its_end(self._save(self._begun if robots else None))
 
     async def jot_with(self, work: Callable[..., None], *arguments: Any) -> None:
         """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
@@ -250,10 +252,11 @@ class TrajectoryWriter:
             if fixes:
                 self._jotted.append((session, fixes))
 
-    async def _save(self, robots: Sequence[str]) -> None:
+    async def _save(self, begun: int | None) -> None:
+        """Store robots; those who wait for some of which no more had been written than ``begun`` says."""
         async with self._writing:
-            if robots and self._unsaved.isdisjoint(robots):
-                # Stored by whoever had the turn before.
+            if begun is not None and self._done > begun:
+                # Written by whoever had the turn before, since this was asked for.
                 return
             self._take_back()
             while True:
@@ -261,6 +264,7 @@ class TrajectoryWriter:
                 last, unsaved = not self._recorder.waiting, set[str]()
                 if last:
                     unsaved, self._unsaved = self._unsaved, set()
+                    self._begun += 1
                 try:
                     # As they are now: by the time they are written they may be further on than is stored.
                     known = [
@@ -271,6 +275,8 @@ class TrajectoryWriter:
                     self._recorder.give_back(fixes)
                     self._unsaved |= unsaved
                     raise
+                if last:
+                    self._done = self._begun
                 self._removed |= written.removed
                 self._stored.update(row[0] for row in known if row[0] not in written.refused)
                 self._stored -= written.removed

@@ -216,6 +216,29 @@ async def test_robots_that_are_to_be_stored_at_once_are_stored_together(yard, da
     assert stored == sorted(names)
 
 
+async def test_robots_that_drive_on_meanwhile_are_not_stored_once_for_each_who_waits(
+    yard, database, monkeypatch
+):
+    names, run, times = [f"r{number}" for number in range(2, 22)], database.run, []
+
+    async def counted(work, *arguments):
+        times.append(work)
+        done = await run(work, *arguments)
+        for name in names:
+            yard.saving.touch(name)
+        return done
+
+    monkeypatch.setattr(database, "run", counted)
+    for name in names:
+        yard.robots.ready(name, 1, "websocket", 0.0)
+    first = asyncio.create_task(yard.saving.save(names[0]))
+    await asyncio.sleep(0)
+    # These come while the first is being stored, and wait for what is stored next.
+    await asyncio.gather(first, *map(yard.saving.save, names[1:]))
+    assert len(times) <= 2
+    assert await run(stored_robots.names) == sorted(names)
+
+
 async def test_a_robot_whose_turn_failed_is_stored_in_the_next_ones(yard, database, monkeypatch):
     run, times = database.run, []
 
