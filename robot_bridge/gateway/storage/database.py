@@ -120,7 +120,8 @@ Outcome = tuple[DatabaseJob, Any, BaseException | None]
 class DatabaseWorker:
     """Does jobs in the order they came, batched work with the first of its kind.
 
-    What waits together is committed together, told in the order in which it was done, and fails by itself.
+    What waits together is committed together, told in the order in which it was done, and fails by itself:
+    it is done again by halves.
     A transaction that the database gave up, or whose connection turned out to be dead before its commit, is
     done again: work changes nothing but the database.
     """
@@ -209,7 +210,8 @@ class DatabaseWorker:
         except BaseException as error:
             if len(jobs) == 1:
                 return [(jobs[0], None, error)]
-        return [outcome for job in jobs for outcome in self._do([job])]
+        half = len(jobs) // 2
+        return [*self._do(jobs[:half]), *self._do(jobs[half:])]
 
     def _insist(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""

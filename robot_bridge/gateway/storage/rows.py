@@ -34,7 +34,7 @@ class BatchedWork(Generic[T]):
     """Work that is done in the same statements for all that wait for it; called, it is done for one.
 
     ``do_all`` is given the arguments of each, and returns a result for each in that order. Where it raises,
-    nothing was done for anybody: it is called again for each by itself.
+    nothing was done for anybody: it is called again for fewer.
     """
 
     def __init__(self, do_all: Callable[[Connection, Sequence[Any]], Sequence[T]]) -> None:
