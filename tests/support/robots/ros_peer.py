@@ -71,6 +71,11 @@ endforeach()
 list(FILTER AMENT_EXTENSIONS_rosidl_generate_idl_interfaces EXCLUDE REGEX "_(LEFT_OUT):")
 rosidl_generate_interfaces(${PROJECT_NAME} INTERFACES
   DEPENDENCIES std_msgs geometry_msgs nav_msgs builtin_interfaces action_msgs)
+# Each message has a source of its own, and to read their headers takes most of the compiler's time.
+foreach(kind c fastrtps_c introspection_c)
+  set_target_properties(${PROJECT_NAME}__rosidl_typesupport_${kind}
+    PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 0)
+endforeach()
 ament_package()
 """
 _PACKAGE = """<?xml version="1.0"?>
@@ -133,9 +138,11 @@ def _make(folder: Path) -> None:
     for program in ("cmake", "c++"):
         if shutil.which(program) is None:
             raise StageError(f"ROS 2 nodes for tests need {program}: install cmake and g++")
-    run_peer(sys.executable, "-m", "venv", folder)
+    run_peer(sys.executable, "-m", "venv", "--without-pip", folder)
     python = folder / "bin" / "python"
-    run_peer(python, "-m", "pip", "install", "--quiet", "--no-input", *PACKAGES)
+    # What is imported is compiled then: few of the modules of messages are.
+    install = ("install", "--quiet", "--no-input", "--no-compile", *PACKAGES)
+    run_peer(sys.executable, "-m", "pip", "--python", python, *install)
     _mend_paths(folder)
     files = {f"msg/{name}.msg": text for name, text in MESSAGES.items()}
     files |= {f"action/{name}.action": text for name, text in ACTIONS.items()}
