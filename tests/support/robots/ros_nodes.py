@@ -18,6 +18,7 @@ from tests.support.processes import Processes
 from tests.support.robots.ros_peer import DISTRIBUTION
 
 ROBOT = Path(__file__).parent / "ros_robot.py"
+SHORT_LEASE = ROBOT.with_name("short_lease.xml")
 DOMAINS = range(1, 102)
 """Those whose ports lie below the ephemeral ones."""
 FIRST_PORT, PORTS = 7410, 250
@@ -73,15 +74,19 @@ class Nodes:
         domain: int | None = None,
         node: str | None = None,
         through: Sequence[str] = (),
+        short_lease: bool = False,
     ) -> None:
         """Start a robot, in the domain of this module or another; wait until it says that it is up.
 
         ``node`` is the name of its topics, where several nodes are to have the same ones; ``through`` begins
-        the command, where it is to run on a network of its own.
+        the command, where it is to run on a network of its own. With a ``short_lease`` it counts as gone
+        6 s after it was ended, else after 20 s.
         """
         number = self._started[name] = self._started.get(name, 0) + 1
         log = f"{name}-{number}"
         environment, words = self.environment(domain), [node or name, *options]
+        if short_lease:
+            environment["FASTDDS_DEFAULT_PROFILES_FILE"] = str(SHORT_LEASE)
         if through:
             environment["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "SUBNET"
             self._processes.start(log, [*through, self._python, ROBOT, *words], env=environment)

@@ -99,7 +99,7 @@ def test_who_joins_late_is_told_what_is_latched(here, types, nodes):
 
 
 def test_who_leaves_is_forgotten(here, nodes):
-    nodes.start("r3")
+    nodes.start("r3", short_lease=True)
     until(here, lambda: offered(here, "rt/r3/odom"))
     nodes.end("r3")
     until(here, lambda: not offered(here, "rt/r3/odom"))
