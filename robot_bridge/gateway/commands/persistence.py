@@ -89,17 +89,20 @@ def insert_commands(
     return WrittenCommands(issued, changed)
 
 
-def _write_all_steps(
-    connection: Connection, asked: Sequence[tuple[Sequence[ActiveCommand]]]
-) -> Sequence[None]:
-    """Write the newest step of commands; what ended takes its message out of SA."""
-    steps = [command for (some,) in asked for command in some]
-    commands.save_all(connection, [_stored(command) for command in steps])
-    answers.remove_answers(connection, [c.sa_id for c in steps if not c.report.state.is_open])
-    return [None] * len(asked)
+class _WriteSteps(BatchedWork[None]):
+    """The newest step of commands; what ended takes its message out of SA."""
+
+    def do_all(
+        self, connection: Connection, asked: Sequence[tuple[Sequence[ActiveCommand]]]
+    ) -> Sequence[None]:
+        """Write the steps that each asks for."""
+        steps = [command for (some,) in asked for command in some]
+        commands.save_all(connection, [_stored(command) for command in steps])
+        answers.remove_answers(connection, [c.sa_id for c in steps if not c.report.state.is_open])
+        return [None] * len(asked)
 
 
-write_steps = BatchedWork(_write_all_steps)
+write_steps = _WriteSteps()
 
 
 def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[ActiveCommand]:
@@ -121,42 +124,48 @@ def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]
     return {r.queued.sa_id for r in recalls if r.queued.sa_id in by_robot[r.queued.report.robot]}
 
 
-def _write_all_acknowledged(
-    connection: Connection, asked: Sequence[tuple[str, int | None, Sequence[ActiveCommand]]]
-) -> Sequence[None]:
-    """Write what robots' OpAcks of messages in SA change, and take those out of SA."""
-    answers.remove_own(connection, [(robot, sa_id) for robot, sa_id, _ in asked if sa_id is not None])
-    return _write_all_steps(connection, [(steps,) for _, _, steps in asked])
+class _WriteAcknowledged(BatchedWork[None]):
+    """What robots' OpAcks of messages in SA change; those are taken out of SA."""
+
+    def do_all(
+        self, connection: Connection, asked: Sequence[tuple[str, int | None, Sequence[ActiveCommand]]]
+    ) -> Sequence[None]:
+        """Write what each OpAck changes: robot, message and steps."""
+        answers.remove_own(connection, [(robot, sa_id) for robot, sa_id, _ in asked if sa_id is not None])
+        return write_steps.do_all(connection, [(steps,) for _, _, steps in asked])
 
 
-write_acknowledged = BatchedWork(_write_all_acknowledged)
+write_acknowledged = _WriteAcknowledged()
 
 
-def _write_all_late(
-    connection: Connection, asked: Sequence[tuple[str, int, float]]
-) -> list[CommandReport | None]:
-    """Take messages, by robot, id and time, which no open command waits for, out of SA.
+class _WriteLate(BatchedWork[CommandReport | None]):
+    """Messages that no open command waits for, taken out of SA.
 
     A robot may have read the message of a command that ended while it was on its way: then its log says so,
     once, and its report is what comes of it.
     """
-    messages = [(robot, sa_id) for robot, sa_id, _ in asked]
-    answers.remove_own(connection, messages)
-    found = commands.find_messages(connection, messages)
-    noted: list[StoredCommand] = []
-    reports: list[CommandReport | None] = []
-    for robot, sa_id, at in asked:
-        stored = found.get((robot, sa_id))
-        report = None if stored is None else _noted_late(stored.report, at)
-        if stored is not None and report is not None:
-            noted.append(stored._replace(report=report))
-            found[robot, sa_id] = noted[-1]
-        reports.append(report)
-    commands.save_all(connection, noted)
-    return reports
+
+    def do_all(
+        self, connection: Connection, asked: Sequence[tuple[str, int, float]]
+    ) -> list[CommandReport | None]:
+        """Take the message of each, by robot, id and time."""
+        messages = [(robot, sa_id) for robot, sa_id, _ in asked]
+        answers.remove_own(connection, messages)
+        found = commands.find_messages(connection, messages)
+        noted: list[StoredCommand] = []
+        reports: list[CommandReport | None] = []
+        for robot, sa_id, at in asked:
+            stored = found.get((robot, sa_id))
+            report = None if stored is None else _noted_late(stored.report, at)
+            if stored is not None and report is not None:
+                noted.append(stored._replace(report=report))
+                found[robot, sa_id] = noted[-1]
+            reports.append(report)
+        commands.save_all(connection, noted)
+        return reports
 
 
-write_late = BatchedWork(_write_all_late)
+write_late = _WriteLate()
 
 
 def _noted_late(report: CommandReport, at: float) -> CommandReport | None:
@@ -340,20 +349,25 @@ class RobotLocks:
             await self._database.read(self._fence.check, names)
 
 
-def _do_fenced(
-    connection: Connection, asked: Sequence[tuple[OwnerFence, Sequence[str], Callable[..., Any], Any]]
-) -> list[Any]:
-    """Do what each asks for as ``(fence, robots, work, arguments)``; raises FencedError for all of them."""
-    robots: dict[OwnerFence, set[str]] = {}
-    for fence, names, *_ in asked:
-        robots.setdefault(fence, set()).update(names)
-    for fence, some in robots.items():
-        fence.check(connection, sorted(some))
-    done = do_together(connection, [(work, arguments) for *_, work, arguments in asked])
-    return [result for _, result in sorted(done, key=lambda one: one.number)]
+class _Fenced(BatchedWork[Any]):
+    """Work on robots that this gateway has."""
+
+    def do_all(
+        self,
+        connection: Connection,
+        asked: Sequence[tuple[OwnerFence, Sequence[str], Callable[..., Any], Any]],
+    ) -> list[Any]:
+        """Do what each asks for as ``(fence, robots, work, arguments)``; raises FencedError for all."""
+        robots: dict[OwnerFence, set[str]] = {}
+        for fence, names, *_ in asked:
+            robots.setdefault(fence, set()).update(names)
+        for fence, some in robots.items():
+            fence.check(connection, sorted(some))
+        done = do_together(connection, [(work, arguments) for *_, work, arguments in asked])
+        return [result for _, result in sorted(done, key=lambda one: one.number)]
 
 
-_fenced = BatchedWork(_do_fenced)
+_fenced = _Fenced()
 
 
 # --- What a robot says of its commands, in its order: acknowledgements stored, positions judged behind them

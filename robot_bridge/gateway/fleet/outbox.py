@@ -102,24 +102,29 @@ def finish_requests(
     answers.remove_requests(connection, request_ids)
 
 
-def _finish_all(
-    connection: Connection, asked: Sequence[tuple[Sequence[RequestOutcome], Sequence[tuple[str, Answer]]]]
-) -> Sequence[None]:
-    """Write what comes of requests that were made over no table, without where robots were."""
-    outcomes: list[RequestOutcome] = []
-    rows: list[tuple[str, Answer]] = []
-    for more, their_rows in asked:
-        # What comes of a robot's second request may make the answer to its first one void.
-        if {one.robot for one in more} & {one.robot for one in outcomes}:
-            finish_requests(connection, outcomes, rows, [], [])
-            outcomes, rows = [], []
-        outcomes += more
-        rows += their_rows
-    finish_requests(connection, outcomes, rows, [], [])
-    return [None] * len(asked)
+class _FinishCalls(BatchedWork[None]):
+    """What comes of requests that were made over no table, without where robots were."""
+
+    def do_all(
+        self,
+        connection: Connection,
+        asked: Sequence[tuple[Sequence[RequestOutcome], Sequence[tuple[str, Answer]]]],
+    ) -> Sequence[None]:
+        """Write what comes of the requests of each, with the rows for SA."""
+        outcomes: list[RequestOutcome] = []
+        rows: list[tuple[str, Answer]] = []
+        for more, their_rows in asked:
+            # What comes of a robot's later request may make the answer to an earlier one void.
+            if {one.robot for one in more} & {one.robot for one in outcomes}:
+                finish_requests(connection, outcomes, rows, [], [])
+                outcomes, rows = [], []
+            outcomes += more
+            rows += their_rows
+        finish_requests(connection, outcomes, rows, [], [])
+        return [None] * len(asked)
 
 
-finish_calls = BatchedWork(_finish_all)
+finish_calls = _FinishCalls()
 
 
 def finish_and_read(

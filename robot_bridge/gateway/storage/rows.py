@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import json
 import logging
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, Generic, NamedTuple, TypeVar
@@ -30,15 +31,15 @@ T = TypeVar("T")
 R = TypeVar("R")
 
 
-class BatchedWork(Generic[T]):
-    """Work that is done in the same statements for all that wait for it; called, it is done for one.
+class BatchedWork(ABC, Generic[T]):
+    """Work that is done in the same statements for all that wait for it; called, it is done for one."""
 
-    ``do_all`` is given the arguments of each, and returns a result for each in that order. Where it raises,
-    nothing was done for anybody: it is called again for fewer.
-    """
+    @abstractmethod
+    def do_all(self, connection: Connection, asked: Sequence[Any]) -> Sequence[T]:
+        """Do it for some, of which ``asked`` has the arguments of each; return a result for each.
 
-    def __init__(self, do_all: Callable[[Connection, Sequence[Any]], Sequence[T]]) -> None:
-        self.do_all = do_all
+        Where this raises nothing was done for anybody: it is called again for fewer.
+        """
 
     def __call__(self, connection: Connection, *arguments: Any) -> T:
         """Do it for one."""

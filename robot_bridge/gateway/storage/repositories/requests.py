@@ -226,31 +226,34 @@ Outbox = tuple[str, int, int]
 """A robot, and what it was sent last: the ids of a message and of an urgent one."""
 
 
-def _read_outboxes(connection: Connection, asked: Sequence[Outbox]) -> list[list[AnswerRow]]:
-    if len(asked) == 1:
-        return [read_answers(connection, *asked[0])]
-    # Of what was sent already the payload, which may be megabytes, is not to be read again.
-    oldest: dict[str, tuple[int, int]] = {}
-    for robot, *last in asked:
-        after, after_urgent = oldest.get(robot, last)
-        oldest[robot] = min(after, last[0]), min(after_urgent, last[1])
-    ids = [
-        row.id
-        for row in connection.execute(_OF_ROBOTS, {"robots": padded(list(oldest))})
-        if row.robot in oldest and row.id > oldest[row.robot][row.urgent > 0]
-    ]
-    found: dict[str, list[AnswerRow]] = {robot: [] for robot in oldest}
-    for begin in range(0, len(ids), AT_ONCE):
-        for row in connection.execute(_READ_THESE, {"ids": padded(ids[begin : begin + AT_ONCE])}):
-            id, op, params, payload, urgent, robot = row
-            found[robot].append(AnswerRow(id, op, params, payload, bool(urgent)))
-    for rows in found.values():
-        rows.sort(key=lambda row: (not row.urgent, row.id))
-    return [[row for row in found[robot] if row.id > last[row.urgent]] for robot, *last in asked]
+class _ReadOutbox(BatchedWork[list[AnswerRow]]):
+    """As :func:`read_answers`."""
+
+    def do_all(self, connection: Connection, asked: Sequence[Outbox]) -> list[list[AnswerRow]]:
+        """Return the answers that wait for each."""
+        if len(asked) == 1:
+            return [read_answers(connection, *asked[0])]
+        # Of what was sent already the payload, which may be megabytes, is not to be read again.
+        oldest: dict[str, tuple[int, int]] = {}
+        for robot, *last in asked:
+            after, after_urgent = oldest.get(robot, last)
+            oldest[robot] = min(after, last[0]), min(after_urgent, last[1])
+        ids = [
+            row.id
+            for row in connection.execute(_OF_ROBOTS, {"robots": padded(list(oldest))})
+            if row.robot in oldest and row.id > oldest[row.robot][row.urgent > 0]
+        ]
+        found: dict[str, list[AnswerRow]] = {robot: [] for robot in oldest}
+        for begin in range(0, len(ids), AT_ONCE):
+            for row in connection.execute(_READ_THESE, {"ids": padded(ids[begin : begin + AT_ONCE])}):
+                id, op, params, payload, urgent, robot = row
+                found[robot].append(AnswerRow(id, op, params, payload, bool(urgent)))
+        for rows in found.values():
+            rows.sort(key=lambda row: (not row.urgent, row.id))
+        return [[row for row in found[robot] if row.id > last[row.urgent]] for robot, *last in asked]
 
 
-read_outbox = BatchedWork(_read_outboxes)
-"""As :func:`read_answers`."""
+read_outbox = _ReadOutbox()
 
 
 def remove_answers(connection: Connection, ids: Sequence[int]) -> None:

@@ -124,45 +124,42 @@ async def test_work_that_waits_together_is_committed_together_and_fails_alone(da
     assert len(set(map(id, transactions))) < 10
 
 
-async def test_batched_work_that_waits_is_done_at_once_and_told_in_the_order_in_which_it_was_done(database):
-    calls, told = [], []
+class AddAll(BatchedWork):
+    """Adds rows of robots but for those that are refused, and notes for which it was asked at once."""
 
-    def add_all(connection, asked):
-        calls.append([robot for (robot,) in asked])
+    def __init__(self, refused=()):
+        self.calls, self.refused = [], refused
+
+    def do_all(self, connection, asked):
+        self.calls.append([robot for (robot,) in asked])
         for (robot,) in asked:
             add(connection, robot)
+            if robot in self.refused:
+                raise StoreError(f"{robot} is another gateway's")
         return [robot.upper() for (robot,) in asked]
+
+
+async def test_batched_work_that_waits_is_done_at_once_and_told_in_the_order_in_which_it_was_done(database):
+    work, told = AddAll(), []
 
     async def ask(work, *arguments):
         told.append(await database.run(work, *arguments))
 
-    batched = BatchedWork(add_all)
     # What comes while the first is under way is done together.
     await asyncio.gather(
-        ask(lambda _: time.sleep(0.3)), ask(batched, "r1"), ask(names), ask(batched, "r2"), ask(batched, "r3")
+        ask(lambda _: time.sleep(0.3)), ask(work, "r1"), ask(names), ask(work, "r2"), ask(work, "r3")
     )
-    assert calls == [["r1", "r2", "r3"]]
+    assert work.calls == [["r1", "r2", "r3"]]
     # Who read what the others wrote hears of it after them.
     assert told == [None, "R1", "R2", "R3", ["r1", "r2", "r3"]]
 
 
 async def test_batched_work_that_fails_for_one_is_done_for_the_others_by_halves(database):
-    calls = []
-
-    def add_all(connection, asked):
-        calls.append(len(asked))
-        for (robot,) in asked:
-            add(connection, robot)
-        if ("r2",) in asked:
-            raise StoreError("r2 is another gateway's")
-        return [None] * len(asked)
-
-    batched = BatchedWork(add_all)
-    work = [partial(database.run, batched, f"r{n}") for n in range(5)]
-    sleep = partial(database.run, lambda _: time.sleep(0.3))
-    done = await asyncio.gather(sleep(), *(one() for one in work), return_exceptions=True)
-    assert [n - 1 for n, result in enumerate(done) if isinstance(result, StoreError)] == [2]
-    assert calls == [5, 2, 3, 1, 2]
+    work = AddAll(refused=["r2"])
+    asked = [database.run(lambda _: time.sleep(0.3)), *(database.run(work, f"r{n}") for n in range(5))]
+    done = await asyncio.gather(*asked, return_exceptions=True)
+    assert [isinstance(result, StoreError) for result in done] == [False] * 3 + [True] + [False] * 2
+    assert list(map(len, work.calls)) == [5, 2, 3, 1, 2]
     assert await database.run(names) == ["r0", "r1", "r3", "r4"]
 
 
