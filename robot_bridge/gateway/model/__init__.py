@@ -1,1 +1,1 @@
-"""Model of the fleet, without I/O: robots, clocks, arrival, states of commands, queues of tasks."""
+"""Model of the fleet, without I/O: robots and their positions, clocks, arrival, commands, queues of tasks."""

@@ -1,16 +1,15 @@
-"""Checks of reported positions against the site and speed, and course over ground where none is reported."""
+"""Reported positions: which are believed and which are newer, and the course where none is reported."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple, Protocol
 
 from ...core.messages.base import SPEED
 from ...core.messages.robots import SendGPS, SendPos
 from ...core.sites.frame import SiteBounds
 from ...core.sites.settings import SettingsSource
-from .robots import AcceptedArea, Robot
 
 # --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was
 
@@ -34,6 +33,27 @@ class Leap:
     at: float
 
 
+class AcceptedArea(NamedTuple):
+    """Where a place needs no second look: within limits of the site frame, and a ``step`` along each axis
+    from where the robot was a moment ago; metres.
+    """
+
+    x_min: float
+    y_min: float
+    x_max: float
+    y_max: float
+    step: float
+
+
+class PlacedRobot(Protocol):
+    """What has to be known of a robot: its newest pose, when that came, and whether it is of this run."""
+
+    name: str
+    pose: SendPos | None
+    pose_at: float | None
+    located: bool
+
+
 class PlaceChecks:
     """Judges the places that robots say; it keeps for each robot the leap that is not believed yet."""
 
@@ -41,7 +61,7 @@ class PlaceChecks:
         self._site = site
         self._leaps: dict[str, Leap] = {}
 
-    def fault(self, robot: Robot, place: Place, now: float) -> str | None:
+    def fault(self, robot: PlacedRobot, place: Place, now: float) -> str | None:
         """Return why the robot is not at ``place``, metres in the site frame, None where it may be there."""
         settings = self._site.settings
         limits = settings.limits
@@ -74,7 +94,7 @@ class PlaceChecks:
             limits.leap_m / math.sqrt(2),
         )
 
-    def _leap(self, robot: Robot, here: Place, place: Place, now: float, leap_m: float) -> str | None:
+    def _leap(self, robot: PlacedRobot, here: Place, place: Place, now: float, leap_m: float) -> str | None:
         leap = self._leaps.get(robot.name)
         if leap is None or math.dist(leap.place, place) > _reach(leap_m, leap.at, now):
             leap = self._leaps[robot.name] = Leap(place, now, now)
@@ -97,6 +117,81 @@ def distance_beyond(place: Place, bounds: SiteBounds) -> float:
 
 def _reach(leap_m: float, since: float, now: float) -> float:
     return leap_m + SPEED[1] * max(now - since, 0.0)
+
+
+# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+
+CLOCK_SET_BACK_AFTER = 3.0
+"""seconds of nothing but late poses, on the link of the newest one and at the pace of a clock, after which
+the robot's clock must have been set back: within one link messages do not overtake each other."""
+LONGEST_DELAY = 30.0
+"""seconds of nothing but late poses after which they count whatever their pace and link: no link holds
+messages back for longer, and a robot must not stand still on the map for ever."""
+PACE = (0.5, 1.5)
+"""seconds of the robot's clock for each second of the gateway's that still pass for a clock; what was kept
+back and is now sent in one go comes faster."""
+
+
+@dataclass
+class _LateRun:
+    """Late poses since the last one that counted; ``paced_*`` is where their pace is measured from."""
+
+    since: float
+    paced_since: float
+    paced_stamp: float
+
+
+@dataclass
+class PoseOrder:
+    """The stamps of a robot's newest pose, by its own clocks, and the link that it came on."""
+
+    fix_t: float | None = None
+    t: float | None = None
+    link: str = ""
+    _late: _LateRun | None = None
+
+    def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
+        """Tell whether a pose with these stamps counts, and take it for the newest if so.
+
+        ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
+        or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
+        without any stamp counts as it comes.
+        """
+        if fix_t is not None or t is None or (self.t is not None and t < self.t):
+            stamp = self._late_by(fix_t, t)
+            if stamp is not None and not self._set_back(stamp, link, now):
+                return False
+        self.fix_t = self.fix_t if fix_t is None else fix_t
+        self.t = self.t if t is None else t
+        self.link = link
+        self._late = None
+        return True
+
+    def restarted(self) -> None:
+        """Forget the robot's own clock: a robot that started again may count from nought."""
+        self.t = self._late = None
+
+    def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
+        """Return the stamp by which a pose is late, or None for one that is not."""
+        if fix_t is not None and self.fix_t is not None and fix_t != self.fix_t:
+            return fix_t if fix_t < self.fix_t else None
+        return t if t is not None and self.t is not None and t < self.t else None
+
+    def _set_back(self, stamp: float, link: str, now: float) -> bool:
+        """Tell whether poses have been late for so long that it must be the robot's clock."""
+        run = self._late
+        if run is None or now < run.since:
+            self._late = _LateRun(now, now, stamp)
+            return False
+        if now - run.since >= LONGEST_DELAY:
+            return True
+        elapsed = now - run.paced_since
+        if elapsed < CLOCK_SET_BACK_AFTER:
+            return False
+        if PACE[0] * elapsed <= stamp - run.paced_stamp <= PACE[1] * elapsed:
+            return link == self.link
+        run.paced_since, run.paced_stamp = now, stamp
+        return False
 
 
 # --- Course and speed over ground, for robots whose GPS says only where they are ---

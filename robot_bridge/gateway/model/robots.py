@@ -12,8 +12,9 @@ from ...core.messages.positions import RobotReport, link_elsewhere
 from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
-from .clocks import LEAST_BEHIND, UNKNOWN_AGE, ClockStep, PoseOrder
+from .clocks import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from .events import EventBus, RobotReturned
+from .position_checks import AcceptedArea, PoseOrder
 
 # --- How far the knowledge of a robot can be trusted, from the age of its last message ---
 
@@ -42,18 +43,6 @@ Report = TypeVar("Report")
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
-
-
-class AcceptedArea(NamedTuple):
-    """Where a place needs no second look: within limits of the site frame, and a ``step`` along each axis
-    from where the robot was a moment ago; metres.
-    """
-
-    x_min: float
-    y_min: float
-    x_max: float
-    y_max: float
-    step: float
 
 
 class ReportedElsewhere(NamedTuple):
@@ -316,7 +305,7 @@ class Robots:
         return robot
 
     def observe(self, name: str, pose: SendPos, link: str, now: float, *, waited: bool = False) -> bool:
-        """Take in a pose; return false for a late one (see :mod:`.clocks`), which moves nothing.
+        """Take in a pose; return false for a late one (see :class:`.PoseOrder`), which moves nothing.
 
         One that has ``waited`` says where the robot was.
         """

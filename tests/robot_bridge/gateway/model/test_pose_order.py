@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.gateway.model.clocks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY, PoseOrder
+from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY, PoseOrder
 
 
 @pytest.fixture
