@@ -28,10 +28,9 @@ from qgis.PyQt.QtCore import QObject
 from ..robot_bridge.core.clock import steady_time
 from .gateway_client.fleet_state import FleetState
 from .gateway_client.robot_table import STATES
-from .layers.crs import check_transform
 from .layers.road_surfaces import SurfaceStore
 from .layers.roles import ROAD_SURFACE
-from .layers.site_transform import frame_of
+from .layers.site_transform import check_transform, frame_of
 from .ui.errors import FleetError
 from .ui.language import tr, tr_page
 from .ui.scheduling import UpdateScheduler

@@ -20,10 +20,9 @@ from qgis.core import (
     QgsVectorLayer,
 )
 
-from ..layers.crs import check_transform, line_of
 from ..layers.layer_expressions import FeatureFilter
 from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
-from ..layers.site_transform import SiteToMapTransform, transform_or_raise
+from ..layers.site_transform import SiteToMapTransform, check_transform, line_of, transform_or_raise
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
 from ..ui.scheduling import Steps

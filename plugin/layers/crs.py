@@ -1,18 +1,12 @@
-"""The site CRS, the site frame of a project, and transforms of single and of many points."""
+"""The CRS that carries the site, and the site frame of a project."""
 
 from __future__ import annotations
 
 import math
-import struct
 from collections.abc import Sequence
 
-import numpy as np
 from qgis.core import (
     QgsCoordinateReferenceSystem,
-    QgsCoordinateTransform,
-    QgsCsException,
-    QgsGeometry,
-    QgsPointXY,
     QgsProject,
     QgsUnitTypes,
 )
@@ -20,68 +14,6 @@ from qgis.core import (
 from ...robot_bridge.core.sites.frame import SiteFrame, utm_zone_of
 from ..ui.errors import SiteCrsError
 from ..ui.language import tr
-
-# --- Whether anything is known of how two CRSs lie to one another ---
-
-
-def check_transform(way: QgsCoordinateTransform) -> None:
-    """Refuse a ``way`` of which nothing is known, such as one from or to the metres of a local CRS.
-
-    QGIS leaves coordinates as they are there: degrees become metres. Where an end has no CRS at all nothing
-    is to be done, and that is no error.
-
-    :raises QgsCsException: when both ends have a CRS and no operation leads from one to the other.
-    """
-    if way.sourceCrs().isValid() and way.destinationCrs().isValid() and not way.isValid():
-        raise QgsCsException(tr("nothing is known of how the two lie to each other"))
-
-
-# --- Many coordinates through one transform, together and not point by point ---
-
-_LINE_HEADER = struct.Struct("<BII")
-_POINT_HEADER = struct.Struct("<BI")
-_POINT, _LINE_STRING = 1, 2
-
-
-def line_of(xy: np.ndarray) -> QgsGeometry:
-    """Return (n, 2) coordinates as a line, a single one as a point; an object for each would be slow."""
-    head = _POINT_HEADER.pack(1, _POINT) if len(xy) == 1 else _LINE_HEADER.pack(1, _LINE_STRING, len(xy))
-    geometry = QgsGeometry()
-    geometry.fromWkb(head + xy.astype("<f8").tobytes())
-    return geometry
-
-
-def transform_points(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
-    """Return (n, 2) coordinates through ``transform``.
-
-    :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite,
-        and when nothing is known of how the CRSs lie to each other.
-    """
-    check_transform(transform)
-    if len(xy) == 0 or transform.isShortCircuited():
-        return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
-    # A line string of one point is none, so the first point goes twice.
-    geometry = line_of(np.concatenate([xy[:1], xy]))
-    geometry.transform(transform)
-    return np.frombuffer(geometry.asWkb().data(), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
-
-
-def transform_points_or_nan(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
-    """Return (n, 2) coordinates through ``transform``, not finite where the target CRS has no place."""
-    try:
-        return transform_points(xy, transform)
-    except QgsCsException:
-        return np.array([_moved_alone(x, y, transform) for x, y in xy.tolist()])
-
-
-def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple[float, float]:
-    try:
-        check_transform(transform)
-        point = transform.transform(QgsPointXY(x, y))
-    except QgsCsException:
-        return float("nan"), float("nan")
-    return point.x(), point.y()
-
 
 # --- Which CRS carries the site, and which CRSs cannot ---
 

@@ -27,11 +27,11 @@ from ...robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...robot_bridge.core.sites.frame import utm_zone_of
 from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
-from .crs import check_site_crs, transform_points_or_nan
+from .crs import check_site_crs
 from .layer_source import LayerWatch, ObstacleSource, obstacle_sources
 from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
-from .site_transform import SiteGeoreference
+from .site_transform import SiteGeoreference, transform_points_or_nan
 
 # --- The road surfaces of layers, ready to be asked from any CRS ---
 

@@ -1,7 +1,8 @@
-"""Transforms of coordinates: layers to the site, the site to the map's CRS and back, positions as shown."""
+"""Transforms of coordinates: of many points, layers to the site, the site to the map and back, as shown."""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Protocol
@@ -28,14 +29,69 @@ from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..ui.errors import LayerCrsError, MapTransformError
 from ..ui.language import tr
-from .crs import (
-    check_transform,
-    crs_name,
-    is_engineering,
-    stated_crs,
-    transform_points,
-    transform_points_or_nan,
-)
+from .crs import crs_name, is_engineering, stated_crs
+
+# --- Whether anything is known of how two CRSs lie to one another ---
+
+
+def check_transform(way: QgsCoordinateTransform) -> None:
+    """Refuse a ``way`` of which nothing is known, such as one from or to the metres of a local CRS.
+
+    QGIS leaves coordinates as they are there: degrees become metres. Where an end has no CRS at all nothing
+    is to be done, and that is no error.
+
+    :raises QgsCsException: when both ends have a CRS and no operation leads from one to the other.
+    """
+    if way.sourceCrs().isValid() and way.destinationCrs().isValid() and not way.isValid():
+        raise QgsCsException(tr("nothing is known of how the two lie to each other"))
+
+
+# --- Many coordinates through one transform, together and not point by point ---
+
+_LINE_HEADER = struct.Struct("<BII")
+_POINT_HEADER = struct.Struct("<BI")
+_POINT, _LINE_STRING = 1, 2
+
+
+def line_of(xy: np.ndarray) -> QgsGeometry:
+    """Return (n, 2) coordinates as a line, a single one as a point; an object for each would be slow."""
+    head = _POINT_HEADER.pack(1, _POINT) if len(xy) == 1 else _LINE_HEADER.pack(1, _LINE_STRING, len(xy))
+    geometry = QgsGeometry()
+    geometry.fromWkb(head + xy.astype("<f8").tobytes())
+    return geometry
+
+
+def transform_points(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
+    """Return (n, 2) coordinates through ``transform``.
+
+    :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite,
+        and when nothing is known of how the CRSs lie to each other.
+    """
+    check_transform(transform)
+    if len(xy) == 0 or transform.isShortCircuited():
+        return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
+    # A line string of one point is none, so the first point goes twice.
+    geometry = line_of(np.concatenate([xy[:1], xy]))
+    geometry.transform(transform)
+    return np.frombuffer(geometry.asWkb().data(), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
+
+
+def transform_points_or_nan(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.ndarray:
+    """Return (n, 2) coordinates through ``transform``, not finite where the target CRS has no place."""
+    try:
+        return transform_points(xy, transform)
+    except QgsCsException:
+        return np.array([_moved_alone(x, y, transform) for x, y in xy.tolist()])
+
+
+def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple[float, float]:
+    try:
+        check_transform(transform)
+        point = transform.transform(QgsPointXY(x, y))
+    except QgsCsException:
+        return float("nan"), float("nan")
+    return point.x(), point.y()
+
 
 # --- From a layer's coordinates to metres in the site frame ---
 

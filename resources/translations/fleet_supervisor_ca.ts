@@ -2231,11 +2231,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/crs.py" />
-            <source>nothing is known of how the two lie to each other</source>
-            <translation>no se sap com es relacionen l'un amb l'altre</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/crs.py" />
             <source>without a name</source>
             <translation>sense nom</translation>
         </message>
@@ -3131,6 +3126,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>no és un lloc finit</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>no se sap com es relacionen l'un amb l'altre</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />

@@ -2231,11 +2231,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/crs.py" />
-            <source>nothing is known of how the two lie to each other</source>
-            <translation>no se sabe cómo se relacionan uno con otro</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/crs.py" />
             <source>without a name</source>
             <translation>sin nombre</translation>
         </message>
@@ -3131,6 +3126,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>no es un lugar finito</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>no se sabe cómo se relacionan uno con otro</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />

@@ -2222,11 +2222,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/crs.py" />
-            <source>nothing is known of how the two lie to each other</source>
-            <translation>nem tudható, hogyan fekszik a kettő egymáshoz képest</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/crs.py" />
             <source>without a name</source>
             <translation>név nélküli</translation>
         </message>
@@ -3111,6 +3106,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>nem véges hely</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>nothing is known of how the two lie to each other</source>
+            <translation>nem tudható, hogyan fekszik a kettő egymáshoz képest</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />

@@ -19,9 +19,8 @@ from ...control.messages import TITLE, MessageLabel, NoticeBody
 from ...gateway_client.connection_status import ConnectionPhase
 from ...gateway_client.fleet_state import FleetState
 from ...gateway_client.robot_states import RemovedRobots, RobotArrays
-from ...layers.crs import transform_points_or_nan
 from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
-from ...layers.site_transform import SiteToCanvas, SiteToMapTransform
+from ...layers.site_transform import SiteToCanvas, SiteToMapTransform, transform_points_or_nan
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import first_of, tr, tr_count
 from ...ui.scheduling import ONE_STEP, CooperativeTask, Steps, UpdateScheduler

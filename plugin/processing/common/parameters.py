@@ -32,10 +32,11 @@ from qgis.core import (
 
 from ....robot_bridge.core.robotmap.model import Window
 from ....robot_bridge.core.sites.frame import SiteFrame
-from ...layers.crs import check_transform, crs_name, frame_in_project, site_crs_for, stated_crs
+from ...layers.crs import crs_name, frame_in_project, site_crs_for, stated_crs
 from ...layers.layer_expressions import FeatureFilter
 from ...layers.layer_source import Setups
 from ...layers.roles import SUFFIXES, find_profile, read_profile, setup_of
+from ...layers.site_transform import check_transform
 from ...ui.errors import LayerTypeError
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters, advanced

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.layers import crs
+from fleet_supervisor.plugin.layers import site_transform
 from qgis.core import (
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransform,
@@ -27,7 +27,7 @@ def way(qgis_app):
 
 
 def test_those_with_a_place_are_moved_and_the_others_are_not_finite(qgis_app):
-    moved = crs.transform_points_or_nan(PLACES, way(qgis_app))
+    moved = site_transform.transform_points_or_nan(PLACES, way(qgis_app))
     assert np.isfinite(moved).all(axis=1).tolist() == THERE
     for (x, y), found in zip(PLACES[THERE], moved[THERE], strict=True):
         point = way(qgis_app).transform(QgsPointXY(x, y))
@@ -35,32 +35,32 @@ def test_those_with_a_place_are_moved_and_the_others_are_not_finite(qgis_app):
 
 
 def test_where_qgis_refuses_them_together_they_are_moved_one_by_one(qgis_app, monkeypatch):
-    together = crs.transform_points_or_nan(PLACES, way(qgis_app))
+    together = site_transform.transform_points_or_nan(PLACES, way(qgis_app))
 
     def refused(_xy, _transform):
         raise QgsCsException("no place")
 
-    monkeypatch.setattr(crs, "transform_points", refused)
-    alone = crs.transform_points_or_nan(PLACES, way(qgis_app))
+    monkeypatch.setattr(site_transform, "transform_points", refused)
+    alone = site_transform.transform_points_or_nan(PLACES, way(qgis_app))
     assert np.isfinite(alone).all(axis=1).tolist() == THERE
     np.testing.assert_allclose(alone[THERE], together[THERE], atol=1e-6)
 
 
 def test_one_point_and_none(qgis_app):
-    assert crs.transform_points_or_nan(PLACES[:1], way(qgis_app)).shape == (1, 2)
-    assert crs.transform_points_or_nan(PLACES[:0], way(qgis_app)).shape == (0, 2)
+    assert site_transform.transform_points_or_nan(PLACES[:1], way(qgis_app)).shape == (1, 2)
+    assert site_transform.transform_points_or_nan(PLACES[:0], way(qgis_app)).shape == (0, 2)
 
 
 def test_degrees_do_not_become_the_metres_of_a_crs_of_which_nothing_is_known(qgis_app):
     ends = (QgsCoordinateReferenceSystem("EPSG:4326"), QgsCoordinateReferenceSystem(YARD))
     nowhere = QgsCoordinateTransform(*ends, QgsProject.instance())
     with pytest.raises(QgsCsException):
-        crs.transform_points(PLACES, nowhere)
-    assert not np.isfinite(crs.transform_points_or_nan(PLACES, nowhere)).any()
+        site_transform.transform_points(PLACES, nowhere)
+    assert not np.isfinite(site_transform.transform_points_or_nan(PLACES, nowhere)).any()
 
 
 def test_where_an_end_has_no_crs_places_stay_as_they_are(qgis_app):
     ends = (QgsCoordinateReferenceSystem("EPSG:4326"), QgsCoordinateReferenceSystem())
     np.testing.assert_array_equal(
-        crs.transform_points(PLACES, QgsCoordinateTransform(*ends, QgsProject.instance())), PLACES
+        site_transform.transform_points(PLACES, QgsCoordinateTransform(*ends, QgsProject.instance())), PLACES
     )
