@@ -14,8 +14,7 @@ from qgis.PyQt.QtGui import QColor, QKeyEvent, QMouseEvent, QPainter, QPaintEven
 from qgis.PyQt.QtWidgets import QCheckBox, QComboBox, QDateTimeEdit, QGridLayout, QToolTip, QWidget
 
 from ...robot_bridge.core.messages.commands import CommandState
-from ..map.overlay.primitives import flat, lines
-from ..ui.glyphs import painting
+from ..ui.glyphs import flat, lines, painting
 from ..ui.language import date_and_time, tr
 from ..ui.steady_widgets import SteadyPushButton
 from .history import NO_MARKS, TimelineMark, TimelineMarks

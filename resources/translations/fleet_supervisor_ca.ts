@@ -3232,6 +3232,14 @@
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/grouped_robots.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrat com a densitat; amplieu el mapa per veure'l</numerusform>
+                <numerusform>%n robots aquí, mostrats com a densitat; amplieu el mapa per veure'ls un a un</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>{days:.0f} d</source>
@@ -3256,14 +3264,6 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· fora de línia</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/robots_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot aquí, mostrat com a densitat; amplieu el mapa per veure'l</numerusform>
-                <numerusform>%n robots aquí, mostrats com a densitat; amplieu el mapa per veure'ls un a un</numerusform>
-            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

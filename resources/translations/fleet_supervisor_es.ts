@@ -3232,6 +3232,14 @@
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/grouped_robots.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot aquí, mostrado como densidad; amplíe el mapa para verlo</numerusform>
+                <numerusform>%n robots aquí, mostrados como densidad; amplíe el mapa para verlos uno a uno</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>{days:.0f} d</source>
@@ -3256,14 +3264,6 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· sin conexión</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/robots_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot aquí, mostrado como densidad; amplíe el mapa para verlo</numerusform>
-                <numerusform>%n robots aquí, mostrados como densidad; amplíe el mapa para verlos uno a uno</numerusform>
-            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

@@ -3212,6 +3212,13 @@
             <source>± {accuracy:.2f} m</source>
             <translation>± {accuracy:.2f} m</translation>
         </message>
+        <message numerus="yes">
+            <location filename="../../plugin/map/overlay/grouped_robots.py" />
+            <source>%n robots here, shown as a density; zoom in to see each</source>
+            <translation>
+                <numerusform>%n robot itt, sűrűségként; nagyítson, hogy mindegyik látható legyen</numerusform>
+            </translation>
+        </message>
         <message>
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>{days:.0f} d</source>
@@ -3236,13 +3243,6 @@
             <location filename="../../plugin/map/overlay/labels.py" />
             <source>· offline</source>
             <translation>· offline</translation>
-        </message>
-        <message numerus="yes">
-            <location filename="../../plugin/map/overlay/robots_painter.py" />
-            <source>%n robots here, shown as a density; zoom in to see each</source>
-            <translation>
-                <numerusform>%n robot itt, sűrűségként; nagyítson, hogy mindegyik látható legyen</numerusform>
-            </translation>
         </message>
         <message>
             <location filename="../../plugin/map/overlay/task_painter.py" />

@@ -20,8 +20,9 @@ from ...gateway_client.command_cache import command_in_words
 from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView
 from ...ui.glyphs import STATE_COLOURS
 from ...ui.language import tr
+from .grouped_robots import BorderHints, DensityPainter, Hint
 from .labels import Labels, NamesPainter, age_in_words
-from .robots_painter import BorderHints, DensityPainter, Hint, RobotsPainter, circles, paint_circles
+from .robots_painter import RobotsPainter, circles, paint_circles
 from .scene import InView, MapScene, Screen, in_view, screen_of
 from .task_painter import PathsPainter, PendingCommandPainter
 from .trails import TrailImage, Trails

@@ -17,11 +17,24 @@ from qgis.PyQt.QtWidgets import QStyleOptionGraphicsItem, QWidget
 from ...control.fleet_controller import FleetController
 from ...control.pending_command import CONE, START, TARGETS, ApproachKind, PendingCommand
 from ...ui.errors import FleetError
-from ...ui.glyphs import CASING, PAPER, REFUSED, ROUTE, draw_cone, painting
+from ...ui.glyphs import (
+    CASING,
+    PAPER,
+    REFUSED,
+    ROUTE,
+    broken,
+    dashes,
+    draw_cone,
+    lines,
+    painting,
+    polygon,
+    ring,
+    route,
+)
 from ...ui.glyphs import CONE as QUEUE_MARKS_CONE
 from ...ui.language import tr
 from .labels import Labels
-from .primitives import CONE_TARGET, TARGET, Sprites, broken, dashes, lines, polygon, ring, route
+from .robots_painter import CONE_TARGET, TARGET, Sprites
 from .scene import MapScene, Screen, screen_image, screen_of
 
 MANY = 60

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
-from fleet_supervisor.plugin.map.overlay import primitives, task_painter
+from fleet_supervisor.plugin.map.overlay import robots_painter, task_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsPointXY
@@ -59,8 +59,8 @@ def test_ways_are_painted_where_they_lead_and_move_with_the_map(canvas, site):
 
 
 def test_ways_and_marks_are_drawn_before_they_are_painted(canvas, site, monkeypatch):
-    made, mark_atlas, route = [], primitives.mark_atlas, task_painter.route
-    monkeypatch.setattr(primitives, "mark_atlas", lambda *of: (made.append("marks"), mark_atlas(*of))[1])
+    made, mark_atlas, route = [], robots_painter.mark_atlas, task_painter.route
+    monkeypatch.setattr(robots_painter, "mark_atlas", lambda *of: (made.append("marks"), mark_atlas(*of))[1])
     monkeypatch.setattr(task_painter, "route", lambda *of: (made.append("way"), route(*of))[1])
     scene = scene_of(plans=[plan("r1", (20.0, 20.0), (100.0, 20.0)), plan("r2", (40.0, 70.0))])
     overlay = show(canvas, site, scene_of())

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_table import STATES
-from fleet_supervisor.plugin.map.overlay import primitives
+from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
@@ -50,8 +50,8 @@ def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
 
 def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
     overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
-    made, make = [], primitives.robot_atlas
-    monkeypatch.setattr(primitives, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
+    made, make = [], robots_painter.robot_atlas
+    monkeypatch.setattr(robots_painter, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
     scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST))
     overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
     assert made == [RobotState.LOST]
@@ -60,7 +60,7 @@ def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
 
 
 def test_states_differ_without_their_colours(qgis_app):
-    from fleet_supervisor.plugin.map.overlay.primitives import robot_atlas
+    from fleet_supervisor.plugin.map.overlay.robots_painter import robot_atlas
     from fleet_supervisor.plugin.ui.glyphs import CELL
 
     grey = QImage.Format.Format_Grayscale8

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from fleet_supervisor.plugin.map.overlay.primitives import segments
+from fleet_supervisor.plugin.ui.glyphs import segments
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
 

@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin import plugin as installed
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.map.overlay import task_painter
-from fleet_supervisor.plugin.map.overlay.primitives import drawn
+from fleet_supervisor.plugin.map.overlay.robots_painter import drawn
 from fleet_supervisor.plugin.map.overlay.scene import MapScene, Screen, SiteScene, TaskPath, screen_image
 from fleet_supervisor.plugin.map.overlay.task_painter import MANY, PathsImage
 from qgis.PyQt.QtGui import QImage, QPainter

@@ -1,0 +1,260 @@
+"""Robots that are not drawn one by one: arrows to those beyond the map's border, and the density of many."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import numpy.typing as npt
+from qgis.PyQt.QtCore import QPointF, QRectF, QSizeF
+from qgis.PyQt.QtGui import QImage, QPainter, QPixmap, QTransform
+
+from ....robot_bridge.core.messages.positions import Density
+from ....robot_bridge.core.messages.safety import RobotState
+from ...gateway_client.robot_table import STATES
+from ...layers.site_transform import SiteToMapTransform
+from ...ui.glyphs import PAPER, SELECTED, STATE_COLOURS, draw_arrow
+from ...ui.language import tr_count
+from .labels import Labels
+from .robots_painter import FORMAT, Sprites, cell, in_a_column, turned
+from .scene import InView, MapScene, Screen
+
+Points = npt.NDArray[np.float64]
+Rows = npt.NDArray[np.intp]
+
+# --- Arrows at the map's border to the robots beyond it ---
+
+ARROW_SIZE = 0.95
+"""In cells."""
+ARROW_TURNS = 40
+"""Directions that the arrows point in."""
+MARGIN = 14.0
+APART = 56.0
+"""Pixels of the border that share one arrow."""
+FIND_EVERY = 0.25
+"""Seconds for which the arrows and their numbers stay as they are unless the view moves."""
+_SLOTS = 10_000
+"""More than fit along any border."""
+_URGENT = np.array([1, 2, 3, 0])
+"""The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
+_BY_RANK = np.argsort(_URGENT)
+
+
+def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> QPixmap:
+    """Return the arrow at the map's border to a robot in ``state``, turned as in :func:`robot_atlas`."""
+    side = cell(pixel_ratio, ARROW_SIZE)
+    rim = SELECTED if is_chosen else PAPER
+    return in_a_column(
+        turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS)
+    )
+
+
+@dataclass(frozen=True)
+class Hint:
+    """One arrow: where, which way it points (radians clockwise from +x), and the rows it stands for."""
+
+    x: float
+    y: float
+    turn: float
+    rows: Rows
+
+    @cached_property
+    def area(self) -> tuple[float, float, float, float]:
+        """About what the arrow and its text cover: left, top, right, bottom."""
+        # A single robot has its name there, several their number.
+        inward, wide = (48.0, 44.0) if len(self.rows) == 1 else (24.0, 16.0)
+        x, y = self.x - inward * math.cos(self.turn), self.y - inward * math.sin(self.turn)
+        return min(x, self.x) - wide, min(y, self.y) - 14.0, max(x, self.x) + wide, max(y, self.y) + 14.0
+
+
+def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
+    """Return the arrows for the robots in rows ``beyond``; ``pixels`` (n, 2) is where each robot is."""
+    if len(beyond) == 0:
+        return []
+    middle = np.array([screen.width, screen.height]) / 2.0
+    way = pixels[beyond] - middle
+    reach = (middle - MARGIN) / np.maximum(np.abs(way), 1e-9)
+    at = middle + way * np.minimum(reach[:, 0], reach[:, 1])[:, None]
+    slot = np.round(at / APART).astype(np.intp)
+    _, of, count = np.unique(slot[:, 0] * _SLOTS + slot[:, 1], return_inverse=True, return_counts=True)
+    order = np.argsort(of, kind="stable")
+    first = np.cumsum(count) - count
+    x, y, dx, dy = np.add.reduceat(np.hstack([at, way])[order], first).T / count
+    groups = np.split(beyond[order], first[1:])
+    turns = np.arctan2(dy, dx)
+    return [Hint(*given) for given in zip(x.tolist(), y.tolist(), turns.tolist(), groups, strict=True)]
+
+
+class BorderHints:
+    """Finds the arrows a few times a second, and paints them from an atlas."""
+
+    def __init__(self, labels: Labels) -> None:
+        self._labels = labels
+        self._atlases: dict[tuple[int, bool], Sprites] = {}
+        self._ratio = 0.0
+        self._found_for: tuple[Screen, list[str]] | None = None
+        self._found_at = -np.inf
+        self.hints: list[Hint] = []
+        self._chosen: tuple[str, ...] | None = None
+        """For which selection it was made ready what is painted; None when it has to be made again."""
+        self._arrows: list[tuple[Sprites, Points, Rows]] = []
+        self._texts: list[tuple[QPointF, QPixmap]] = []
+
+    def find(self, placed: MapScene, view: InView, screen: Screen) -> None:
+        """Find the arrows for robots that are not in view, unless that was done just now."""
+        now, names = placed.scene.now, placed.scene.robots.names
+        is_new = self._found_for is None or self._found_for[0] != screen or self._found_for[1] != names
+        if not is_new and abs(now - self._found_at) < FIND_EVERY:
+            return
+        self._found_for, self._found_at = (screen, names), now
+        beyond = np.isfinite(view.pixels[:, 0])
+        beyond[view.rows] = False
+        self.hints, self._chosen = hints(view.pixels, np.flatnonzero(beyond), screen), None
+
+    def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
+        """Paint each arrow in its robots' colour, with their name or number."""
+        if self._chosen != placed.scene.chosen:
+            names, ranks = placed.scene.robots.names, _ranks(placed)
+            self._arrows = self._coloured(placed, screen) if self.hints else []
+            pressing = sorted(self.hints, key=lambda hint: -ranks[hint.rows].max())
+            texts = [_beside(self._labels, hint, names, screen) for hint in pressing]
+            self._texts = _apart(texts, screen.ratio)
+            self._chosen = placed.scene.chosen
+        for arrow, at, cells in self._arrows:
+            arrow.paint(painter, at, cells)
+        for place, text in self._texts:
+            painter.drawPixmap(place, text)
+
+    def _coloured(self, placed: MapScene, screen: Screen) -> list[tuple[Sprites, Points, Rows]]:
+        """Return for each colour the arrow, the places where it stands, and its cells."""
+        chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
+        rows = np.concatenate([hint.rows for hint in self.hints])
+        first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
+        states = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.state[rows]], first)]
+        is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
+        turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
+        cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
+        at = np.array([(hint.x, hint.y) for hint in self.hints])
+        found = []
+        for state, to_chosen in sorted({*zip(states.tolist(), is_chosen.tolist(), strict=True)}):
+            those = np.flatnonzero((states == state) & (is_chosen == to_chosen))
+            found.append((self._arrow(state, to_chosen, screen.ratio), at[those], cells[those]))
+        return found
+
+    def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
+        """Return the arrow to robots in a state, made when it is needed first."""
+        if ratio != self._ratio:
+            self._atlases.clear()
+            self._ratio = ratio
+        if (state, to_chosen) not in self._atlases:
+            atlas = arrow_atlas(ratio, STATES[state], to_chosen)
+            self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
+        return self._atlases[state, to_chosen]
+
+
+def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
+    """Return how much each robot is to be noticed: a selected one most, then one to worry about."""
+    ranks = _URGENT[placed.scene.robots.state]
+    rows = placed.scene.rows
+    ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(STATES)
+    return ranks
+
+
+def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPointF, QPixmap]]:
+    """Leave out what would lie over a text before it; its arrow stays, and says by a click who it is."""
+    shown: list[tuple[QPointF, QPixmap]] = []
+    taken: list[QRectF] = []
+    for place, picture in texts:
+        area = QRectF(place, QSizeF(picture.size()) / ratio)
+        if not any(area.intersects(other) for other in taken):
+            shown.append((place, picture))
+            taken.append(area)
+    return shown
+
+
+def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
+    """Return the robot's name, or how many there are, and where it is whole on the arrow's inner side."""
+    text = names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
+    picture = labels.picture(text, screen.ratio)
+    width, height = picture.width() / screen.ratio, picture.height() / screen.ratio
+    inward = 8.0 + math.hypot(width, height) / 2
+    x = hint.x - math.cos(hint.turn) * inward - width / 2
+    y = hint.y - math.sin(hint.turn) * inward - height / 2
+    x = min(max(x, 0.0), screen.width - width)
+    y = min(max(y, 0.0), screen.height - height)
+    return QPointF(x, y), picture
+
+
+# --- Robots that are too many to be drawn one by one: cells as dark as there are robots in them ---
+
+FAINTEST, DARKEST = 0.3, 0.9
+"""How much of the map a cell with one robot covers, and the fullest one."""
+LEGEND_AT = 12
+"""Pixels of the legend from the left and from below."""
+
+
+class DensityPainter:
+    """Paints the density of a scene, and says beneath what it is."""
+
+    def __init__(self, labels: Labels) -> None:
+        self._labels = labels
+        self._made: tuple[Density, SiteToMapTransform] | None = None
+        self._image = QImage()
+        self._corners: Points = np.empty((0, 2))
+        """(3, 2): the first corner of the grid in the map, the one along its x, and the one along its y."""
+
+    def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
+        """Paint it, where the scene has one."""
+        fleet = placed.scene.fleet
+        if fleet is None or fleet.density is None:
+            self._made = None
+            return
+        density = fleet.density
+        if self._made is None or self._made[0] is not density or self._made[1] is not placed.placement:
+            self._made = density, placed.placement
+            self._image, self._corners = _picture(density), _corners(density, placed.placement)
+        (x, y), along, up = screen.pixels(self._corners).tolist()
+        columns, rows = density.columns, density.rows
+        painter.save()
+        to_screen = QTransform(
+            (along[0] - x) / columns, (along[1] - y) / columns, (up[0] - x) / rows, (up[1] - y) / rows, x, y
+        )
+        painter.setTransform(to_screen, True)
+        painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, False)
+        painter.drawImage(QRectF(0, 0, columns, rows), self._image)
+        painter.restore()
+        text = tr_count(
+            fleet.inside,
+            "1 robot here, shown as a density; zoom in to see it",
+            "%n robots here, shown as a density; zoom in to see each",
+        )
+        legend = self._labels.picture(text, screen.ratio)
+        height = legend.height() / screen.ratio
+        painter.drawPixmap(QPointF(LEGEND_AT, screen.height - LEGEND_AT - height), legend)
+
+
+def _corners(density: Density, placement: SiteToMapTransform) -> Points:
+    x, y = density.x, density.y
+    width, height = density.columns * density.cell, density.rows * density.cell
+    return placement.to_map(np.array([(x, y), (x + width, y), (x, y + height)]))
+
+
+def _picture(density: Density) -> QImage:
+    """Return a pixel for each cell: its colour is that of its robots' states, its cover by how many."""
+    counts = np.array([density.fresh, density.silent, density.offline], dtype=np.float64)
+    total = counts.sum(axis=0)
+    colours = [STATE_COLOURS[state] for state in (RobotState.FRESH, RobotState.LOST, RobotState.OFFLINE)]
+    rgb = np.array([(c.red(), c.green(), c.blue()) for c in colours], dtype=np.float64)
+    mixed = (counts / np.maximum(total, 1.0)).T @ rgb
+    # By the root: a cell with four times as many covers twice as much, and the emptiest ones are seen.
+    cover = FAINTEST + (DARKEST - FAINTEST) * np.sqrt(total / total.max(initial=1.0))
+    pixels = np.zeros((density.rows * density.columns, 4), dtype=np.uint8)
+    cells = np.array(density.cells, dtype=np.intp)
+    # Premultiplied, and in memory blue first.
+    pixels[cells, :3] = (mixed * cover[:, None])[:, ::-1]
+    pixels[cells, 3] = 255 * cover
+    image = QImage(pixels.tobytes(), density.columns, density.rows, 4 * density.columns, FORMAT)
+    # Of its own: what it was made of goes.
+    return image.copy()
