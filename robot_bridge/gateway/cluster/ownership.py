@@ -16,7 +16,7 @@ from ...core.errors import StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import DeskRequest
 from ..storage.database import Database, to_its_end
-from ..storage.repositories import gateways, relayed
+from ..storage.repositories import gateways
 from ..storage.repositories import robots as stored_robots
 from ..storage.repositories.gateways import Claimed, Owner
 from ..storage.repositories.robots import FencedError
@@ -96,7 +96,9 @@ class Ownership:
 
         Whoever has it by then: the one that had it may have died. Nobody collects the answer.
         """
-        relayed.add(connection, [relayed.NewRequest.of(robot, request)], operator, self._membership.name)
+        gateways.add_requests(
+            connection, [gateways.NewRequest.of(robot, request)], operator, self._membership.name
+        )
 
     # --- claims -----------------------------------------------------------------------------------------
 

@@ -58,8 +58,8 @@ from ..model.events import Answering
 from ..model.robots import Robots
 from ..monitoring import wait_at_most
 from ..storage.database import Database
-from ..storage.repositories import commands, relayed
-from ..storage.repositories.relayed import NewRequest, TakenRequest
+from ..storage.repositories import commands, gateways
+from ..storage.repositories.gateways import NewRequest, TakenRequest
 from ..storage.repositories.robots import FencedError
 from .bus import STOP
 from .membership import Membership
@@ -238,7 +238,7 @@ class RequestRelay:
 
     async def _ask(self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str) -> list[str]:
         rows = [NewRequest.of(robot, request) for robot, request in requests]
-        ids = await self._database.run(relayed.add, rows, operator, self._membership.name)
+        ids = await self._database.run(gateways.add_requests, rows, operator, self._membership.name)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)
         # The robots may have come here meanwhile.
@@ -255,7 +255,7 @@ class RequestRelay:
             while len(answers) < len(ids):
                 left = [id for id in ids if id not in answers]
                 event.clear()
-                answers.update(await self._database.run(relayed.collect, left))
+                answers.update(await self._database.run(gateways.collect_answers, left))
                 pause = min(LOOK_S, until - asyncio.get_running_loop().time())
                 if len(answers) == len(ids):
                     break
@@ -268,7 +268,7 @@ class RequestRelay:
         return [answers[id] for id in ids]
 
     async def _unanswered(self, ids: list[int], robots: list[str]) -> str:
-        back = await self._database.run(relayed.withdraw, ids)
+        back = await self._database.run(gateways.withdraw_requests, ids)
         names = listed_names(
             sorted({f"{self._robots.gateway_of(robot) or 'none'} ({robot})" for robot in robots})
         )
@@ -287,14 +287,14 @@ class RequestRelay:
 
     async def begin_waiting(self) -> None:
         """Begin with what waits for robots of this gateway; raises StoreError."""
-        for request in await self._database.run(relayed.begin, self._membership.me, MOST_AT_ONCE):
+        for request in await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE):
             task = asyncio.create_task(self._do(request))
             self._doing.add(task)
             task.add_done_callback(self._doing.discard)
 
     async def forget(self) -> None:
         """Delete what nobody has collected for an hour; raises StoreError."""
-        await self._database.run(relayed.forget, FORGET_S)
+        await self._database.run(gateways.forget_requests, FORGET_S)
 
     async def _do(self, request: TakenRequest) -> None:
         answer = await self._answer_to(request)
@@ -309,7 +309,7 @@ class RequestRelay:
         until = asyncio.get_running_loop().time() + ANSWER_WITHIN_S
         while True:
             try:
-                await self._database.run(relayed.answer, request.id, answer)
+                await self._database.run(gateways.answer_request, request.id, answer)
                 return True
             except StoreError as error:
                 if asyncio.get_running_loop().time() > until:
