@@ -108,7 +108,7 @@ def overlay(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
-    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
     times = []
     for _ in range(WARM_UP + UPDATES):
         now[0] += UPDATE_S
@@ -236,7 +236,7 @@ def hour(data: str, number: int) -> None:
     stage = Stage(data, number)
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
-    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_table")
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
     memory = []
     for second in range(HOUR):
         now[0] += 1.0

@@ -27,7 +27,7 @@ from qgis.PyQt.QtCore import QObject
 
 from ..robot_bridge.core.clock import steady_time
 from .gateway_client.fleet_state import FleetState
-from .gateway_client.robot_table import STATES
+from .gateway_client.robot_states import STATES
 from .layers.road_surfaces import SurfaceStore
 from .layers.roles import ROAD_SURFACE
 from .layers.site_transform import check_transform, frame_of

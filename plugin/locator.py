@@ -11,7 +11,7 @@ from qgis.PyQt.QtWidgets import QLineEdit
 
 from ..robot_bridge.core.messages.safety import RobotState
 from .expressions import RobotSnapshot, SnapshotHolder
-from .gateway_client.robot_states import ROBOT_STATES
+from .gateway_client.state_words import ROBOT_STATES
 from .ui.glyphs import StateIcons
 from .ui.language import tr
 

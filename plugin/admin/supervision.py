@@ -30,7 +30,7 @@ from ...robot_bridge.core.messages.json_values import sites_report
 from ...robot_bridge.core.messages.safety import RobotState
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
-from ..gateway_client.robot_states import part_in_words
+from ..gateway_client.state_words import part_in_words
 from ..help import RECORDINGS, SITES, show_help
 from ..panel.connection_panel import ConnectionMenu
 from ..panel.robot_table import RobotTableView

@@ -16,7 +16,7 @@ from ...robot_bridge.core.messages.roads import ReplannedRobot
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..gateway_client.fleet_state import FleetState, RequestResult
-from ..gateway_client.robot_table import RemovedRobots
+from ..gateway_client.robot_states import RemovedRobots
 from ..layers.site_transform import SiteToCanvas
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr

@@ -14,7 +14,8 @@ from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import Ability, RobotState
 from ..gateway_client.command_cache import CommandCache, command_in_words
 from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import ROBOT_STATES, RobotView
+from ..gateway_client.robot_states import RobotView
+from ..gateway_client.state_words import ROBOT_STATES
 from ..ui.language import age_in_words, tr
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand
 

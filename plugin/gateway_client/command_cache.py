@@ -15,7 +15,7 @@ from ...robot_bridge.core.messages.commands import CommandReport, CommandState
 from ...robot_bridge.core.messages.json_values import command_report
 from ...robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd
 from ..ui.language import tr
-from .robot_states import COMMAND_STATES
+from .state_words import COMMAND_STATES
 
 MOST_COMMANDS = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)

@@ -23,8 +23,7 @@ from ..ui.scheduling import PULL_EVERY_MS
 from . import report_caches
 from .command_cache import CommandCache
 from .connection_status import ConnectionPhase, ConnectionStatus
-from .robot_states import RobotStates, RobotView
-from .robot_table import RobotTable
+from .robot_states import RobotStates, RobotTable, RobotView
 
 # --- What the operator asked for, and what became of it ---
 

@@ -24,7 +24,8 @@ from .command_cache import command_in, commands_in
 from .connection_status import DEFAULT_URL
 from .fleet_state import OperatorRequest, RequestResult, UpdateBuffer
 from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
-from .robot_table import table_from_frame, table_from_rows
+from .robot_rows import table_from_rows
+from .robot_states import table_from_frame
 
 UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
 """Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""

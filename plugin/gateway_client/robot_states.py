@@ -1,22 +1,267 @@
-"""States of all robots as last reported, how far they can be trusted as time goes on, and states as text."""
+"""Robots as last reported: a table filled by messages, and how far it can be trusted as time goes on."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Collection, Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages.commands import CommandState
-from ...robot_bridge.core.messages.json_values import robot_report
+from ...robot_bridge.core.messages import positions
+from ...robot_bridge.core.messages.json_values import fleet_view, robot_report
 from ...robot_bridge.core.messages.positions import FleetView, RobotReport
-from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from ...robot_bridge.core.messages.safety import RobotState
-from ..ui.language import time_of_day, tr, tr_count
-from .robot_table import STATES, RemovedRobots, RobotTable
+from ...robot_bridge.core.position_frame import split_frame
+
+# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
+# the thread of the connection; the window works on whole columns and makes a report only of the robot that
+# somebody looks at.
+
+STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
+STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
+WORDED = tuple(name for name in positions.POSITION_TEXTS if name != "state")
+COLUMNS = (*positions.POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
+"""``state`` is an index into :data:`STATES`, ``received`` is on the monotonic clock, those of :data:`WORDED`
+are indices into the words of the table; NaN is what is not known."""
+AT = {name: column for column, name in enumerate(COLUMNS)}
+SPARE_WORDS = 1000
+"""Words beyond two for each robot before those are forgotten that no robot says any more."""
+_TEXTS_AT = [AT[name] for name in WORDED]
+
+Numbers = npt.NDArray[np.float64]
+
+
+class RemovedRobots(NamedTuple):
+    """Robots that are there no more, those that are out of view, and (n,) the rows that all these had."""
+
+    names: frozenset[str]
+    rows: npt.NDArray[np.intp]
+    untracked: frozenset[str] = frozenset()
+
+    @property
+    def all_names(self) -> frozenset[str]:
+        """Those of whom nothing is known from now on, whether they are there or not."""
+        return self.names | self.untracked
+
+
+class RobotTable:
+    """The newest that was told of each robot, one row each. A robot keeps its row until one is removed.
+
+    ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
+    it points at. All are the table's own from then on. With ``everything`` there are no other robots;
+    ``removed`` are gone for good. With ``view`` they are those of a view: others than ``everything`` are out
+    of it, as ``untracked`` are.
+    """
+
+    def __init__(
+        self,
+        names: list[str] | None = None,
+        numbers: Numbers | None = None,
+        words: list[str] | None = None,
+        *,
+        removed: Iterable[str] = (),
+        untracked: Iterable[str] = (),
+        everything: bool = False,
+        view: FleetView | None = None,
+    ) -> None:
+        self.removed, self.untracked, self.everything = set(removed), set(untracked), everything
+        self.view = view
+        self.names = [] if names is None else names
+        self._numbers = np.empty((len(COLUMNS), 0)) if numbers is None else numbers
+        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
+        self._words = [] if words is None else words
+        self._places = dict(zip(self._words, range(len(self._words)), strict=True))
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._rows
+
+    @property
+    def tells_nothing(self) -> bool:
+        """Whether there is nothing in it."""
+        return not (self.names or self.removed or self.untracked or self.everything or self.view)
+
+    def gone_by(self, newer: RobotTable) -> list[int]:
+        """Return the rows of the robots that are there no more or out of view, as ``newer`` tells."""
+        if newer.everything:
+            return [row for row, name in enumerate(self.names) if name not in newer]
+        gone = newer.removed | newer.untracked
+        return sorted(row for name in gone if (row := self.row(name)) is not None)
+
+    def drop(self, rows: Collection[int]) -> None:
+        """Take robots out; those below them move up."""
+        kept = np.delete(np.arange(len(self)), list(rows))
+        self.names = [self.names[row] for row in kept.tolist()]
+        self._numbers = self._numbers[:, kept]
+        self._rows = dict(zip(self.names, range(len(self.names)), strict=True))
+
+    def column(self, name: str) -> Numbers:
+        """Return one of :data:`COLUMNS`, a view that holds until the next :meth:`merge`."""
+        return self._numbers[AT[name], : len(self.names)]
+
+    def texts(self, name: str) -> tuple[Numbers, list[str]]:
+        """Return one of :data:`WORDED` as (n,) places in the words, NaN where none, and the words."""
+        return self.column(name), self._words
+
+    def row(self, name: str) -> int | None:
+        """Return the row of robot ``name``, None if nothing was told of it."""
+        return self._rows.get(name)
+
+    def row_values(self, row: int) -> dict[str, Any]:
+        """Return what was told last of the robot in ``row``: what its report holds, as JSON values."""
+        values = zip(COLUMNS, self._numbers[:, row].tolist(), strict=True)
+        # NaN is the one value that is not equal to itself.
+        found: dict[str, Any] = {name: value for name, value in values if value == value}
+        for name in WORDED:
+            if name in found:
+                found[name] = self._words[int(found[name])]
+        del found["received"]
+        found["robot"] = self.names[row]
+        found["state"] = STATES[int(found["state"])].value
+        found["stopped"] = found["stopped"] == 1.0
+        return found
+
+    def report(self, row: int) -> RobotReport:
+        """Return what was told last of the robot in ``row``."""
+        return robot_report(self.row_values(row))
+
+    def merge(self, newer: RobotTable) -> RemovedRobots:
+        """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
+
+        Return the robots that are there no more, or out of view.
+        """
+        rows = self.gone_by(newer)
+        names = frozenset(self.names[row] for row in rows)
+        removed = names & newer.removed if newer.untracked or newer.view else names
+        gone = RemovedRobots(removed, np.array(rows, dtype=np.intp), names - removed)
+        if rows:
+            self.drop(rows)
+        self.view = newer.view if newer.everything or newer.view else self.view
+        self.everything |= newer.everything
+        self.removed = (self.removed | newer.removed).difference(newer.names)
+        # In place: who pans over a large fleet leaves many names behind.
+        self.untracked |= newer.untracked
+        self.untracked.difference_update(newer.names)
+        numbers, received = newer._numbers[:, : len(newer)], AT["received"]
+        self._say_in_own_words(numbers, newer._words)
+        if newer.names == self.names and (numbers[received] >= self.column("received")).all():
+            # Everything again, as when all robots drive: no need to look for each one's row.
+            self._numbers = numbers
+        else:
+            rows = self._rows_of(newer.names)
+            taken = np.flatnonzero(numbers[received] >= self._numbers[received, rows])
+            self._numbers[:, rows[taken]] = numbers[:, taken]
+        if len(self._words) > SPARE_WORDS + 2 * len(self):
+            self._forget_words()
+        return gone
+
+    def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
+        """Make places in ``words`` places in this table's own, which grow by those that are new."""
+        own = [self._places.setdefault(word, len(self._places)) for word in words]
+        self._words += list(self._places)[len(self._words) :]
+        # A gateway that tells of the same robots again does so in the same words.
+        if own != list(range(len(own))):
+            # What is not known points at the last one, which is none.
+            known = np.array([*own, np.nan])
+            places = np.nan_to_num(numbers[_TEXTS_AT], nan=len(words)).astype(np.intp)
+            numbers[_TEXTS_AT] = known.take(places)
+
+    def _forget_words(self) -> None:
+        """Keep the words that some robot says."""
+        texts = self._numbers[_TEXTS_AT, : len(self)]
+        used = np.unique(texts[np.isfinite(texts)]).astype(np.intp)
+        words, self._words, self._places = self._words, [], {}
+        moved = np.full(len(words) + 1, np.nan)
+        moved[used] = np.arange(len(used))
+        self._words = [words[place] for place in used.tolist()]
+        self._places = dict(zip(self._words, range(len(used)), strict=True))
+        self._numbers[_TEXTS_AT, : len(self)] = moved[np.nan_to_num(texts, nan=len(words)).astype(np.intp)]
+
+    def _rows_of(self, names: list[str]) -> npt.NDArray[np.intp]:
+        known = self._rows
+        for name in names:
+            if name not in known:
+                known[name] = len(self.names)
+                self.names.append(name)
+        missing = len(self.names) - self._numbers.shape[1]
+        if missing > 0:
+            more = np.full((len(COLUMNS), max(16, missing, self._numbers.shape[1])), -np.inf)
+            self._numbers = np.concatenate([self._numbers, more], axis=1)
+        return np.fromiter(map(known.__getitem__, names), dtype=np.intp, count=len(names))
+
+
+# --- The table of a message ---
+
+
+def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
+    """Return who is gone, by a message, and what is known of the others, as :class:`RobotTable` has them.
+
+    An older gateway tells nothing of that. Raises ValueError where they are not what they have to be.
+    """
+    everything = params.get("everything", False)
+    if not isinstance(everything, bool):
+        raise ValueError(f"everything is {everything!r}, neither true nor false")
+    gone = {name: check_texts(name, params.get(name, [])) for name in ("removed", "untracked")}
+    view = params.get("view")
+    return {**gone, "everything": everything, "view": None if view is None else fleet_view(view)}
+
+
+def check_texts(name: str, values: Any) -> list[str]:
+    """Return ``values``, a list of texts; raises ValueError, with its ``name``, for anything else."""
+    if not isinstance(values, list) or not set(map(type, values)) <= {str}:
+        raise ValueError(f"{name} is not a list of texts")
+    return values
+
+
+_KNOWN = {*positions.POSITION_NUMBERS, *positions.POSITION_FLAGS, *positions.POSITION_TEXTS}
+
+
+def table_from_frame(frame: bytes, received: float) -> RobotTable:
+    """Return the robots in one binary frame, all of which arrived at ``received``.
+
+    :raises ValueError: when it is not such a frame, or something in it is not what it has to be.
+    :raises KeyError: when the head lacks something.
+    """
+    params, robots, columns, words, table = split_frame(frame)
+    missing = [name for name in positions.POSITION_ALWAYS if name not in columns]
+    if missing:
+        raise KeyError(missing[0])
+    numbers = np.full((len(COLUMNS), len(robots)), np.nan)
+    for name, column in zip(columns, table, strict=True):
+        if name in _KNOWN:
+            _check_column(name, column, robots, len(words))
+            numbers[AT[name]] = column
+    numbers[AT["state"]] = np.array(_states(words))[numbers[AT["state"]].astype(np.intp)]
+    _check_column("state", numbers[AT["state"]], robots, len(STATES))
+    numbers[AT["received"]] = received
+    return RobotTable(robots, numbers, words, **removed_robots(params))
+
+
+def _states(words: list[str]) -> list[float]:
+    """Return which of STATES each word is, NaN for one that is none."""
+    return [STATE_CODES.get(word, np.nan) for word in words]
+
+
+def _check_column(name: str, column: npt.NDArray[np.float64], robots: list[str], words: int) -> None:
+    """Raise ValueError unless everything in ``column`` can be what it has to be."""
+    wrong = np.isinf(column)
+    if name in positions.POSITION_ALWAYS:
+        wrong |= np.isnan(column)
+    if name in positions.POSITION_TEXTS:
+        # What is NaN compares false.
+        wrong |= (column < 0) | (column >= words) | (column > np.floor(column))
+    if wrong.any():
+        row = int(wrong.argmax())
+        raise ValueError(f"{name} of robot {robots[row]} is {column[row]}, which it cannot be")
+
+
+# --- The robots as the window knows them ---
 
 _NUMBER = re.compile(r"[0-9]+")
 _DIGITS = 20
@@ -29,10 +274,7 @@ def name_order(name: str) -> str:
     return f"{filled}\0{name}"
 
 
-__all__ = ["STATES", "RemovedRobots", "RobotArrays", "RobotStates", "RobotView"]
-
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
-Numbers = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -149,7 +391,7 @@ class RobotStates:
 
     def views(self, now: float, rows: list[int] | None = None) -> list[RobotView]:
         """Return the robots in ``rows``, or every one by name, as they are to be shown at ``now``."""
-        rows = self._sorted() if rows is None else rows
+        rows = self.by_name() if rows is None else rows
         state, age = self._aged(now, rows)
         return [
             RobotView(self._seen.names[row], self._seen.row_values(row), STATES[code], seconds)
@@ -174,7 +416,7 @@ class RobotStates:
         )
 
     def column(self, name: str) -> Numbers:
-        """Return (n,) of one of :data:`~.sightings.COLUMNS` of every robot, NaN where nothing was told."""
+        """Return (n,) of one of :data:`COLUMNS` of every robot, NaN where nothing was told."""
         return self._seen.column(name).copy()
 
     def texts(self, name: str, rows: slice = slice(None)) -> list[str]:
@@ -201,17 +443,14 @@ class RobotStates:
         """Return what was told last of the robot in ``row``, as it came."""
         return self._seen.row_values(row)
 
-    def by_name(self) -> list[int]:
-        """Return every row, in the order of the robots' names."""
-        return self._sorted()
-
     def _all_names(self) -> list[str]:
         """Return every name by row: the same list until there are more of them."""
         if len(self._names) != len(self._seen):
             self._names = list(self._seen.names)
         return self._names
 
-    def _sorted(self) -> list[int]:
+    def by_name(self) -> list[int]:
+        """Return every row, in the order of the robots' names."""
         names = self._seen.names
         if len(self._by_name) != len(names):
             self._orders += [name_order(name) for name in names[len(self._orders) :]]
@@ -228,122 +467,3 @@ class RobotStates:
         # The gateway may know more than the age tells, such as a link closed in good order.
         state[silent] = np.where((reported == _LOST) | (reported == _OFFLINE), reported, here)
         return state, age
-
-
-# --- States in words ---
-
-ROBOT_STATES = {
-    RobotState.FRESH: tr("fresh"),
-    RobotState.STALE: tr("stale"),
-    RobotState.LOST: tr("lost"),
-    RobotState.OFFLINE: tr("offline"),
-}
-COMMAND_STATES = {
-    CommandState.QUEUED: tr("queued"),
-    CommandState.DELIVERED: tr("delivered"),
-    CommandState.ACKNOWLEDGED: tr("acknowledged"),
-    CommandState.REACHED: tr("reached"),
-    CommandState.ABORTED: tr("aborted"),
-    CommandState.FAILED: tr("failed"),
-    CommandState.EXPIRED: tr("expired"),
-    CommandState.SUPERSEDED: tr("superseded"),
-}
-TASK_STATES = {
-    TaskState.WAITING: tr("waiting"),
-    TaskState.CURRENT: tr("now"),
-    TaskState.FAILED: tr("failed"),
-    TaskState.DONE: tr("done"),
-    TaskState.SKIPPED: tr("skipped"),
-    TaskState.REMOVED: tr("removed"),
-}
-MEETINGS = {
-    "head-on": tr("head-on"),
-    "crossing": tr("crossing"),
-    "following": tr("following"),
-    "standing": tr("standing"),
-}
-"""How two robots come into each other's way, by the kind of a ConflictReport."""
-
-
-def part_in_words(robots: RobotStates) -> str:
-    """Return of how many of all robots the desk is told; empty where of every one."""
-    if robots.fleet is None:
-        return ""
-    return tr(
-        "This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.",
-        known=len(robots),
-        all=robots.count,
-    )
-
-
-def longest_word(words: dict) -> str:
-    """Return the word that needs the widest column."""
-    return max(words.values(), key=len)
-
-
-TASK_KINDS = {
-    TaskKind.DRIVE: tr("drive"),
-    TaskKind.PLACE: tr("place cone"),
-    TaskKind.COLLECT: tr("collect cone"),
-}
-
-
-def task_in_words(task: TaskReport) -> str:
-    """Return what is done where, as in ``place cone K7 at 12.30, 40.00``."""
-    name = f" {task.label or task.cone}" if task.label or task.cone else ""
-    way = tr(", a path of {path_points} points", path_points=task.path_points) if task.path_points else ""
-    return tr(
-        "{kind}{name} at {x:.2f}, {y:.2f}{way}",
-        kind=TASK_KINDS[task.kind],
-        name=name,
-        x=task.x,
-        y=task.y,
-        way=way,
-    )
-
-
-def task_state_in_words(task: TaskReport) -> str:
-    """Return how far a task is, and why where there is something to say."""
-    text = TASK_STATES[task.state]
-    return f"{text}: {task.reason}" if task.reason else text
-
-
-def queue_in_words(queue: QueueReport) -> str:
-    """Return whether a queue goes on, and who paused it when and why."""
-    count = tr_count(len(queue.tasks), "1 task", "%n tasks")
-    if queue.state is QueueState.PAUSED:
-        when = f", {time_of_day(queue.at)}" if queue.at is not None else ""
-        # The gateway's reasons name who did it; where they do not, the name stands alone.
-        why = queue.reason or (tr("by {by}", by=queue.by) if queue.by else "")
-        text = tr(
-            "{robot}: {count}, PAUSED{when}{why}",
-            robot=queue.robot,
-            count=count,
-            when=when,
-            why=f": {why}" if why else "",
-        )
-    else:
-        text = f"{queue.robot}: {count}, {tr('running') if queue.tasks else tr('nothing to do')}"
-    if queue.robot_state in (RobotState.LOST, RobotState.OFFLINE):
-        text += tr(
-            ". The robot is {state}: it is sent nothing until it is heard again",
-            state=ROBOT_STATES[queue.robot_state],
-        )
-    return text
-
-
-def last_ended_in_words(queue: QueueReport) -> str:
-    """Return what ended last; empty where nothing did."""
-    if not queue.ended:
-        return ""
-    task = queue.ended[0]
-    off = "" if task.deviation is None else tr(", {deviation:.2f} m off", deviation=task.deviation)
-    why = f": {task.reason}" if task.reason else ""
-    return tr(
-        "Last: {task} {state} {time}{off}{why}",
-        task=task_in_words(task),
-        state=TASK_STATES[task.state],
-        time=time_of_day(task.ended_at),
-        off=off,
-        why=why,
-    )

@@ -10,7 +10,8 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QObject, QTimer
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots, part_in_words
+from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.state_words import part_in_words
 from ..layers.live_layers import ProjectWatch
 from ..layers.site_transform import SiteToMapTransform
 from ..ui.errors import MapTransformError

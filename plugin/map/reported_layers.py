@@ -37,8 +37,8 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
 from ..gateway_client.fleet_state import FleetState
-from ..gateway_client.robot_states import ROBOT_STATES, RobotStates
-from ..gateway_client.robot_table import STATES
+from ..gateway_client.robot_states import STATES, RobotStates
+from ..gateway_client.state_words import ROBOT_STATES
 from ..layers import live_layers
 from ..layers.site_transform import frame_of
 from ..ui.glyphs import STATE_COLOURS

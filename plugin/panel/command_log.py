@@ -23,7 +23,8 @@ from ..control.request_tracker import SLOW_AFTER
 from ..gateway_client import command_cache
 from ..gateway_client.command_cache import command_in_words, place_of, requested_at
 from ..gateway_client.fleet_state import RequestResult
-from ..gateway_client.robot_states import COMMAND_STATES, longest_word, name_order
+from ..gateway_client.robot_states import name_order
+from ..gateway_client.state_words import COMMAND_STATES, longest_word
 from ..settings.profile import export_path
 from ..ui.dialogs import file_to_write
 from ..ui.errors import FleetError

@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QFont
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.command_cache import command_in_words, place_of, requested_at, state_word
-from ..gateway_client.robot_states import COMMAND_STATES
+from ..gateway_client.state_words import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
 from ..ui.language import date_and_time, short_time, tr
 from ..ui.tables import iso_time

@@ -20,7 +20,7 @@ from ...robot_bridge.core.messages.roads import ConflictReport, GetWaysOut, Hold
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.fleet_state import FleetState, RequestResult
-from ..gateway_client.robot_states import MEETINGS
+from ..gateway_client.state_words import MEETINGS
 from ..ui.errors import NotSentError
 from ..ui.language import time_of_day, tr
 from ..ui.steady_widgets import ElidedButton, ElidedText

@@ -15,7 +15,7 @@ from ..control.fleet_controller import FleetController
 from ..control.messages import TITLE
 from ..control.pending_command import ROUTE, TARGETS, PendingCommand, in_brief, queue_tasks, turned_round
 from ..gateway_client.command_cache import command_state_in_words
-from ..gateway_client.robot_states import COMMAND_STATES
+from ..gateway_client.state_words import COMMAND_STATES
 from ..map.tools.drawing_tool import DrawingTool
 from ..ui.actions import Actions
 from ..ui.dialogs import QuestionDialog

@@ -38,7 +38,7 @@ from ..control.fleet_controller import FleetController
 from ..control.messages import QueueStand, Topic, draft_topic, queue_topic
 from ..control.pending_command import PendingCommand
 from ..gateway_client.fleet_state import RequestResult
-from ..gateway_client.robot_states import (
+from ..gateway_client.state_words import (
     last_ended_in_words,
     queue_in_words,
     task_in_words,

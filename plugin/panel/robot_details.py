@@ -29,11 +29,11 @@ from ...robot_bridge.core.messages.records import GetImage, GetObservations
 from ...robot_bridge.core.messages.robots import SendImage
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
-from ..gateway_client import robot_states
+from ..gateway_client import state_words
 from ..gateway_client.command_cache import PathDeviations, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.robot_states import RobotView
-from ..gateway_client.robot_states import task_state_in_words as task_state
+from ..gateway_client.state_words import task_state_in_words as task_state
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import date_and_time, last_seen_in_words, time_of_day, tr
@@ -63,7 +63,7 @@ MOST = 20
 def state_rows(view: RobotView, task: CommandReport | None, off: str, position: str, crs: str) -> list[Row]:
     """Return how a robot is now, as the operator needs it first."""
     values = view.values
-    last_seen = last_seen_in_words(robot_states.ROBOT_STATES[view.state], view.age, values.get("link"))
+    last_seen = last_seen_in_words(state_words.ROBOT_STATES[view.state], view.age, values.get("link"))
     rows = [(tr("State"), last_seen)]
     if position:
         rows.append((tr("Position, {crs}", crs=crs), position))
@@ -72,7 +72,7 @@ def state_rows(view: RobotView, task: CommandReport | None, off: str, position: 
             tr("Task"),
             tr("none")
             if task is None
-            else f"{command_in_words(task)}: {robot_states.COMMAND_STATES[task.state]}",
+            else f"{command_in_words(task)}: {state_words.COMMAND_STATES[task.state]}",
         )
     )
     if off:
@@ -96,9 +96,9 @@ def queue_rows(queue: QueueReport | None) -> list[Row]:
     """Return a robot's queue: how it stands, then its tasks."""
     if queue is None:
         return []
-    rows = [(tr("Queue"), robot_states.queue_in_words(queue))]
+    rows = [(tr("Queue"), state_words.queue_in_words(queue))]
     for number, task in enumerate(queue.tasks[:MOST], 1):
-        rows.append((f"{number}.", f"{robot_states.task_in_words(task)}: {task_state(task)}"))
+        rows.append((f"{number}.", f"{state_words.task_in_words(task)}: {task_state(task)}"))
     if len(queue.tasks) > MOST:
         rows.append(("…", tr("and {more} more", more=len(queue.tasks) - MOST)))
     return rows

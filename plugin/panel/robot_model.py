@@ -18,8 +18,8 @@ from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotStates, longest_word
-from ..gateway_client.robot_table import STATES
+from ..gateway_client.robot_states import STATES, RobotStates
+from ..gateway_client.state_words import COMMAND_STATES, ROBOT_STATES, longest_word
 from ..ui.glyphs import STATE_COLOURS, StateIcons, for_letters
 from ..ui.language import age_in_words, last_seen_in_words, tr
 from ..ui.tables import TO_THE_RIGHT

@@ -28,7 +28,8 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import RemovedRobots, part_in_words
+from ..gateway_client.robot_states import RemovedRobots
+from ..gateway_client.state_words import part_in_words
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import MapTransformError
 from ..ui.language import tr

@@ -25,7 +25,7 @@ from ...robot_bridge.core.messages.roads import ClosureReport
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
-from ..gateway_client.robot_states import part_in_words
+from ..gateway_client.state_words import part_in_words
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from . import plan_settings

@@ -19,8 +19,7 @@ from ...robot_bridge.core.geometry import theta_of
 from ...robot_bridge.core.json_decoder import decode_json
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..gateway_client.robot_states import RobotArrays
-from ..gateway_client.robot_table import STATES
+from ..gateway_client.robot_states import STATES, RobotArrays
 from ..layers.crs import stated_crs
 from ..layers.site_transform import SiteGeoreference
 from ..processing.common.cone_layers import PointRow, point_rows

@@ -15,7 +15,7 @@ from ...robot_bridge.core.messages.records import PlacementReport
 from ...robot_bridge.core.messages.safety import RobotState
 from ..cone_texts import RESULT_QUALITY
 from ..control.fleet_controller import FleetController
-from ..gateway_client.robot_states import ROBOT_STATES
+from ..gateway_client.state_words import ROBOT_STATES
 from ..ui.language import first_of, time_of_day, tr, tr_count
 from .proposal import PlanProposal, closed_in_words, meeting_in_words
 

@@ -18,8 +18,8 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.command_cache import CommandCache, command_in_words, requested_at, state_word
 from ..gateway_client.fleet_state import RequestResult
+from ..gateway_client.robot_states import STATES as HISTORY_STATES
 from ..gateway_client.robot_states import RobotArrays
-from ..gateway_client.robot_table import STATES as HISTORY_STATES
 from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, Steps

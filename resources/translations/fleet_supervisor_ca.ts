@@ -2023,7 +2023,7 @@
             <translation>N'hi ha {more} més en zones prohibides o obstacles, sense llistar.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n tasca</numerusform>
@@ -2031,167 +2031,167 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, a path of {path_points} points</source>
             <translation>, un camí de {path_points} punts</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m de desviació</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. El robot és {state}: no se li envia res fins que se'n torni a saber</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Última: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
             <translation>Aquesta consola rep notícies de {known} de {all} robots: els que es veuen al mapa, els seleccionats i els que tenen una alarma.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>aborted</source>
             <translation>avortada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>acknowledged</source>
             <translation>reconeguda</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>by {by}</source>
             <translation>per {by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>collect cone</source>
             <translation>recull con</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>crossing</source>
             <translation>encreuament</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>delivered</source>
             <translation>lliurada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>drive</source>
             <translation>circula</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>expired</source>
             <translation>caducada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>failed</source>
             <translation>fallida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>following</source>
             <translation>seguiment</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>fresh</source>
             <translation>actual</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>head-on</source>
             <translation>de cara</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>lost</source>
             <translation>perdut</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>nothing to do</source>
             <translation>res a fer</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>now</source>
             <translation>ara</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>offline</source>
             <translation>fora de línia</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>place cone</source>
             <translation>col·loca con</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>queued</source>
             <translation>en cua</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>reached</source>
             <translation>assolida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>removed</source>
             <translation>treta</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>running</source>
             <translation>en marxa</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>skipped</source>
             <translation>omès</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>stale</source>
             <translation>desactualitzat</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>standing</source>
             <translation>aturat</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>superseded</source>
             <translation>substituïda</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>waiting</source>
             <translation>en espera</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} a {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>

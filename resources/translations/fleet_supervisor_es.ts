@@ -2023,7 +2023,7 @@
             <translation>Hay {more} más en zonas prohibidas u obstáculos, sin listar.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n tarea</numerusform>
@@ -2031,167 +2031,167 @@
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, a path of {path_points} points</source>
             <translation>, un camino de {path_points} puntos</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m de desvío</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. El robot está {state}: no se le envía nada hasta que se vuelva a saber de él</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Última: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
             <translation>Esta consola recibe noticias de {known} de {all} robots: los que se ven en el mapa, los seleccionados y los que tienen una alarma.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>aborted</source>
             <translation>abortada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>acknowledged</source>
             <translation>reconocida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>by {by}</source>
             <translation>por {by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>collect cone</source>
             <translation>recoger cono</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>crossing</source>
             <translation>cruce</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>delivered</source>
             <translation>entregada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>drive</source>
             <translation>circular</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>expired</source>
             <translation>caducada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>failed</source>
             <translation>fallida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>following</source>
             <translation>seguimiento</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>fresh</source>
             <translation>actual</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>head-on</source>
             <translation>de frente</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>lost</source>
             <translation>perdido</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>nothing to do</source>
             <translation>nada que hacer</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>now</source>
             <translation>ahora</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>offline</source>
             <translation>fuera de línea</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>place cone</source>
             <translation>colocar cono</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>queued</source>
             <translation>en cola</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>reached</source>
             <translation>alcanzada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>removed</source>
             <translation>quitada</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>running</source>
             <translation>en marcha</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>skipped</source>
             <translation>omitido</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>stale</source>
             <translation>desactualizado</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>standing</source>
             <translation>parado</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>superseded</source>
             <translation>sustituida</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>waiting</source>
             <translation>en espera</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} en {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
         </message>

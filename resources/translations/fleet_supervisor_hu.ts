@@ -2015,174 +2015,174 @@
             <translation>További {more} van tiltott területen vagy akadálynál, felsorolás nélkül.</translation>
         </message>
         <message numerus="yes">
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>%n tasks</source>
             <translation>
                 <numerusform>%n feladat</numerusform>
             </translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, a path of {path_points} points</source>
             <translation>, {path_points} pontos pálya</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>, {deviation:.2f} m off</source>
             <translation>, {deviation:.2f} m eltérés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>. The robot is {state}: it is sent nothing until it is heard again</source>
             <translation>. A robot állapota {state}: semmit sem kap, amíg újra nem hallani róla</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>Last: {task} {state} {time}{off}{why}</source>
             <translation>Utolsó: {task} {state} {time}{off}{why}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>This desk is told of {known} of {all} robots: those in view, selected, or with an alarm.</source>
             <translation>Ez a kezelőpult {all} robotból {known} robotról kap hírt: a térképen láthatókról, a kijelöltekről és a riasztásban lévőkről.</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>aborted</source>
             <translation>megszakítva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>acknowledged</source>
             <translation>nyugtázva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>by {by}</source>
             <translation>{by}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>collect cone</source>
             <translation>bója begyűjtése</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>crossing</source>
             <translation>keresztezés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>delivered</source>
             <translation>kézbesítve</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>drive</source>
             <translation>menet</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>expired</source>
             <translation>lejárt</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>failed</source>
             <translation>sikertelen</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>following</source>
             <translation>követés</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>fresh</source>
             <translation>friss</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>head-on</source>
             <translation>szemből</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>lost</source>
             <translation>elveszett</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>nothing to do</source>
             <translation>nincs dolga</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>now</source>
             <translation>most</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>offline</source>
             <translation>offline</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>place cone</source>
             <translation>bója kihelyezése</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>queued</source>
             <translation>sorban</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>reached</source>
             <translation>elérve</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>removed</source>
             <translation>eltávolítva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>running</source>
             <translation>fut</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>skipped</source>
             <translation>kihagyva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>stale</source>
             <translation>elavult</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>standing</source>
             <translation>álló robot</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>superseded</source>
             <translation>felülírva</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>waiting</source>
             <translation>vár</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{kind}{name} at {x:.2f}, {y:.2f}{way}</source>
             <translation>{kind}{name} itt: {x:.2f}, {y:.2f}{way}</translation>
         </message>
         <message>
-            <location filename="../../plugin/gateway_client/robot_states.py" />
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
         </message>

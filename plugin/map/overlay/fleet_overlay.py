@@ -17,7 +17,8 @@ from ....robot_bridge.core.geometry import heading_of
 from ....robot_bridge.core.messages.commands import CommandReport
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...gateway_client.command_cache import command_in_words
-from ...gateway_client.robot_states import COMMAND_STATES, ROBOT_STATES, RobotView
+from ...gateway_client.robot_states import RobotView
+from ...gateway_client.state_words import COMMAND_STATES, ROBOT_STATES
 from ...ui.glyphs import STATE_COLOURS
 from ...ui.language import tr
 from .grouped_robots import BorderHints, DensityPainter, Hint

@@ -13,7 +13,7 @@ from qgis.PyQt.QtGui import QImage, QPainter, QPixmap, QTransform
 
 from ....robot_bridge.core.messages.positions import Density
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_table import STATES
+from ...gateway_client.robot_states import STATES
 from ...layers.site_transform import SiteToMapTransform
 from ...ui.glyphs import PAPER, SELECTED, STATE_COLOURS, draw_arrow
 from ...ui.language import tr_count

@@ -11,8 +11,8 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_states import ROBOT_STATES, RobotArrays
-from ...gateway_client.robot_table import STATES
+from ...gateway_client.robot_states import STATES, RobotArrays
+from ...gateway_client.state_words import ROBOT_STATES
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
 from .scene import InView, MapScene, Screen

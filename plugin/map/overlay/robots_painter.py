@@ -12,7 +12,7 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPixmap
 
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_table import STATES
+from ...gateway_client.robot_states import STATES
 from ...ui.glyphs import (
     CASING,
     CELL,

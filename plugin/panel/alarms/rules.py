@@ -13,7 +13,7 @@ from qgis.core import QgsSettings
 
 from ....robot_bridge.core.messages.safety import RobotState
 from ...control.robot_checks import Ints, close_pairs
-from ...gateway_client.robot_table import STATES
+from ...gateway_client.robot_states import STATES
 from ...ui.language import tr
 
 

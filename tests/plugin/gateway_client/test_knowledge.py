@@ -17,8 +17,8 @@ from fleet_supervisor.plugin.gateway_client.report_caches import (
     QueueCache,
     plan_in,
 )
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES, table_from_rows
+from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotStates
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock

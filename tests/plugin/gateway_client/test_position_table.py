@@ -7,12 +7,12 @@ import json
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
-from fleet_supervisor.plugin.gateway_client.robot_table import (
+from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
+from fleet_supervisor.plugin.gateway_client.robot_states import (
     COLUMNS,
     SPARE_WORDS,
     RobotTable,
     table_from_frame,
-    table_from_rows,
 )
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages.positions import PositionForm

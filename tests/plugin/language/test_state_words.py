@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_states import (
+from fleet_supervisor.plugin.gateway_client.state_words import (
     COMMAND_STATES,
     ROBOT_STATES,
     TASK_STATES,

@@ -5,8 +5,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotArrays
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotArrays
 from fleet_supervisor.plugin.layers.site_transform import SiteToMapTransform
 from fleet_supervisor.plugin.map.overlay.fleet_overlay import FleetOverlay
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer, SiteScene, TaskPath

@@ -6,7 +6,7 @@ import dataclasses
 from types import SimpleNamespace
 
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay.labels import MOST
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
@@ -82,7 +82,7 @@ def test_an_hour_of_updates_takes_no_more_memory(canvas, site):
     from pathlib import Path
 
     from fleet_supervisor.plugin.control.fleet_controller import FleetController
-    from fleet_supervisor.plugin.gateway_client.robot_table import table_from_rows
+    from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
     from fleet_supervisor.plugin.map.live_view import LiveView
 
     now = [1000.0]

@@ -7,7 +7,7 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
     PathDeviations,
     distance_to_line,
 )
-from fleet_supervisor.plugin.gateway_client.robot_states import ROBOT_STATES
+from fleet_supervisor.plugin.gateway_client.state_words import ROBOT_STATES
 from fleet_supervisor.plugin.panel.robot_model import COLUMNS, TITLES, RobotChoice, number_in_words
 from fleet_supervisor.plugin.panel.robot_table import AROUND_SEARCH, ROBOT_CHOICES, WIDEST_NAME
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.replay.history import SILENT_AFTER, History
 from fleet_supervisor.plugin.replay.replay_map import PIECE, line_pieces
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState

@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS

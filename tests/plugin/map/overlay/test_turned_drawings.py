@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay.robots_painter import drawn, in_a_column, turned
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, draw_arrow, draw_robot
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState

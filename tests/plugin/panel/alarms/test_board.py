@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.gateway_client.robot_table import STATES
+from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.panel.alarms.board import AlarmBoard, robots_of
 from fleet_supervisor.plugin.panel.alarms.rules import (
     FRESH,
