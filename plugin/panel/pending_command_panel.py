@@ -16,7 +16,7 @@ from ..control.messages import TITLE
 from ..control.pending_command import ROUTE, TARGETS, PendingCommand, in_brief, queue_tasks, turned_round
 from ..gateway_client.command_cache import command_state_in_words
 from ..gateway_client.state_words import COMMAND_STATES
-from ..map.tools.drawing_tool import DrawingTool
+from ..map.tools.drawing_tools import DrawingTool
 from ..ui.actions import Actions
 from ..ui.dialogs import QuestionDialog
 from ..ui.errors import FleetError, NotSentError

@@ -27,7 +27,8 @@ from ..map.live_view import LiveView
 from ..map.overlay.scene import FollowMode
 from ..map.overlay.task_painter import QueueMarks
 from ..map.reported_layers import RoadLayers, StandingCones
-from ..map.tools.click_tools import ClosureTool, ConeTool, SelectTool, StartTool
+from ..map.tools.click_tools import ClosureTool, SelectTool
+from ..map.tools.drawing_tools import ConeTool, StartTool
 from ..map.tools.road_tools import RoadRouteTool
 from ..map.tools.route_tool import RoutePreferencesDialog, RouteTool
 from ..settings.profile import KnownGateways

@@ -3416,29 +3416,29 @@
             <translation>{by} va tancar aquesta via a les {time}{because}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
             <translation>No hi ha cap robot seleccionat, així que no hi ha qui enviar-hi. Seleccioneu-ne un a la taula o al mapa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>Select a robot first, in the table or on the map.</source>
             <translation>Seleccioneu abans un robot, a la taula o al mapa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>No hi ha res a refer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to take back.</source>
             <translation>No hi ha res a desfer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} encara és al mapa. Envieu-ho (Retorn) o cancel·leu-ho (Esc) abans.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />

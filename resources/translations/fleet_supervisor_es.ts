@@ -3416,29 +3416,29 @@
             <translation>{by} cerró esta vía a las {time}{because}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
             <translation>No hay ningún robot seleccionado, así que no hay a quién enviar. Seleccione uno en la tabla o en el mapa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>Select a robot first, in the table or on the map.</source>
             <translation>Seleccione antes un robot, en la tabla o en el mapa.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>No hay nada que rehacer.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to take back.</source>
             <translation>No hay nada que deshacer.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} sigue en el mapa. Envíelo (Intro) o cancélelo (Esc) antes.</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />

@@ -3395,29 +3395,29 @@
             <translation>{by} zárta le ezt az utat {time}-kor{because}</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/click_tools.py" />
-            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
-            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>No robot is selected, so there is nobody to send there. Select one in the table or on the map.</source>
             <translation>Nincs kijelölt robot, így nincs, akit oda küldjön. Jelöljön ki egyet a táblázatban vagy a térképen.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>Select a robot first, in the table or on the map.</source>
             <translation>Előbb jelöljön ki egy robotot a táblázatban vagy a térképen.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>Nincs mit megismételni.</translation>
         </message>
         <message>
-            <location filename="../../plugin/map/tools/drawing_tool.py" />
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to take back.</source>
             <translation>Nincs mit visszavonni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.</source>
+            <translation>{in_words} még a térképen van. Előbb küldje el (Enter) vagy vesse el (Esc).</translation>
         </message>
         <message>
             <location filename="../../plugin/map/tools/road_tools.py" />

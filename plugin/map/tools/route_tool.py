@@ -19,7 +19,7 @@ from ...control.route_queries import RoutePreferences
 from ...ui.dialogs import QuestionDialog
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
-from .drawing_tool import DrawingTool, is_arrow_move, moved_by_arrow
+from .drawing_tools import DrawingTool, is_arrow_move, moved_by_arrow
 
 REACH = 9.0
 """Pixels by which the mouse may miss a vertex or a leg."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.plugin.map.tools.road_tools import BESIDE
+from fleet_supervisor.plugin.map.tools.drawing_tools import BESIDE
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, QRect, QSize, Qt
 from qgis.PyQt.QtGui import QMouseEvent
