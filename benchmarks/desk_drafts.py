@@ -83,7 +83,7 @@ class _Slices:
         gc.collect()
         self.garbage.append((time.thread_time() - began) * 1e3)
         self._taken.clear()
-        desk.put_draft(draft)
+        desk.target_ways.set_command(draft)
         stage.wait(lambda: not desk.checks.is_under_way)
         return list(self._taken)
 

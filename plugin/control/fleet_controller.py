@@ -10,12 +10,11 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.gateway_addresses import FleetGateways
-from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import PauseRobot
 from ...robot_bridge.core.messages.roads import ReplannedRobot
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
-from ..gateway_client.fleet_state import FleetState, RequestResult
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import RemovedRobots
 from ..layers.site_transform import SiteToCanvas
 from ..ui.errors import FleetError, NotSentError
@@ -114,6 +113,9 @@ class FleetController(QObject):
         self.target_ways = TargetRoutes(self.drafts, self.checks, state, self.sender, self)
         self.sending = CommandSender(self.drafts, self.checks, self.target_ways, self.orders, self)
         self._rules.changed.connect(self.sending.outgoing.begin_anew)
+        for receiver in (self.target_ways, self.preview, self.view, self.orders):
+            self.sender.add_receiver(receiver)
+        self.orders.answered.connect(lambda _: self.emergency_changed.emit())
         self._follow_state()
         self._pass_on_words()
 
@@ -126,10 +128,7 @@ class FleetController(QObject):
         state.site_changed.connect(self._check_draft_again)
         state.site_changed.connect(self._show_site_problem)
         state.robots_removed.connect(self._robots_removed)
-        state.commands_changed.connect(self._commands_changed)
-        state.queues_changed.connect(self._rules.take_targets)
         state.replanned.connect(self._replanned)
-        state.answered.connect(self._answered)
         state.emergency_changed.connect(self._emergency_reported)
         state.suspensions_changed.connect(self._show_suspensions)
         state.links_changed.connect(self._show_links)
@@ -216,19 +215,10 @@ class FleetController(QObject):
         self.preview.watch()
         self.view.renew()
 
-    def _answered(self, answer: RequestResult) -> None:
-        if any(part.accept_answer(answer) for part in (self.target_ways, self.preview, self.view)):
-            return
-        self.orders.accept_answer(answer)
-        self.emergency_changed.emit()
-
     def _emergency_reported(self) -> None:
         if not self.state.emergency.in_force:
             self._endings.emergency_cleared()
         self.emergency_changed.emit()
-
-    def _commands_changed(self, changed: list[CommandReport]) -> None:
-        self._rules.take_targets(report.robot for report in changed)
 
     def _replanned(self, robot: ReplannedRobot) -> None:
         if robot.became == "another way":
@@ -268,13 +258,6 @@ class FleetController(QObject):
             self.checks.begin_anew()
         elif self.drafts.draft is not None:
             self._try(lambda: self.checks.again(lambda _: None))
-
-    def put_draft(self, draft: PendingCommand) -> None:
-        """Make a draft the one on the map, have it checked, and say what speaks against it.
-
-        :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
-        """
-        self.checks.set_command(self.target_ways.begun(draft))
 
     def _drafted(self) -> None:
         if self.drafts.draft is None:
@@ -336,7 +319,7 @@ class FleetController(QObject):
     def propose_route(self, robot: str, points: list[Point]) -> None:
         """Put a route for ``robot`` on the map, to be looked at, and sent as any other."""
         route = PendingCommand(robot, ROUTE, tuple(points), legs=(1,) * len(points))
-        self._try(lambda: self.put_draft(route))
+        self._try(lambda: self.target_ways.set_command(route))
 
     def _try(self, action: Callable[[], object]) -> bool:
         try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import uuid
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
@@ -26,8 +26,18 @@ from .pending_command import TARGETS, PendingCommand, Point
 SLOW_AFTER = 5.0
 
 
+class AnswerReceiver(Protocol):
+    """Who asks the gateway something, and waits for the answer."""
+
+    def accept_answer(self, answer: RequestResult) -> bool:
+        """Take in an answer; false when it is one to something else."""
+
+
 class RequestSender(QObject):
-    """Hands requests to the connection while there is a link; what stops robots also before there is one."""
+    """Hands requests to the connection while there is a link; what stops robots also before there is one.
+
+    Each answer is handed to who asked.
+    """
 
     failed = pyqtSignal(str)
     """What stops robots waits for the link: the text, which must not go unseen."""
@@ -37,9 +47,15 @@ class RequestSender(QObject):
     def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
         super().__init__(parent)
         self._connection, self._state = connection, state
+        self._receivers: list[AnswerReceiver] = []
         self._not_sent_yet: set[str] = set()
         """What was told of stops and Aborts that wait for the link."""
         state.link_changed.connect(self._link_changed)
+        state.answered.connect(self._answered)
+
+    def add_receiver(self, receiver: AnswerReceiver) -> None:
+        """Hand ``receiver`` the answers that none of those accepts that were added before it."""
+        self._receivers.append(receiver)
 
     def submit(self, request: OperatorRequest) -> None:
         """Send a request; raises NotSentError when it cannot be sent."""
@@ -67,6 +83,11 @@ class RequestSender(QObject):
             )
         self._not_sent_yet.add(text)
         self.failed.emit(text)
+
+    def _answered(self, answer: RequestResult) -> None:
+        for receiver in self._receivers:
+            if receiver.accept_answer(answer):
+                return
 
     def _link_changed(self) -> None:
         if self._state.link.phase is ConnectionPhase.CONNECTED:
@@ -223,10 +244,11 @@ class RequestTracker(QObject):
             str(uuid.uuid4()), request.method, to_json(request), self._clock.steady(), lasting
         )
 
-    def accept_answer(self, answer: RequestResult) -> None:
+    def accept_answer(self, answer: RequestResult) -> bool:
         """Take in what became of a request, and tell of it with :attr:`answered`."""
         self._settle(answer)
         self.answered.emit(answer)
+        return True
 
     def _settle(self, answer: RequestResult) -> None:
         pending = self._pending.pop(answer.order.key, None)

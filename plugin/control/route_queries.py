@@ -280,19 +280,12 @@ class TargetRoutes(QObject):
         self._is_amending = False
         board.changed.connect(self.watch)
 
-    def begun(self, draft: PendingCommand) -> PendingCommand:
-        """Return a draft with its way as far as it is known at once; another kind of draft as it is."""
-        if draft.kind not in DRIVEN_TO:
-            return draft
-        report = self._state.report_of(draft.robot)
-        place = _robot_position(report)
-        if place is None:
-            return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
-        if draft.kind == ROUTE or draft.is_direct or self._state.site is None or not self._state.site.roads:
-            return self._straight(draft, place, "")
-        if report is not None and report.paths is None:
-            return self._straight(draft, place, _not_declared(draft.robot))
-        return replace(draft, way=Approach(ApproachKind.SOUGHT))
+    def set_command(self, draft: PendingCommand) -> None:
+        """Make ``draft`` the one on the map, with its way as far as that is known, and have it checked.
+
+        :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
+        """
+        self._checks.set_command(self._begun(draft))
 
     def is_outdated(self, draft: PendingCommand) -> bool:
         """Tell whether a draft's robot is not where its way begins any more."""
@@ -329,7 +322,7 @@ class TargetRoutes(QObject):
         if draft.way.kind is ApproachKind.SOUGHT:
             self._seek(draft)
         elif self._has_changed(draft):
-            fresh = self.begun(draft)
+            fresh = self._begun(draft)
             if fresh.way.kind is ApproachKind.SOUGHT and draft.way.kind in (
                 ApproachKind.PATH,
                 ApproachKind.ON_REQUEST,
@@ -356,6 +349,20 @@ class TargetRoutes(QObject):
         if (draft.robot, draft.points[0]) == (query.robot, query.goal):
             self._amend(self._answered(draft, answer))
         return True
+
+    def _begun(self, draft: PendingCommand) -> PendingCommand:
+        """Return a draft with its way as far as it is known at once; another kind of draft as it is."""
+        if draft.kind not in DRIVEN_TO:
+            return draft
+        report = self._state.report_of(draft.robot)
+        place = _robot_position(report)
+        if place is None:
+            return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
+        if draft.kind == ROUTE or draft.is_direct or self._state.site is None or not self._state.site.roads:
+            return self._straight(draft, place, "")
+        if report is not None and report.paths is None:
+            return self._straight(draft, place, _not_declared(draft.robot))
+        return replace(draft, way=Approach(ApproachKind.SOUGHT))
 
     def _has_changed(self, draft: PendingCommand) -> bool:
         report, way = self._state.report_of(draft.robot), draft.way

@@ -264,6 +264,8 @@ class CommandChecks(QObject):
         self._layers = LayerCheck(project, self)
         self._layers.changed.connect(self.changed)
         self._targets = TargetCheck(state.commands, state.queues)
+        state.commands_changed.connect(lambda changed: self._mark_changed(report.robot for report in changed))
+        state.queues_changed.connect(self._mark_changed)
 
     def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
         """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
@@ -285,10 +287,6 @@ class CommandChecks(QObject):
         cones = has_ability(robot, "cones")
         return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)
 
-    def take_targets(self, robots: Iterable[str]) -> None:
-        """Take in that something new is known of what these robots have to do."""
-        self._targets.mark_changed(robots)
-
     def forget_targets(self) -> None:
         """Forget what every robot has to do."""
         self._targets.clear()
@@ -296,6 +294,10 @@ class CommandChecks(QObject):
     def remove(self) -> None:
         """Watch the project's layers no more."""
         self._layers.remove()
+
+    def _mark_changed(self, robots: Iterable[str]) -> None:
+        """Take in that something new is known of what these robots have to do."""
+        self._targets.mark_changed(robots)
 
 
 def _approach_findings(draft: PendingCommand) -> Findings:

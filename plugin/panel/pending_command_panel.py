@@ -267,7 +267,7 @@ class PendingCommandActions(QObject):
         actions.override.setEnabled(draft is not None and draft.override is None and draft.can_be_overridden)
 
     def _reverse(self) -> None:
-        self._desk.put_draft(turned_round(self._draft()))
+        self._desk.target_ways.set_command(turned_round(self._draft()))
 
     def _enqueue(self) -> None:
         """Put the draft at the end of its robot's queue.
@@ -330,7 +330,7 @@ class PendingCommandActions(QObject):
     def _take_from_layer(self) -> None:
         self._check_free()
         draft = command_from_layer(self._desk.canvas.currentLayer(), self._desk)
-        self._desk.put_draft(draft)
+        self._desk.target_ways.set_command(draft)
         self._show(draft.points)
 
     def _ask_for_coordinates(self) -> None:

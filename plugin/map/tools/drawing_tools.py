@@ -189,7 +189,7 @@ class DrawingTool(QgsMapTool):
 
         :raises FleetError: when it cannot be checked.
         """
-        self.desk.put_draft(draft)
+        self.desk.target_ways.set_command(draft)
 
     @staticmethod
     def is_drag(pressed: QPoint, now: QPoint) -> bool:

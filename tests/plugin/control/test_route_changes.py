@@ -196,7 +196,9 @@ def test_undo_and_paste_over_the_map_are_the_tools_and_not_those_of_qgis(route):
 
 
 def test_what_follows_the_roads_is_not_changed_by_hand(route):
-    route.window.desk.put_draft(route.drafts.draft.with_leg(((65, 60), (70, 62), (75, 60)), "11 m"))
+    route.window.desk.target_ways.set_command(
+        route.drafts.draft.with_leg(((65, 60), (70, 62), (75, 60)), "11 m")
+    )
     route.wait(route.iface.is_settled)
     draft = route.drafts.draft
     route.drag((70, 62), (70, 80))

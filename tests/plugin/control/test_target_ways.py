@@ -278,7 +278,7 @@ def test_the_way_to_the_mouse_goes_with_whatever_makes_it_untrue(roads, gateway)
         QApplication.sendEvent(view, QEvent(QEvent.Type.Leave))
 
     def send():
-        desk.put_draft(PendingCommand("r1", CONE, (GOAL,)))
+        desk.target_ways.set_command(PendingCommand("r1", CONE, (GOAL,)))
         roads.settle()
         desk.sending.send()
         roads.hand.wait(lambda: roads.draft is None, what="the draft to be gone")
