@@ -159,8 +159,6 @@ COMMAND_CHOICES = {
     CommandChoice.FAILED: tr("Failed, aborted, expired"),
 }
 FILE = file_topic("command_log")
-MERGED = 500
-"""New commands that are sorted in one by one; of more of them all are listed again."""
 
 
 class CommandLog(QWidget):
@@ -189,30 +187,17 @@ class CommandLog(QWidget):
         self._which.currentIndexChanged.connect(self.refresh)
         ZoomMenu(self.view).requested.connect(self._go)
         self.view.selectionModel().selectionChanged.connect(self._allow)
-        desk.state.commands_changed.connect(self.show_reports)
+        self._model.follow(desk.state)
+        self._model.added.connect(self._show_newest)
+        self._model.modelReset.connect(self._listed_anew)
+        desk.state.commands_changed.connect(self._commands_changed)
         desk.state.site_changed.connect(self._site_changed)
         desk.selection.changed.connect(self._selection_changed)
         self._allow()
 
-    def show_reports(self, reports: list[CommandReport]) -> None:
-        """Add what is new, and bring what is known up to date."""
-        self._list_robots({report.robot for report in reports})
-        if len(reports) > MERGED:
-            self.refresh()
-            return
-        if self._model.merge(reports):
-            self._model.keep(self._desk.state.commands)
-            self._let_go_of_old()
-            self._open(self._model.index(0, 0))
-        self._show_what_is_open()
-
     def refresh(self, *_what: object) -> None:
         """List again what the filters keep."""
         self._model.show_all(self._desk.state.commands, self.filter())
-        self._opened = None
-        self._open(self._model.index(0, 0))
-        self._show_what_is_open()
-        self._allow()
 
     def filter(self) -> CommandFilter:
         """Return what the fields above the log say."""
@@ -268,6 +253,20 @@ class CommandLog(QWidget):
         rows.addLayout(head)
         rows.addLayout(beneath)
         rows.addWidget(self.view, 1)
+
+    def _commands_changed(self, reports: list[CommandReport]) -> None:
+        self._list_robots({report.robot for report in reports})
+        self._show_what_is_open()
+
+    def _show_newest(self) -> None:
+        self._let_go_of_old()
+        self._open(self._model.index(0, 0))
+
+    def _listed_anew(self) -> None:
+        self._opened = None
+        self._open(self._model.index(0, 0))
+        self._show_what_is_open()
+        self._allow()
 
     def _list_robots(self, robots: set[str]) -> None:
         if robots <= self._listed:

@@ -8,12 +8,19 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import count, groupby
 
-from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt
+from qgis.PyQt.QtCore import QAbstractItemModel, QModelIndex, QObject, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QFont
 
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from ...robot_bridge.core.messages.robots import Abort
-from ..gateway_client.command_cache import command_in_words, place_of, requested_at, state_word
+from ..gateway_client.command_cache import (
+    CommandCache,
+    command_in_words,
+    place_of,
+    requested_at,
+    state_word,
+)
+from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.state_words import COMMAND_STATES
 from ..ui.glyphs import COMMAND_COLOURS, for_letters
 from ..ui.language import date_and_time, short_time, tr
@@ -139,6 +146,8 @@ ANSWERED_ROLES = frozenset(
 """The item roles that this model answers; a view asks for as many others of each cell that it paints."""
 PAGE = 200
 """Commands that a view is told of at first, and each time that it comes to the end of those."""
+MERGED = 500
+"""New commands that are sorted in one by one; of more of them all are listed again."""
 
 
 class LogModel(QAbstractItemModel):
@@ -148,8 +157,12 @@ class LogModel(QAbstractItemModel):
     older ones when it asks for more.
     """
 
+    added = pyqtSignal()
+    """Commands came that were not listed before."""
+
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
+        self._known = CommandCache()
         self._filter = CommandFilter()
         self._shown: list[CommandReport] = []
         self._row_count = 0
@@ -162,6 +175,11 @@ class LogModel(QAbstractItemModel):
         self._bold = QFont()
         self._bold.setPointSizeF(max(7.0, self._bold.pointSizeF() - 1.0))
         self._bold.setBold(True)
+
+    def follow(self, state: FleetState) -> None:
+        """List from now on what ``state`` learns of commands."""
+        self._known = state.commands
+        state.commands_changed.connect(self._take_in)
 
     # --- what Qt asks ---
 
@@ -290,6 +308,14 @@ class LogModel(QAbstractItemModel):
         if self._rows is None:
             self._rows = {report.command: row for row, report in enumerate(self._shown)}
         return self._rows.get(command)
+
+    def _take_in(self, reports: list[CommandReport]) -> None:
+        """Add what is new, and bring what is known up to date."""
+        if len(reports) > MERGED:
+            self.show_all(self._known, self._filter)
+        elif self.merge(reports):
+            self.keep(self._known)
+            self.added.emit()
 
     def _insert(self, reports: list[CommandReport]) -> None:
         # Newest first, and of one time those that were told last.
