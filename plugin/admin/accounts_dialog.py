@@ -11,8 +11,8 @@ from qgis.PyQt.QtCore import QObject, Qt, pyqtSignal
 from qgis.PyQt.QtWidgets import QComboBox, QLineEdit, QMessageBox, QWidget
 
 from ...robot_bridge.core.messages import administration
+from ...robot_bridge.core.messages.administration import new_token, open_session, operators_report
 from ...robot_bridge.core.messages.base import Role
-from ...robot_bridge.core.messages.json_values import new_token, open_session, operators_report
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ROLES
 from ..help import ACCOUNTS

@@ -26,7 +26,8 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages import administration
-from ...robot_bridge.core.messages.json_values import sites_report
+from ...robot_bridge.core.messages.administration import sites_report
+from ...robot_bridge.core.messages.links import PlaybackReport, SetPlayback
 from ...robot_bridge.core.messages.safety import RobotState
 from ..control.fleet_controller import FleetController
 from ..gateway_client.connection_status import ConnectionPhase
@@ -232,7 +233,7 @@ class RecordingsDialog(QDialog):
         name = self._link.currentText()
         words = tr("Recording of {link}", link=name)
         self._numbers.update({key: value for key, value in change.items() if key in self._numbers})
-        self._asking.ask(administration.SetPlayback(name, **change), words, self._show)
+        self._asking.ask(SetPlayback(name, **change), words, self._show)
 
     def _apply(self) -> None:
         """Send the numbers that were typed, as far as they are others than those reported or sent last."""
@@ -251,8 +252,8 @@ class RecordingsDialog(QDialog):
             self._change(place_s=float(self._place.sliderPosition()))
 
     def _show(self, result: dict[str, Any]) -> None:
-        names = administration.PlaybackReport.__dataclass_fields__
-        report = administration.PlaybackReport(**{name: result[name] for name in names})
+        names = PlaybackReport.__dataclass_fields__
+        report = PlaybackReport(**{name: result[name] for name in names})
         self._numbers = {"place_s": round(report.place_s, 1), "speed": report.speed}
         self._place.setMaximum(int(report.length_s))
         self._seconds.setMaximum(report.length_s)

@@ -12,8 +12,9 @@ from qgis.PyQt.QtCore import QObject, QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QResizeEvent
 from qgis.PyQt.QtWidgets import QAbstractButton, QBoxLayout, QHBoxLayout, QLabel, QSizePolicy, QWidget
 
-from ...robot_bridge.core.messages.administration import LinkReport, Links, Suspension, Suspensions
+from ...robot_bridge.core.messages.administration import Suspension, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.links import LinkReport, Links
 from ...robot_bridge.core.messages.queues import TaskState
 from ...robot_bridge.core.messages.robots import Abort
 from ..gateway_client.fleet_state import FleetState

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
-from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.base import to_json
 from ...robot_bridge.core.messages.queues import QueueTask, TaskKind
 from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd, SetPosIni
 from ..ui.errors import FleetError, NotSentError

@@ -9,8 +9,8 @@ from typing import Any, Protocol
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
+from ...robot_bridge.core.messages.base import to_json
 from ...robot_bridge.core.messages.commands import AbortAll, Send
-from ...robot_bridge.core.messages.json_values import to_json
 from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ...robot_bridge.core.messages.robots import Abort
 from ...robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages.json_values import route_report, to_json
+from ...robot_bridge.core.messages.base import to_json
 from ...robot_bridge.core.messages.positions import RobotReport
-from ...robot_bridge.core.messages.roads import GetRoute, RouteReport
+from ...robot_bridge.core.messages.roads import GetRoute, RouteReport, route_report
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr

@@ -12,8 +12,7 @@ from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import positions
-from ...robot_bridge.core.messages.base import is_robot_name
-from ...robot_bridge.core.messages.json_values import to_json
+from ...robot_bridge.core.messages.base import is_robot_name, to_json
 from ...robot_bridge.core.messages.positions import AlarmLimits, FindRobots, PositionForm, Subscribe, View
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult

@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ...robot_bridge.core.messages.commands import CommandReport, CommandState
-from ...robot_bridge.core.messages.json_values import command_report
+from ...robot_bridge.core.messages.commands import CommandReport, CommandState, command_report
 from ...robot_bridge.core.messages.robots import Abort, SetPath, SetPosEnd
 from ..ui.language import tr
 from .state_words import COMMAND_STATES

@@ -11,8 +11,9 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.gateway_addresses import FleetGateways
-from ...robot_bridge.core.messages.administration import Links, SiteReport, Suspensions
+from ...robot_bridge.core.messages.administration import SiteReport, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport
+from ...robot_bridge.core.messages.links import Links
 from ...robot_bridge.core.messages.positions import RobotReport
 from ...robot_bridge.core.messages.queues import QueueReport
 from ...robot_bridge.core.messages.records import ObservationReport, PlacementReport

@@ -10,13 +10,13 @@ from typing import Any
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.gateway_addresses import FleetGateways, GatewayAddresses
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
-from ...robot_bridge.core.messages import json_values, safety
+from ...robot_bridge.core.messages import administration, links, records, roads, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
-from ...robot_bridge.core.messages.base import LONGEST_OPERATOR, one_line
+from ...robot_bridge.core.messages.base import LONGEST_OPERATOR, one_line, to_json
 from ...robot_bridge.core.messages.commands import GetCommands
 from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe, View
-from ...robot_bridge.core.messages.queues import GetQueue
+from ...robot_bridge.core.messages.queues import GetQueue, queue_report
 from ...robot_bridge.core.messages.roads import GetClosures
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
@@ -34,22 +34,22 @@ OVERRIDABLE = -32007
 """The error code of a change to what is not as it was seen; the newer state comes with it."""
 
 NEWEST_COUNTS = {
-    "emergency": json_values.emergency_report,
-    "suspensions": json_values.suspensions_report,
-    "links": json_values.links_report,
+    "emergency": safety.emergency_report,
+    "suspensions": administration.suspensions_report,
+    "links": links.links_report,
     "geofence": safety.geofence_report,
     "nearness": safety.nearness_report,
-    "closures": json_values.closures_report,
-    "conflicts": json_values.conflicts_report,
+    "closures": roads.closures_report,
+    "conflicts": roads.conflicts_report,
 }
 """Notifications of which only the newest counts, each a topic of its name: what decodes it."""
 EACH_COUNTS = {
     "command": ("commands", command_in),
-    "queue": ("queues", json_values.queue_report),
+    "queue": ("queues", queue_report),
     "plan": ("plans", plan_in),
-    "placement": ("placed_cones", json_values.placement_report),
-    "observation": ("observations", json_values.observation_report),
-    "replanned": ("replanned", json_values.replanned_robot),
+    "placement": ("placed_cones", records.placement_report),
+    "observation": ("observations", records.observation_report),
+    "replanned": ("replanned", roads.replanned_robot),
 }
 """Notifications of one thing among many: the topic, and what decodes it."""
 
@@ -159,7 +159,7 @@ class GatewayProtocol:
         self.ready = False
         # A name that the gateway would refuse must not keep its operator away.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
-        return [self._request(OperatorRequest("hello", Hello.method, json_values.to_json(Hello(name))))]
+        return [self._request(OperatorRequest("hello", Hello.method, to_json(Hello(name))))]
 
     def submit(self, order: OperatorRequest) -> list[str]:
         """Return the texts to send now for a new order: none while the link is not ready.
@@ -240,7 +240,7 @@ class GatewayProtocol:
         return json.dumps({"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params})
 
     def _subscription(self) -> str:
-        params = json_values.to_json(Subscribe(self._rate, PositionForm.COLUMNS))
+        params = to_json(Subscribe(self._rate, PositionForm.COLUMNS))
         if self._knows_views and self._view is not None:
             params["view"] = self._view
         return self._request(OperatorRequest("subscribe", Subscribe.method, params))
@@ -249,7 +249,7 @@ class GatewayProtocol:
         if method == "positions":
             self._buffer.add(robots=table_from_rows(params["robots"], self._clock.steady(), params))
         elif method == "site":
-            self._buffer.add(site=checked_site(json_values.site_report(params)))
+            self._buffer.add(site=checked_site(administration.site_report(params)))
         elif method == "gateways":
             self._learn(params["gateways"])
         elif method in NEWEST_COUNTS:
@@ -323,10 +323,10 @@ class GatewayProtocol:
         self._learn(result.get("gateways"))
         if result.get("gateway"):
             self.names[self._url] = one_line(str(result["gateway"]), LONGEST_OPERATOR)
-        self._buffer.add(site=checked_site(json_values.site_report(result["site"])), greeting_of=database)
+        self._buffer.add(site=checked_site(administration.site_report(result["site"])), greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
-            self._buffer.add(emergency=json_values.emergency_report(result["emergency"]))
+            self._buffer.add(emergency=safety.emergency_report(result["emergency"]))
         self._choose_view(result)
         self.ready = True
         orders, too_old = self._outbox.renew(self._clock.steady())
@@ -335,10 +335,10 @@ class GatewayProtocol:
                 RequestResult(order, error=_too_old(self._clock.steady() - order.requested_at))
             )
         first = [
-            OperatorRequest("get_commands", GetCommands.method, json_values.to_json(GetCommands())),
+            OperatorRequest("get_commands", GetCommands.method, to_json(GetCommands())),
             OperatorRequest("get_closures", GetClosures.method),
-            OperatorRequest(ALL_QUEUES, GetQueue.method, json_values.to_json(GetQueue())),
-            OperatorRequest(ALL_PLANS, GetPlans.method, json_values.to_json(GetPlans())),
+            OperatorRequest(ALL_QUEUES, GetQueue.method, to_json(GetQueue())),
+            OperatorRequest(ALL_PLANS, GetPlans.method, to_json(GetPlans())),
         ]
         return [self._subscription(), *(self._request(order) for order in (*first, *orders))]
 
@@ -347,7 +347,7 @@ class GatewayProtocol:
         robots = result.get("robots")
         self._knows_views = isinstance(robots, int)
         if self._view is None and self._knows_views and robots > VIEWS_FROM:
-            self._view = json_values.to_json(View(tuple(result["site"]["bounds"])))
+            self._view = to_json(View(tuple(result["site"]["bounds"])))
 
     def _learn(self, told: object) -> None:
         """Know where else the fleet is reached, and have that kept for the next session."""
@@ -390,9 +390,9 @@ class GatewayProtocol:
             return []
         result = message.get("result") or {}
         if order.method in (safety.EmergencyStop.method, safety.ClearEmergencyStop.method):
-            self._buffer.add(emergency=json_values.emergency_report(result))
+            self._buffer.add(emergency=safety.emergency_report(result))
         if order.method == GetClosures.method:
-            self._buffer.add(closures=json_values.closures_report(result))
+            self._buffer.add(closures=roads.closures_report(result))
         self._buffer.add(
             queues=queues_in(result),
             are_all_queues=order.key == ALL_QUEUES,

@@ -9,10 +9,15 @@ from typing import Any
 from ...robot_bridge.core.assignment.plan import ConePlan, plan_of_document
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.errors import PlanFileError
-from ...robot_bridge.core.messages import json_values
-from ...robot_bridge.core.messages.plans import PlanReport, PlanState
-from ...robot_bridge.core.messages.queues import QueueReport
-from ...robot_bridge.core.messages.records import ObservationReport, ObservationState, PlacementReport
+from ...robot_bridge.core.messages.plans import PlanReport, PlanState, plan_report
+from ...robot_bridge.core.messages.queues import QueueReport, queue_report
+from ...robot_bridge.core.messages.records import (
+    ObservationReport,
+    ObservationState,
+    PlacementReport,
+    observation_report,
+    placement_report,
+)
 from ...robot_bridge.core.messages.safety import FenceAlarm, Geofence, Nearness, NearnessAlarm
 from ..ui.language import tr
 
@@ -66,8 +71,8 @@ def queues_in(values: dict[str, Any]) -> list[QueueReport]:
     :raises KeyError: for what names itself a queue and is none; ValueError and TypeError likewise.
     """
     if {"robot", "revision", "tasks", "robot_state"} <= values.keys():
-        return [json_values.queue_report(values)]
-    return [json_values.queue_report(queue) for queue in values.get("queues") or ()]
+        return [queue_report(values)]
+    return [queue_report(queue) for queue in values.get("queues") or ()]
 
 
 PLAN_ENDS = (PlanState.FINISHED, PlanState.CLEARED)
@@ -174,7 +179,7 @@ def plan_in(values: dict[str, Any]) -> KnownPlan:
     """
     if len(values.get("stops") or ()) > MOST_STOPS:
         raise ValueError(f"plan {values['plan']!r} has more than {MOST_STOPS} stops")
-    report = replace(json_values.plan_report(values), document=None, proposal=None)
+    report = replace(plan_report(values), document=None, proposal=None)
     try:
         document, proposal = (
             None if values.get(name) is None else plan_of_document(values[name])
@@ -223,7 +228,7 @@ class PlacedConeCache:
 
 def placements_in(values: dict[str, Any]) -> list[PlacementReport]:
     """Return the placed cones in an answer; raises KeyError or TypeError for what names itself one."""
-    return [json_values.placement_report(placement) for placement in values.get("placements") or ()]
+    return [placement_report(placement) for placement in values.get("placements") or ()]
 
 
 MOST_REVIEWED = 1000
@@ -281,8 +286,8 @@ def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
     :raises KeyError: for what names itself one and is none; ValueError and TypeError likewise.
     """
     if {"observation", "op", "object", "state"} <= values.keys():
-        return [json_values.observation_report(values)]
-    return [json_values.observation_report(one) for one in values.get("observations") or ()]
+        return [observation_report(values)]
+    return [observation_report(one) for one in values.get("observations") or ()]
 
 
 GEOFENCE_SILENT_AFTER = 10.0

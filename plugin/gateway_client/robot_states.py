@@ -12,8 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ...robot_bridge.core.messages import positions
-from ...robot_bridge.core.messages.json_values import fleet_view, robot_report
-from ...robot_bridge.core.messages.positions import FleetView, RobotReport
+from ...robot_bridge.core.messages.positions import FleetView, RobotReport, fleet_view, robot_report
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 

@@ -15,8 +15,13 @@ from qgis.PyQt.QtWidgets import (
     QWidget,
 )
 
-from ...robot_bridge.core.messages.json_values import ways_out_report
-from ...robot_bridge.core.messages.roads import ConflictReport, GetWaysOut, HoldReport, WayOut
+from ...robot_bridge.core.messages.roads import (
+    ConflictReport,
+    GetWaysOut,
+    HoldReport,
+    WayOut,
+    ways_out_report,
+)
 from ..control.fleet_controller import FleetController
 from ..control.request_tracker import RequestTracker
 from ..gateway_client.fleet_state import FleetState, RequestResult

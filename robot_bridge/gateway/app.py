@@ -21,8 +21,7 @@ from websockets.http11 import Request, Response
 
 from ..core.errors import BridgeError, SiteError, StoreError
 from ..core.messages.administration import Stopping
-from ..core.messages.base import MessageError, check_robot_name
-from ..core.messages.json_values import to_json
+from ..core.messages.base import MessageError, check_robot_name, to_json
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
 from ..protocol.credentials import AccessError

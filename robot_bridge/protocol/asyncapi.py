@@ -8,8 +8,9 @@ from functools import cache
 from typing import Any
 
 from ..core.messages import links
-from ..core.messages.administration import PROTOCOL_VERSION, Playback, PlaybackReport
+from ..core.messages.administration import PROTOCOL_VERSION
 from ..core.messages.base import DESK_REQUESTS, ROBOT_NAME, Done
+from ..core.messages.links import Playback, PlaybackReport
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
 from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
 from .openapi import openapi

@@ -21,9 +21,15 @@ from ..core.errors import (
 )
 from ..core.json_decoder import DecodingError, decode_json, has_few_brackets
 from ..core.messages import robots
-from ..core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, refuse_unknown_keys, unknown_keys
+from ..core.messages.base import (
+    DESK_REQUESTS,
+    DeskRequest,
+    MessageError,
+    refuse_unknown_keys,
+    to_json,
+    unknown_keys,
+)
 from ..core.messages.commands import Send
-from ..core.messages.json_values import to_json
 from ..core.messages.robots import Abort, Answer, Command, Request, SendImage, SendPos
 from ..core.messages.safety import EmergencyStop
 from . import jsonrpc

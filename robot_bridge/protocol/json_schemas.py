@@ -9,8 +9,9 @@ from typing import Any
 
 import msgspec
 
-from ..core.messages.administration import Gateways, Links, SiteReport, Stopping, Suspensions
+from ..core.messages.administration import Gateways, SiteReport, Stopping, Suspensions
 from ..core.messages.commands import CommandReport
+from ..core.messages.links import Links
 from ..core.messages.plans import PlanReport
 from ..core.messages.positions import PositionColumns, Positions
 from ..core.messages.queues import QueueReport

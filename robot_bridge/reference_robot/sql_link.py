@@ -11,8 +11,7 @@ from collections.abc import Sequence
 from sqlalchemy import URL, Connection
 
 from ..core.errors import StoreError
-from ..core.messages.base import MessageError
-from ..core.messages.json_values import to_json
+from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Alive, OpAck, Ready, Request, SendPos
 from ..gateway.storage.database import Database
 from ..gateway.storage.repositories import requests as answers

@@ -13,8 +13,7 @@ from websockets.frames import CloseCode
 
 from ..core.errors import BridgeError
 from ..core.gateway_addresses import GatewayAddresses
-from ..core.messages.base import MessageError
-from ..core.messages.json_values import to_json
+from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of

@@ -14,8 +14,8 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.robot_bridge.core.messages.administration import SiteReport
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from fleet_supervisor.robot_bridge.core.messages.positions import RobotReport
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, RobotState
 from qgis.core import (

@@ -16,7 +16,6 @@ from . import (  # noqa: F401 # found among the names of this module
     administration,
     base,
     commands,
-    json_values,
     links,
     plans,
     positions,

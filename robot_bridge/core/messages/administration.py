@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import ClassVar
+from typing import Any
 
 from . import base
-from .base import DeskRequest, MessageError, Role
+from .base import DeskRequest, MessageError, Role, known_fields
 from .safety import EmergencyReport, check_reason
 
 # --- The connection of an operator: what is served here, and who you are ---
@@ -402,74 +402,40 @@ class Suspensions:
     robots: list[Suspension] = field(default_factory=list)
 
 
-@dataclass(frozen=True)
-class LinkReport:
-    """A link, which speaks for many robots; ``up``: it is connected, and its robots can be reached.
-
-    Otherwise ``text`` says what is wrong, and ``robots`` are those that it spoke for: fifty names at most, of
-    ``count`` in all. Where it is up ``text`` says what is the matter with some of its robots, if anything is.
-    """
-
-    link: str
-    kind: str | None
-    up: bool
-    text: str | None = None
-    robots: list[str] = field(default_factory=list)
-    count: int = 0
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
 
 
-@dataclass(frozen=True)
-class Links:
-    """All links that a site names, and those that have been connected since the gateway's start."""
-
-    links: list[LinkReport] = field(default_factory=list)
-
-
-@dataclass(frozen=True)
-class Playback:
-    """How a link is to play its recording on; what is left out stays as it is.
-
-    ``speed`` is in seconds of the recording for each second, ``place_s`` in seconds after its begin.
-    """
-
-    speed: float | None = None
-    paused: bool | None = None
-    loop: bool | None = None
-    place_s: float | None = None
-    method: ClassVar[str] = "playback"
-
-    def __post_init__(self) -> None:
-        base.check_finite(speed=self.speed, place_s=self.place_s)
+def site_report(values: dict[str, Any]) -> SiteReport:
+    """Return the site that a gateway sent as JSON."""
+    known = known_fields(SiteReport, values)
+    return SiteReport(**{**known, "origin": tuple(values["origin"]), "bounds": tuple(values["bounds"])})
 
 
-@dataclass(frozen=True)
-class PlaybackReport:
-    """How a recording is played: the name of its file, and where in its ``length_s`` seconds it is."""
-
-    file: str
-    speed: float
-    paused: bool
-    loop: bool
-    place_s: float
-    length_s: float
+def operators_report(values: dict[str, Any]) -> Operators:
+    """Return every account that a gateway sent as JSON."""
+    return Operators([_operator_report(one) for one in values["operators"]])
 
 
-@dataclass(frozen=True)
-class SetPlayback(DeskRequest[PlaybackReport]):
-    """Play the recording of ``link`` on otherwise, as :class:`Playback`; with nothing else, only ask how."""
+def _operator_report(values: dict[str, Any]) -> OperatorReport:
+    enums = {"role": Role(values["role"]), "token": TokenState(values["token"])}
+    return OperatorReport(**{**known_fields(OperatorReport, values), **enums})
 
-    method = "set_playback"
-    least_role = Role.OPERATOR
-    link: str
-    speed: float | None = None
-    paused: bool | None = None
-    loop: bool | None = None
-    place_s: float | None = None
 
-    def __post_init__(self) -> None:
-        base.check_finite(speed=self.speed, place_s=self.place_s)
+def new_token(values: dict[str, Any]) -> NewToken:
+    """Return the token that was just made, as a gateway sent it as JSON."""
+    return NewToken(**{**known_fields(NewToken, values), "role": Role(values["role"])})
 
-    @property
-    def change(self) -> Playback:
-        """What the link is told."""
-        return Playback(self.speed, self.paused, self.loop, self.place_s)
+
+def open_session(values: dict[str, Any]) -> SessionReport:
+    """Return one connection of an operator, as a gateway sent it as JSON."""
+    return SessionReport(**known_fields(SessionReport, values))
+
+
+def suspensions_report(values: dict[str, Any]) -> Suspensions:
+    """Return which robots' accounts are locked, as a gateway sent it as JSON."""
+    return Suspensions([Suspension(**known_fields(Suspension, one)) for one in values["robots"]])
+
+
+def sites_report(values: dict[str, Any]) -> Sites:
+    """Return the sites that a gateway may serve, as it sent them as JSON."""
+    return Sites([SiteOffer(**known_fields(SiteOffer, one)) for one in values["sites"]])

@@ -257,6 +257,36 @@ def _inner(kind: type) -> dict[str, tuple[type, bool]]:
     return found
 
 
+# --- Messages as plain JSON values ---
+
+
+def to_json(message: Any) -> dict[str, Any]:
+    """Return a message as JSON values; what is None is left out, a bytes field is left to the payload."""
+    return {
+        name: value if type(value) in _PLAIN_ALREADY else _plain(value)
+        for name in _in_order(message.__class__)
+        if (value := getattr(message, name)) is not None and not isinstance(value, bytes)
+    }
+
+
+_PLAIN_ALREADY = frozenset({str, int, float, bool})
+
+
+@functools.cache
+def _in_order(kind: type) -> tuple[str, ...]:
+    return tuple(field.name for field in dataclasses.fields(kind))
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return to_json(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
+
+
 # --- What every operator's request declares: its method, least role, priority and type of result ---
 
 

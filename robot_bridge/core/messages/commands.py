@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any
 
 from ..errors import RefusedError
 from . import base
-from .base import DeskRequest, Done, MessageError, Priority, Role
+from .base import DeskRequest, Done, MessageError, Priority, Role, known_fields
 from .safety import check_override, check_reason
 
 
@@ -224,3 +224,21 @@ class AbortTask(DeskRequest[CommandReport]):
             raise MessageError("give one of robot and aborts: whose task is to end, or which command")
         if self.robot is not None:
             base.check_robot_name(self.robot)
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def command_report(values: dict[str, Any]) -> CommandReport:
+    """Return the command that a gateway sent as JSON."""
+    steps = [
+        CommandStep(**{**known_fields(CommandStep, step), "state": CommandState(step["state"])})
+        for step in values.get("steps", [])
+    ]
+    report = CommandReport(
+        **{**known_fields(CommandReport, values), "state": CommandState(values["state"]), "steps": steps}
+    )
+    if report.stood is None:
+        return report
+    x, y, theta = report.stood
+    return replace(report, stood=(x, y, theta))

@@ -1,4 +1,4 @@
-"""What a link and the gateway tell each other beside the messages of its robots (endpoint ``/link``)."""
+"""Links: what one and the gateway tell each other (at ``/link``), and what operators are told of them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Any, ClassVar
 
 from .administration import SiteReport
-from .base import LONGEST_STATUS, MessageError, check_finite, one_line
+from .base import LONGEST_STATUS, DeskRequest, MessageError, Role, check_finite, known_fields, one_line
 
 LINK_PROTOCOL = 1
 MOST_COUNTS = 50
@@ -152,3 +152,84 @@ class Released:
 def _check_name(what: str, name: str) -> None:
     if not (0 < len(name) <= LONGEST_NAME and name.isidentifier() and name.isascii()):
         raise MessageError(f"{what} is {name[:40]!r}; give 1 to {LONGEST_NAME} letters, digits or '_'")
+
+
+# --- What operators are told of links, and ask of one that plays a recording ---
+
+
+@dataclass(frozen=True)
+class LinkReport:
+    """A link, which speaks for many robots; ``up``: it is connected, and its robots can be reached.
+
+    Otherwise ``text`` says what is wrong, and ``robots`` are those that it spoke for: fifty names at most, of
+    ``count`` in all. Where it is up ``text`` says what is the matter with some of its robots, if anything is.
+    """
+
+    link: str
+    kind: str | None
+    up: bool
+    text: str | None = None
+    robots: list[str] = field(default_factory=list)
+    count: int = 0
+
+
+@dataclass(frozen=True)
+class Links:
+    """All links that a site names, and those that have been connected since the gateway's start."""
+
+    links: list[LinkReport] = field(default_factory=list)
+
+
+def links_report(values: dict[str, Any]) -> Links:
+    """Return how each link is, as a gateway sent it as JSON."""
+    return Links([LinkReport(**known_fields(LinkReport, one)) for one in values["links"]])
+
+
+@dataclass(frozen=True)
+class Playback:
+    """How a link is to play its recording on; what is left out stays as it is.
+
+    ``speed`` is in seconds of the recording for each second, ``place_s`` in seconds after its begin.
+    """
+
+    speed: float | None = None
+    paused: bool | None = None
+    loop: bool | None = None
+    place_s: float | None = None
+    method: ClassVar[str] = "playback"
+
+    def __post_init__(self) -> None:
+        check_finite(speed=self.speed, place_s=self.place_s)
+
+
+@dataclass(frozen=True)
+class PlaybackReport:
+    """How a recording is played: the name of its file, and where in its ``length_s`` seconds it is."""
+
+    file: str
+    speed: float
+    paused: bool
+    loop: bool
+    place_s: float
+    length_s: float
+
+
+@dataclass(frozen=True)
+class SetPlayback(DeskRequest[PlaybackReport]):
+    """Play the recording of ``link`` on otherwise, as :class:`Playback`; with nothing else, only ask how."""
+
+    method = "set_playback"
+    least_role = Role.OPERATOR
+    link: str
+    speed: float | None = None
+    paused: bool | None = None
+    loop: bool | None = None
+    place_s: float | None = None
+
+    def __post_init__(self) -> None:
+        check_finite(speed=self.speed, place_s=self.place_s)
+
+    @property
+    def change(self) -> Playback:
+        """What the link is told."""
+        return Playback(self.speed, self.paused, self.loop, self.place_s)

@@ -10,7 +10,16 @@ from dataclasses import dataclass, field
 from enum import Enum
 from typing import Any
 
-from .base import LONGEST_LABEL, DeskRequest, MessageError, Priority, Role, check_finite, check_stored_number
+from .base import (
+    LONGEST_LABEL,
+    DeskRequest,
+    MessageError,
+    Priority,
+    Role,
+    check_finite,
+    check_stored_number,
+    known_fields,
+)
 from .queues import LONGEST_QUEUE, TaskState
 from .safety import check_override, check_reason
 
@@ -300,3 +309,20 @@ def check_label(name: str, text: str) -> None:
 def _check_edit(plan: str, revision: int) -> None:
     check_label("plan", plan)
     check_stored_number(revision=revision)
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def plan_report(values: dict[str, Any]) -> PlanReport:
+    """Return the cone plan that a gateway sent as JSON; its documents stay plain values."""
+    stops = [
+        PlanStopReport(**{**known_fields(PlanStopReport, one), "state": TaskState(one["state"])})
+        for one in values.get("stops", [])
+    ]
+    problems = [
+        PlanProblemReport(**{**known_fields(PlanProblemReport, one), "kind": PlanProblemKind(one["kind"])})
+        for one in values.get("problems", [])
+    ]
+    typed = {"state": PlanState(values["state"]), "stops": stops, "problems": problems}
+    return PlanReport(**{**known_fields(PlanReport, values), **typed})

@@ -2,10 +2,23 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from dataclasses import dataclass, field
 from enum import Enum
+from typing import Any
 
-from .base import COORDINATE, DeskRequest, Done, MessageError, Priority, Role, check_finite, check_robot_name
+from .base import (
+    COORDINATE,
+    DeskRequest,
+    Done,
+    MessageError,
+    Priority,
+    Role,
+    check_finite,
+    check_robot_name,
+    known_fields,
+)
 from .safety import PathDeclaration, RobotState
 
 # --- Positions as a table of numbers: what a desk asks for that shows thousands of robots ---
@@ -287,3 +300,45 @@ class FindRobots(DeskRequest[FoundRobots]):
                 )
         if not 1 <= self.limit <= MOST_FOUND:
             raise MessageError(f"limit is {self.limit}; give 1 to {MOST_FOUND} robots")
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def robot_report(values: dict[str, Any]) -> RobotReport:
+    """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    return RobotReport(**{**known_fields(RobotReport, values), "state": RobotState(values["state"])})
+
+
+def fleet_view(values: dict[str, Any]) -> FleetView:
+    """Return the fleet as a desk sees it by its view, as a gateway sent it as JSON.
+
+    :raises ValueError: when a count is none, or the cells of a density lie outside its grid.
+    """
+    view = FleetView(**{**known_fields(FleetView, values), "density": None})
+    _check_counts("view", *(getattr(view, f.name) for f in dataclasses.fields(view) if f.name != "density"))
+    if values.get("density") is None:
+        return view
+    density = Density(**known_fields(Density, values["density"]))
+    groups = (density.fresh, density.silent, density.offline)
+    _check_counts(
+        "density", density.columns, density.rows, *density.cells, *(n for one in groups for n in one)
+    )
+    corner = (density.cell, density.x, density.y)
+    if (
+        not all(isinstance(value, (int, float)) and math.isfinite(value) for value in corner)
+        or density.cell <= 0
+    ):
+        raise ValueError(f"the cells of a density have no place or no size: {corner}")
+    size = density.columns * density.rows
+    if not 0 < size <= MOST_CELLS**2 or any(cell >= size for cell in density.cells):
+        raise ValueError(f"a density has cells outside its {density.columns} x {density.rows}")
+    if any(len(group) != len(density.cells) for group in groups):
+        raise ValueError("a density has other counts than cells")
+    return dataclasses.replace(view, density=density)
+
+
+def _check_counts(name: str, *counts: Any) -> None:
+    for count in counts:
+        if isinstance(count, bool) or not isinstance(count, int) or count < 0:
+            raise ValueError(f"a count of {name} is {count!r}")

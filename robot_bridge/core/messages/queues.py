@@ -9,10 +9,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from . import base
-from .base import DeskRequest, Priority, Role
+from .base import DeskRequest, Priority, Role, known_fields
 from .safety import RobotState, check_override, check_reason
 
 LONGEST_QUEUE = 1000
@@ -418,3 +418,25 @@ def _check_tasks(tasks: list[QueueTask]) -> None:
     if len(set(ids)) < len(ids):
         twice = next(id for id in ids if ids.count(id) > 1)
         raise base.MessageError(f"tasks: {twice} is there more than once; give each task an id of its own")
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def queue_report(values: dict[str, Any]) -> QueueReport:
+    """Return the queue that a gateway sent as JSON."""
+    enums = {
+        "state": QueueState(values["state"]),
+        "robot_state": RobotState(values["robot_state"]),
+        "tasks": [task_report(task) for task in values.get("tasks", [])],
+        "ended": [task_report(task) for task in values.get("ended", [])],
+    }
+    return QueueReport(**{**known_fields(QueueReport, values), **enums})
+
+
+def task_report(values: dict[str, Any]) -> TaskReport:
+    """Return the task of a queue that a gateway sent as JSON."""
+    typed: dict[str, Any] = {"kind": TaskKind(values["kind"]), "state": TaskState(values["state"])}
+    if values.get("path") is not None:
+        typed["path"] = [tuple(point) for point in values["path"]]
+    return TaskReport(**{**known_fields(TaskReport, values), **typed})

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import ClassVar, NamedTuple
+from typing import Any, ClassVar, NamedTuple
 
 from . import base
-from .base import DeskRequest, Priority, Role
+from .base import DeskRequest, Priority, Role, known_fields
 from .queues import QueueTask
 
 # --- What robots saw, as operators are told it, and what operators make of it ---
@@ -299,3 +299,17 @@ class GetTrajectory(DeskRequest[Trajectory]):
 def mark_text(received_at: float, id: int) -> str:
     """Return the ``next`` of a page whose last position has this time and id."""
     return f"{received_at!r}:{id}"
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def observation_report(values: dict[str, Any]) -> ObservationReport:
+    """Return the observation that a gateway sent as JSON."""
+    known = known_fields(ObservationReport, values)
+    return ObservationReport(**{**known, "state": ObservationState(values["state"])})
+
+
+def placement_report(values: dict[str, Any]) -> PlacementReport:
+    """Return the placed cone that a gateway sent as JSON."""
+    return PlacementReport(**known_fields(PlacementReport, values))

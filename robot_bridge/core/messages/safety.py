@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum
 from typing import Any, Literal
 
@@ -251,3 +251,15 @@ def nearness_report(values: dict[str, Any]) -> Nearness:
     """Return what a gateway sent as JSON; unknown fields of newer gateways are passed over."""
     alarms = [NearnessAlarm(**known_fields(NearnessAlarm, one)) for one in values.get("alarms", [])]
     return Nearness(**{**known_fields(Nearness, values), "alarms": alarms})
+
+
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+
+
+def emergency_report(values: dict[str, Any]) -> EmergencyReport:
+    """Return how an emergency stop stands, as a gateway sent it as JSON."""
+    report = EmergencyReport(**known_fields(EmergencyReport, values))
+    if not isinstance(report.gateways, dict):
+        return report
+    gateways = StoppedGateways(**known_fields(StoppedGateways, report.gateways))
+    return replace(report, gateways=gateways)

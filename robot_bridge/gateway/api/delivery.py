@@ -15,8 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from ...core.clock import steady_time
 from ...core.errors import StoreError
 from ...core.logs import log_unforeseen
-from ...core.messages.base import MessageError
-from ...core.messages.json_values import to_json
+from ...core.messages.base import MessageError, to_json
 from ...core.messages.robots import PAYLOADS, Abort, SetMap
 from ...protocol.codec import parse_params, with_base64
 from ..fleet.emergency_persistence import HELD_BACK

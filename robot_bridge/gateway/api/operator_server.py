@@ -28,9 +28,8 @@ from ...core.errors import (
 )
 from ...core.logs import log_and_continue
 from ...core.messages.administration import PROTOCOL_VERSION, Hello
-from ...core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, Priority, Role
+from ...core.messages.base import DESK_REQUESTS, DeskRequest, MessageError, Priority, Role, to_json
 from ...core.messages.commands import Send
-from ...core.messages.json_values import to_json
 from ...core.messages.positions import PositionForm, Subscribe
 from ...core.messages.roads import GetRoute
 from ...core.messages.robots import Abort

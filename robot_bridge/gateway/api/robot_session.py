@@ -14,8 +14,7 @@ from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
 from ...core.logs import Key
-from ...core.messages.base import LARGEST_MESSAGE, MessageError
-from ...core.messages.json_values import to_json
+from ...core.messages.base import LARGEST_MESSAGE, MessageError, to_json
 from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
 from ...protocol import jsonrpc
 from ...protocol.codec import check_size, decode_position, decode_request, error_code

@@ -17,8 +17,13 @@ from ...core.errors import BridgeError, BusyError, ForbiddenError, NotReadyError
 from ...core.json_decoder import DecodingError
 from ...core.logs import log_and_continue
 from ...core.messages import links
-from ...core.messages.base import LARGEST_MESSAGE, MessageError, check_robot_name, refuse_unknown_keys
-from ...core.messages.json_values import to_json
+from ...core.messages.base import (
+    LARGEST_MESSAGE,
+    MessageError,
+    check_robot_name,
+    refuse_unknown_keys,
+    to_json,
+)
 from ...core.messages.links import AbortOfAll, GetAreas, LinkHello, LinkPositions, LinkStatus, LinkWelcome
 from ...core.messages.robots import Ready, SendImage
 from ...core.position_frame import entries_in, poses_in_frame

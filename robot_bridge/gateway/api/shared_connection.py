@@ -12,7 +12,7 @@ from typing import Any, Protocol
 from websockets.exceptions import ConnectionClosed
 
 from ...core.logs import log_and_continue
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.links import Released
 from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc

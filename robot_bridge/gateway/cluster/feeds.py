@@ -12,8 +12,8 @@ from typing import Generic, Protocol, TypeVar
 import msgspec
 
 from ...core.errors import StoreError
+from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport
-from ...core.messages.json_values import to_json
 from ...core.messages.records import ObservationReport, ObservationState, PlacementReport
 from ...core.messages.robots import SetPath, SetPosEnd
 from ..model.events import (

@@ -29,7 +29,7 @@ from ...core.errors import (
 )
 from ...core.json_decoder import decode_json
 from ...core.logs import log_and_continue, log_unforeseen
-from ...core.messages.base import DeskRequest, MessageError
+from ...core.messages.base import DeskRequest, MessageError, to_json
 from ...core.messages.commands import (
     AbortAll,
     AbortTask,
@@ -39,7 +39,6 @@ from ...core.messages.commands import (
     SetPositions,
     TargetPosition,
 )
-from ...core.messages.json_values import to_json
 from ...core.messages.queues import (
     AddTasks,
     GetQueue,

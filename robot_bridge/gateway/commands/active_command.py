@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from ...core.geometry import Polyline
+from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport, CommandState, CommandStep
-from ...core.messages.json_values import to_json
 from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import Arrival, PathArrival, arrival_judge
 

@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
-from ...core.messages.base import MessageError, check_crs
+from ...core.messages.base import MessageError, check_crs, to_json
 from ...core.messages.commands import (
     AbortAll,
     AbortTask,
@@ -20,7 +20,6 @@ from ...core.messages.commands import (
     Send,
     SetPositions,
 )
-from ...core.messages.json_values import to_json
 from ...core.messages.robots import COMMANDS, Abort, SetPath
 from ...protocol.codec import decode_command
 from ..model.events import handles

@@ -15,9 +15,8 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError
 from ...core.logs import log_and_continue
-from ...core.messages.base import LONGEST_OPERATOR, one_line
+from ...core.messages.base import LONGEST_OPERATOR, one_line, to_json
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.json_values import to_json
 from ...core.messages.robots import Abort
 from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..commands.active_command import CommandOrder

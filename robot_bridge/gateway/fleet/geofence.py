@@ -15,9 +15,8 @@ from numpy.typing import NDArray
 
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError
-from ...core.messages.base import MessageError
+from ...core.messages.base import MessageError, to_json
 from ...core.messages.commands import AbortTask
-from ...core.messages.json_values import to_json
 from ...core.messages.queues import PauseRobot
 from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, RobotState, StopAction, StopOutcome
 from ...core.sites.fences import FencedAreas, Fences

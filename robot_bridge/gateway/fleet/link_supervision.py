@@ -18,17 +18,9 @@ import msgspec
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
-from ...core.messages.administration import (
-    LinkReport,
-    Links,
-    Playback,
-    PlaybackReport,
-    SetPlayback,
-    Suspension,
-    Suspensions,
-)
-from ...core.messages.json_values import to_json
-from ...core.messages.links import LinkStatus
+from ...core.messages.administration import Suspension, Suspensions
+from ...core.messages.base import to_json
+from ...core.messages.links import LinkReport, Links, LinkStatus, Playback, PlaybackReport, SetPlayback
 from ...core.sites.settings_tables import LinkOptions
 from ..model.events import Listeners, handles
 from ..model.robots import Robots

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ...core.clock import Clock
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.robots import SendPos
 from ...core.messages.safety import Nearness, NearnessAlarm, RobotState
 from ..model.events import Listeners

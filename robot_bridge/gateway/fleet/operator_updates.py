@@ -21,8 +21,7 @@ import numpy.typing as npt
 from ...core.clock import Clock
 from ...core.errors import RefusedError, UncertainError
 from ...core.images import check_size, media_type_of
-from ...core.messages.base import MessageError
-from ...core.messages.json_values import to_json
+from ...core.messages.base import MessageError, to_json
 from ...core.messages.positions import (
     PLACE_COLUMNS,
     POSITION_ALWAYS,

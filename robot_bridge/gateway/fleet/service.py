@@ -16,9 +16,8 @@ from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
 from ...core.messages.administration import Gateways
-from ...core.messages.base import LONGEST_REFUSAL, MOST_GATEWAYS, one_line
+from ...core.messages.base import LONGEST_REFUSAL, MOST_GATEWAYS, one_line, to_json
 from ...core.messages.commands import CommandState
-from ...core.messages.json_values import to_json
 from ...core.messages.positions import RobotReport
 from ...core.messages.robots import (
     Answer,

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 from typing import Any, Generic, ParamSpec, Protocol, TypeVar, overload
 
 from ...core.logs import log_and_continue
-from ...core.messages.base import DESK_REQUESTS, DeskRequest
+from ...core.messages.base import DESK_REQUESTS, DeskRequest, to_json
 from ...core.messages.commands import CommandReport
-from ...core.messages.json_values import to_json
 from ...core.messages.records import ObservationReport, PlacementReport
 
 log = logging.getLogger(__name__)

@@ -15,7 +15,7 @@ from ...core.assignment.plan import ConePlan
 from ...core.assignment.progress import ClosedWay, SentStop, committed_stops, problem_of
 from ...core.errors import OutdatedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.plans import PlanReport, PlanState
 from ...core.messages.queues import QueueState, TaskState
 from ...core.messages.records import GetPlacements

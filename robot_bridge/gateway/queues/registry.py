@@ -13,7 +13,7 @@ from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import OutdatedError
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.queues import QueueReport
 from ...core.messages.records import PlacementReport
 from ..commands.service import CommandService

@@ -18,9 +18,8 @@ from sqlalchemy import Connection
 from ...core.clock import Clock
 from ...core.errors import BridgeError, RefusedError, StoreError, UncertainError
 from ...core.messages import roads as messages
-from ...core.messages.base import MessageError
+from ...core.messages.base import MessageError, to_json
 from ...core.messages.commands import AbortTask, CommandReport
-from ...core.messages.json_values import to_json
 from ...core.messages.queues import QueueTask
 from ...core.messages.robots import Command, SetPath, SetPosEnd, path_to_end
 from ..commands.active_command import NOTHING, CommandOrder, because

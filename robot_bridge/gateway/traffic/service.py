@@ -11,8 +11,8 @@ from typing import Any, NamedTuple
 from ...core.clock import Clock
 from ...core.errors import RefusedError
 from ...core.messages import roads as messages
+from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport
-from ...core.messages.json_values import to_json
 from ...core.messages.robots import path_to_end
 from ...core.sites.site import Site
 from ..commands.requests import CommandRequests

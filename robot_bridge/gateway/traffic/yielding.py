@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from ...core.errors import BridgeError, RefusedError, UncertainError
 from ...core.logs import log_unforeseen
+from ...core.messages.base import to_json
 from ...core.messages.commands import CommandReport, CommandState
-from ...core.messages.json_values import to_json
 from ...core.messages.roads import HoldReport
 from ...core.messages.robots import SetPath, path_to_end
 from ...core.roads.surface_index import NOWHERE

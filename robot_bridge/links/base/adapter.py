@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Protocol
 
-from ...core.messages.administration import Playback, PlaybackReport, SiteReport
-from ...core.messages.links import SiteAreas
+from ...core.messages.administration import SiteReport
+from ...core.messages.links import Playback, PlaybackReport, SiteAreas
 from ...core.messages.robots import Answer, OpAck, Request, SendGPS, SendPos
 from ...core.messages.safety import Ability
 from .errors import CommandRefusedError

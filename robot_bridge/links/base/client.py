@@ -20,10 +20,17 @@ from websockets.frames import CloseCode
 from ...core.errors import BridgeError
 from ...core.gateway_addresses import GatewayAddresses
 from ...core.logs import log_and_continue
-from ...core.messages.administration import Playback, SiteReport
-from ...core.messages.base import MessageError, check_robot_name
-from ...core.messages.json_values import site_report, to_json
-from ...core.messages.links import LINK_PROTOCOL, GetAreas, LinkHello, LinkStatus, Released, SiteAreas
+from ...core.messages.administration import SiteReport, site_report
+from ...core.messages.base import MessageError, check_robot_name, to_json
+from ...core.messages.links import (
+    LINK_PROTOCOL,
+    GetAreas,
+    LinkHello,
+    LinkStatus,
+    Playback,
+    Released,
+    SiteAreas,
+)
 from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS, SendPos, Start, Stopped
 from ...core.messages.safety import Ability
 from ...core.parent_process import call_at_end_of_input, notify

@@ -14,7 +14,7 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.links import LinkColumns
 from ...core.messages.robots import Answer, OpAck, Ready, Request, SendGPS, SendPos, Stopped
 from ...core.messages.safety import Ability

@@ -17,8 +17,8 @@ from typing import ClassVar
 
 import msgspec
 
-from ...core.messages.administration import Playback, PlaybackReport
 from ...core.messages.base import SPEED, MessageError, check_robot_name
+from ...core.messages.links import Playback, PlaybackReport
 from ...core.messages.robots import SendPos
 from ...core.sites.frame import SiteFrame
 from ...recordings.csv_table import TableForm

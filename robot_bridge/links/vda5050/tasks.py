@@ -17,7 +17,7 @@ from shapely import LineString
 
 from ...core.files import write_state
 from ...core.json_decoder import DecodingError, JsonBounds, decode_json
-from ...core.messages.json_values import to_json
+from ...core.messages.base import to_json
 from ...core.messages.robots import SetPath, SetPosEnd
 from ...protocol.codec import decode_answer, parse_params
 from .messages import Edge, Node, NodePosition, Order, State, Vda5050Error, VehicleFault

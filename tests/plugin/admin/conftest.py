@@ -10,8 +10,7 @@ from fleet_supervisor.robot_bridge.core.messages.administration import (
     SessionReport,
     TokenState,
 )
-from fleet_supervisor.robot_bridge.core.messages.base import Role
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import Role, to_json
 
 from tests.plugin.admin.accounts_desk import MADE_AT, AccountsDesk
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.robot_bridge.core.messages.administration import SiteOffer, Sites
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

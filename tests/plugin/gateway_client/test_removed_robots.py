@@ -12,7 +12,7 @@ from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, table_from_frame
 from fleet_supervisor.plugin.map.overlay.trails import LENGTHS, Trails
 from fleet_supervisor.plugin.panel.alarms.rules import PairHysteresis, RowHysteresis
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from qgis.core import QgsExpression
 
 from robot_bridge.gateway.fleet.operator_updates import table_frame

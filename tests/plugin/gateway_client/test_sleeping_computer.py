@@ -9,7 +9,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client import connection
 from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.robot_bridge.core import clock as clock_module
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtWidgets import QToolButton
 

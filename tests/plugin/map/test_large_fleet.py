@@ -8,7 +8,8 @@ import pytest
 from fleet_supervisor.plugin.control import view_subscription
 from fleet_supervisor.plugin.gateway_client import protocol
 from fleet_supervisor.plugin.map.overlay.scene import FollowMode
-from fleet_supervisor.robot_bridge.core.messages.json_values import fleet_view, to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
+from fleet_supervisor.robot_bridge.core.messages.positions import fleet_view
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QLabel
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.ui import scheduling
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
 from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
 from qgis.core import QgsProject
 

@@ -10,7 +10,7 @@ from fleet_supervisor.plugin.gateway_client import report_caches
 from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, ConnectionStatus
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.observations.observation_views import ObservationFeed, Thumbnails
-from fleet_supervisor.robot_bridge.core.messages.json_values import observation_report
+from fleet_supervisor.robot_bridge.core.messages.records import observation_report
 from qgis.PyQt.QtCore import QBuffer, QObject, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QImage
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from fleet_supervisor.plugin.control.messages import LinkNotices
-from fleet_supervisor.robot_bridge.core.messages.administration import LinkReport, Links
-from fleet_supervisor.robot_bridge.core.messages.json_values import links_report, to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
+from fleet_supervisor.robot_bridge.core.messages.links import LinkReport, Links, links_report
 
 
 def report(**more):

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.planning.as_placed import COLUMNS, deviation_summary, select_placed_cones
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
 from qgis.core import QgsProject
 from qgis.PyQt.QtCore import Qt

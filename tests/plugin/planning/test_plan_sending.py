@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 from fleet_supervisor.plugin.planning import plan_texts
 from fleet_supervisor.robot_bridge.core.assignment.plan import plan_of_document
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.queues import TaskState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

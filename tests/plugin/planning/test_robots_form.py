@@ -11,7 +11,7 @@ from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
 from fleet_supervisor.plugin.planning.forms import SHOWN, RobotsForm
 from fleet_supervisor.plugin.planning.plan_settings import PlanSettings
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest

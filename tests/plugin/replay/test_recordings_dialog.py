@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from fleet_supervisor.robot_bridge.core.messages.administration import LinkReport, Links, PlaybackReport
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
+from fleet_supervisor.robot_bridge.core.messages.links import LinkReport, Links, PlaybackReport
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QCheckBox, QComboBox, QDialog, QDoubleSpinBox, QLineEdit, QSlider

@@ -14,15 +14,12 @@ from robot_bridge.core.messages.administration import (
     SiteOffer,
     Sites,
     TokenState,
-)
-from robot_bridge.core.messages.base import Role
-from robot_bridge.core.messages.json_values import (
     new_token,
     open_session,
     operators_report,
     sites_report,
-    to_json,
 )
+from robot_bridge.core.messages.base import Role, to_json
 
 ADA = OperatorReport("Ada", Role.SUPERVISOR, 100.0, TokenState.VALID, used_at=150.5)
 BEN = OperatorReport("Ben", Role.VIEWER, 200.0, TokenState.REVOKED, expires_at=400.0, revoked_at=300.0)

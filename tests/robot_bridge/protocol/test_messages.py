@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.core.messages.administration import Hello, SiteReport
-from robot_bridge.core.messages.base import DESK_REQUESTS, MessageError, check_robot_name
+from robot_bridge.core.messages.administration import Hello, SiteReport, site_report
+from robot_bridge.core.messages.base import DESK_REQUESTS, MessageError, check_robot_name, to_json
 from robot_bridge.core.messages.commands import (
     AbortAll,
     CommandReport,
@@ -20,8 +20,8 @@ from robot_bridge.core.messages.commands import (
     Send,
     SetPositions,
     TargetPosition,
+    command_report,
 )
-from robot_bridge.core.messages.json_values import command_report, robot_report, site_report, to_json
 from robot_bridge.core.messages.positions import (
     AlarmLimits,
     FindRobots,
@@ -29,6 +29,7 @@ from robot_bridge.core.messages.positions import (
     RobotReport,
     Subscribe,
     View,
+    robot_report,
 )
 from robot_bridge.core.messages.robots import (
     ANSWERS,

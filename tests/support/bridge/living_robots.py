@@ -10,7 +10,7 @@ import math
 from dataclasses import dataclass, field
 
 from robot_bridge.core.errors import StoreError
-from robot_bridge.core.messages.json_values import to_json
+from robot_bridge.core.messages.base import to_json
 from robot_bridge.core.messages.robots import OpAck, Ready, SendPos, SetObject, Stopped
 from robot_bridge.gateway.fleet.emergency_persistence import HELD_BACK
 from robot_bridge.protocol.codec import parse_params

@@ -6,8 +6,8 @@ import json
 from contextlib import asynccontextmanager
 
 from robot_bridge.core.clock import ManualClock
+from robot_bridge.core.messages.base import to_json
 from robot_bridge.core.messages.commands import GetCommands, Send
-from robot_bridge.core.messages.json_values import to_json
 from robot_bridge.core.messages.robots import OpAck, Ready, SendPos
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.fleet.service import Fleet

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 from sqlalchemy import Connection, delete, insert, select, update
 
 from ....core.json_decoder import decode_json
-from ....core.messages.json_values import to_json
+from ....core.messages.base import to_json
 from ....core.messages.robots import SetPath
 from ..rows import delete_oldest, readable
 from ..schema import closures, holds

@@ -13,8 +13,7 @@ import msgspec
 from sqlalchemy import Connection, text
 
 from ....core.errors import StoreError
-from ....core.messages.base import DeskRequest
-from ....core.messages.json_values import to_json
+from ....core.messages.base import DeskRequest, to_json
 
 _NOW = "coalesce(cast(:now as double precision), extract(epoch from clock_timestamp())::double precision)"
 _ALIVE = f"g.lease_until > {_NOW}"

@@ -25,7 +25,7 @@ from sqlalchemy.dialects import postgresql
 
 from ....core.errors import RefusedError
 from ....core.json_decoder import decode_json
-from ....core.messages.json_values import to_json
+from ....core.messages.base import to_json
 from ....core.messages.queues import QueueState, QueueTask, TaskState
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
 from ..rows import beside_the_time, delete_oldest, readable

@@ -24,8 +24,7 @@ from sqlalchemy import (
 )
 
 from ....core.json_decoder import SHORT, DecodingError, decode_json
-from ....core.messages.base import LARGEST_MESSAGE
-from ....core.messages.json_values import to_json
+from ....core.messages.base import LARGEST_MESSAGE, to_json
 from ....core.messages.robots import COMMANDS, Abort, Answer, SetMap
 from ..rows import TOGETHER, BatchedWork, Row, add_messages, delete_messages, padded
 from ..schema import rr, sa

@@ -6,7 +6,7 @@ import time
 
 import pytest
 from fleet_supervisor.robot_bridge.core.errors import RefusedError
-from fleet_supervisor.robot_bridge.core.messages.json_values import to_json
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.queues import QueueTask, TaskKind
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from fleet_supervisor.robot_bridge.gateway.model import task_queue

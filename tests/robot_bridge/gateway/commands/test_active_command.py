@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from robot_bridge.core.messages.base import to_json
 from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
-from robot_bridge.core.messages.json_values import to_json
 from robot_bridge.core.messages.robots import SetPath, SetPosIni
 from robot_bridge.gateway.commands.active_command import (
     ActiveCommand,

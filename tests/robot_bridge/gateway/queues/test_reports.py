@@ -4,10 +4,10 @@ import json
 
 import pytest
 
-from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
-from robot_bridge.core.messages.json_values import command_report, placement_report, queue_report, to_json
-from robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind, TaskState
-from robot_bridge.core.messages.records import PlacementReport
+from robot_bridge.core.messages.base import to_json
+from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep, command_report
+from robot_bridge.core.messages.queues import QueueState, QueueTask, TaskKind, TaskState, queue_report
+from robot_bridge.core.messages.records import PlacementReport, placement_report
 from robot_bridge.core.messages.safety import RobotState
 from robot_bridge.gateway.model import task_queue as queues
 
