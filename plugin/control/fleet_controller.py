@@ -21,12 +21,13 @@ from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
 from ..ui.scheduling import UpdateScheduler
 from . import messages
+from .command_checks import CommandChecks
 from .messages import Level, LinkNotices, MessageBoard, MessageEndings, ReportNotices, SuspensionNotices
 from .pending_command import ROUTE, PendingCommand, PendingCommandModel, Point, in_brief
 from .request_tracker import RequestSender, RequestTracker, RoadStatus
-from .route_queries import RouteQuery, TargetRoutes
+from .route_queries import RouteQuery
 from .sending import CommandSender
-from .validation import CommandChecks, ValidationRunner
+from .validation import TargetRoutes, ValidationRunner
 from .view_subscription import ViewSubscription
 
 STOPPED_BY = "emergency stop"

@@ -101,6 +101,15 @@ class Approach:
     declared: str | None = None
 
     @property
+    def findings(self) -> Findings:
+        """What is to be told of it, besides what is in its way."""
+        if self.refusal:
+            return Findings(refused=(self.refusal,), of_way=(self.refusal,))
+        if self.note and not self.is_along_roads:
+            return Findings(warnings=(self.note,), of_way=(self.note,))
+        return Findings()
+
+    @property
     def is_along_roads(self) -> bool:
         """Whether it leads along the roads."""
         return self.kind in (ApproachKind.PATH, ApproachKind.ON_REQUEST)

@@ -16,8 +16,7 @@ from ..ui.scheduling import CooperativeTask
 from .messages import Topic, draft_topic, robot_topic
 from .pending_command import ApproachKind, PendingCommand, PendingCommandModel, in_brief
 from .request_tracker import RequestTracker
-from .route_queries import TargetRoutes
-from .validation import ValidationRunner, Work
+from .validation import TargetRoutes, ValidationRunner, Work
 
 Then = Callable[[PendingCommand], None]
 

@@ -1,314 +1,36 @@
-"""Validation of a pending command: site, map, layers, robots; run again whenever something changes."""
+"""The pending command kept as it is to be sent: its way as its robot moves, and what its checks find."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+import itertools
+import math
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, TypeVar
+from typing import NamedTuple
 
-from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
-from ...robot_bridge.core.messages.administration import SiteReport
-from ..gateway_client.fleet_state import FleetState
-from ..layers.layer_source import LayerWatch
-from ..layers.roles import layers_with_role
-from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
-from ..ui.errors import FleetError
+from ...robot_bridge.core.messages.base import to_json
+from ...robot_bridge.core.messages.positions import RobotReport
+from ...robot_bridge.core.messages.roads import GetRoute
+from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
+from ..ui.errors import FleetError, NotSentError
 from ..ui.language import tr
-from ..ui.scheduling import CooperativeTask, Steps, scaled_progress
-from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck, is_looked_at
-from .pending_command import ROUTE, Findings, PendingCommand, PendingCommandModel, Point
-from .robot_checks import TargetCheck, check_abilities, check_last_seen, check_orders, has_ability
+from ..ui.scheduling import CooperativeTask, Steps
+from .pending_command import (
+    CONE,
+    ROUTE,
+    Approach,
+    ApproachKind,
+    Findings,
+    PendingCommand,
+    PendingCommandModel,
+    Point,
+)
+from .request_tracker import SLOW_AFTER, RequestSender
+from .route_queries import SHORTEST, route_in, route_in_words
 
-AT_ONCE = 500
-"""Tracks that are gone through between two looks at the clock."""
-
-T = TypeVar("T")
-Check = KeepoutCheck | ObstacleCheck | SurfaceCheck
-Found = dict[CheckedPath, list[Any]]
-
-
-def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
-    """Refuse what lies outside the site's bounds; ``points`` are metres in the site frame."""
-    x_min, y_min, x_max, y_max = site.bounds
-    outside = [(x, y) for x, y in points if not (x_min <= x <= x_max and y_min <= y <= y_max)]
-    if not outside:
-        return Findings()
-    where = "; ".join(f"({x:.2f}, {y:.2f})" for x, y in outside[:3])
-    return Findings(
-        refused=(
-            tr(
-                "{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to "
-                "({x_max:g}, {y_max:g}) m. Click inside it.",
-                where=where,
-                name=site.name,
-                x_min=x_min,
-                y_min=y_min,
-                x_max=x_max,
-                y_max=y_max,
-            ),
-        )
-    )
-
-
-def check_map(placement: SiteToMapTransform) -> Findings:
-    """Warn where the map has no CRS: then QGIS puts layers of every CRS into one map, each by its numbers."""
-    if placement.map_crs.isValid():
-        return Findings()
-    return Findings(
-        warnings=(
-            tr(
-                "The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another "
-                "CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.",
-                crs=placement.site_crs.authid(),
-            ),
-        )
-    )
-
-
-class LayerCheck(QObject):
-    """Checks drafts against the project's layers that carry the roles of obstacles, keepouts and surfaces.
-
-    What was found for a part of a draft is kept until a layer changes or another check needs it no more.
-    """
-
-    changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin again."""
-
-    def __init__(self, project: QgsProject, parent: QObject | None = None):
-        super().__init__(parent)
-        self._project = project
-        self._checks: tuple[Check, ...] = (
-            KeepoutCheck(project),
-            ObstacleCheck(project),
-            SurfaceCheck(project),
-        )
-        self._kept: dict[Check, Found] = {}
-        self._kept_for: tuple[Any, ...] = ()
-        self._watch = LayerWatch(self)
-        self._watch.changed.connect(self._forget)
-
-    def remove(self) -> None:
-        """Watch no layer any longer."""
-        self._watch.remove()
-
-    def check_command(
-        self, draft: PendingCommand, placement: SiteToMapTransform, afresh: bool = False
-    ) -> Steps[Findings]:
-        """Find what touches a keepout or an obstacle, warn of what leaves the road; ``afresh`` all of it.
-
-        Where a robot says that it stands is not looked at: it may have been put there.
-
-        :raises MapTransformError: when a point has no place in a layer's CRS.
-        :raises ExpressionError: when the filter of a layer is no expression.
-        """
-        if not is_looked_at(draft):
-            return Findings()
-        layers = {check: self._layers(check) for check in self._checks}
-        looked_at = (placement, *(tuple(layer.id() for layer in of_one) for of_one in layers.values()))
-        if afresh or looked_at != self._kept_for:
-            self._kept.clear()
-        self._kept_for = looked_at
-        for of_one in layers.values():
-            self._watch.watch(of_one)
-        findings = self._unseen()
-        for number, check in enumerate(self._checks):
-            work = self._look_by(check, layers[check], draft, placement)
-            findings += yield from scaled_progress(work, number, len(self._checks))
-        return findings
-
-    def _look_by(
-        self,
-        check: Check,
-        layers: Sequence[QgsVectorLayer],
-        draft: PendingCommand,
-        placement: SiteToMapTransform,
-    ) -> Steps[Findings]:
-        kept = self._kept.get(check, {})
-        tracks = yield from _listed(check.tracks(draft))
-        new: Found = {}
-        for number, track in enumerate(tracks):
-            if track not in kept:
-                new[track] = []
-            if number % AT_ONCE == 0:
-                yield 0.0
-        missing = list(new)
-        for number, layer in enumerate(layers if missing else ()):
-            hits = yield from scaled_progress(
-                check.check_paths(layer, missing, placement), number, len(layers)
-            )
-            for place, found in hits.items():
-                new[missing[place]] += found
-        found_for: list[tuple[CheckedPath, list[Any]]] = []
-        still_needed: Found = {}
-        for number, track in enumerate(tracks):
-            found = new[track] if track in new else kept[track]
-            found_for.append((track, found))
-            still_needed[track] = found
-            if number % AT_ONCE == 0:
-                yield 0.0
-        self._kept[check] = still_needed
-        # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
-        is_watched = any(layer.featureCount() != 0 for layer in layers)
-        return (yield from _checked(check, draft, _without_repetition(draft, found_for), is_watched))
-
-    def _unseen(self) -> Findings:
-        """Tell of what a draft has to be held against and cannot be."""
-        layers = layers_with_role(self._project, *(role for check in self._checks for role in check.roles))
-        if not layers:
-            return Findings(
-                warnings=(
-                    tr(
-                        "No layer of the project says where obstacles and keepouts are, so nobody has "
-                        "looked. Open the site's project, or give layers their roles."
-                    ),
-                )
-            )
-        return Findings(
-            overridable=tuple(
-                tr(
-                    "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
-                    "source, or take its role away.",
-                    layer=layer.name(),
-                )
-                for layer in layers
-                if not layer.isValid()
-            )
-        )
-
-    def _layers(self, check: Check) -> list[QgsVectorLayer]:
-        return [
-            layer
-            for layer in layers_with_role(self._project, *check.roles)
-            if isinstance(layer, QgsVectorLayer)
-            and layer.isValid()
-            and layer.isSpatial()
-            and (not check.only_polygons or _has_areas(layer))
-        ]
-
-    def _forget(self) -> None:
-        self._kept.clear()
-        self.changed.emit()
-
-
-def _checked(
-    check: Check, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Any]]], is_watched: bool
-) -> Steps[Findings]:
-    """Return what is to be told of what was ``found``, and which of that is about the way to the draft."""
-    if not draft.way.line:
-        return (yield from check.findings(draft, found, is_watched))
-    of_place = yield from check.findings(
-        draft, [one for one in found if one[0] != draft.way.line], is_watched
-    )
-    if draft.kind == ROUTE:
-        # By itself: what is told of the route's own legs must not change as its robot moves.
-        way = [one for one in found if one[0] == draft.way.line]
-        of_way = yield from check.findings(draft, way, is_watched)
-        return of_place + replace(of_way, of_way=of_way.overridable + of_way.warnings)
-    findings = yield from check.findings(draft, found, is_watched)
-    texts = findings.overridable + findings.warnings
-    # What is told of the place alone is not of the way to it.
-    return replace(findings, of_way=tuple(text for text in texts if text not in of_place.all_texts))
-
-
-def _without_repetition(
-    draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Any]]]
-) -> Sequence[tuple[CheckedPath, list[Any]]]:
-    """Return what was ``found``, but of the way to a target not what is at the target as well."""
-    if not draft.way.line:
-        return found
-    at_target = {_name(hit) for track, hits in found if len(track) == 1 for hit in hits}
-    return [
-        (track, hits if len(track) == 1 else [hit for hit in hits if _name(hit) not in at_target])
-        for track, hits in found
-    ]
-
-
-def _name(hit: Any) -> Any:
-    """Return the name of a keepout or an obstacle; what a surface holds of a track has none."""
-    if isinstance(hit, str):
-        return hit
-    return hit[0] if isinstance(hit[0], str) else object()
-
-
-def _has_areas(layer: QgsVectorLayer) -> bool:
-    return layer.geometryType() == QgsWkbTypes.GeometryType.PolygonGeometry
-
-
-def _listed(things: Iterable[T]) -> Steps[list[T]]:
-    found = []
-    for number, thing in enumerate(things):
-        found.append(thing)
-        if number % AT_ONCE == AT_ONCE - 1:
-            yield 0.0
-    return found
-
-
-class CommandChecks(QObject):
-    """Checks drafts against the project's layers, and against what the gateway reports of site and robots."""
-
-    changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin again."""
-
-    def __init__(
-        self,
-        project: QgsProject,
-        site_to_canvas: SiteToCanvas,
-        state: FleetState,
-        parent: QObject,
-    ):
-        super().__init__(parent)
-        self._site_to_canvas = site_to_canvas
-        self._state = state
-        self._layers = LayerCheck(project, self)
-        self._layers.changed.connect(self.changed)
-        self._targets = TargetCheck(state.commands, state.queues)
-        state.commands_changed.connect(lambda changed: self._mark_changed(report.robot for report in changed))
-        state.queues_changed.connect(self._mark_changed)
-
-    def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
-        """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
-
-        An override holds for what was found when it was given: it is gone when something else is found.
-
-        :raises FleetError: when there is no site or a layer cannot be read.
-        """
-        placement = self._site_to_canvas.transform()
-        found = check_bounds(draft.points, placement.site) + check_map(placement)
-        found += yield from self._layers.check_command(draft, placement, afresh)
-        found += _approach_findings(draft)
-        # At the end, so that nobody is sent there meanwhile.
-        found += self._targets.check_command(draft)
-        robot = self._state.robot(draft.robot)
-        found += check_last_seen(draft, robot) + check_abilities(draft, robot)
-        found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)
-        override = draft.override if found.overridable == draft.findings.overridable else None
-        cones = has_ability(robot, "cones")
-        return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)
-
-    def forget_targets(self) -> None:
-        """Forget what every robot has to do."""
-        self._targets.clear()
-
-    def remove(self) -> None:
-        """Watch the project's layers no more."""
-        self._layers.remove()
-
-    def _mark_changed(self, robots: Iterable[str]) -> None:
-        """Take in that something new is known of what these robots have to do."""
-        self._targets.mark_changed(robots)
-
-
-def _approach_findings(draft: PendingCommand) -> Findings:
-    """Return what is to be told of the way to a target, besides what is in it."""
-    way = draft.way
-    if way.refusal:
-        return Findings(refused=(way.refusal,), of_way=(way.refusal,))
-    if way.note and not way.is_along_roads:
-        return Findings(warnings=(way.note,), of_way=(way.note,))
-    return Findings()
-
+# --- Its checks: run when it is put on the map, and again whenever something changes ---
 
 Work = Callable[[PendingCommand, bool], Steps[PendingCommand]]
 """Takes a draft, and whether all of it is to be looked at afresh; returns the draft with what was found."""
@@ -489,3 +211,252 @@ class ValidationRunner(QObject):
         self._slices.stop()
         self._draft, self._then = None, None
         self._afresh = self._is_put = False
+
+
+# --- Its way from where its robot is ---
+
+MOVED_M = 0.5
+"""Metres that a robot moves before the way from where it is is found again."""
+OUTDATED_M = 2.0
+"""Metres beside its robot above which a way is not sent."""
+ASK_EVERY = 0.25
+"""Seconds between two questions for the way of a robot that moves."""
+DRIVEN_TO = (CONE, ROUTE)
+"""Kinds of drafts that are driven to from where the robot is."""
+ASKS = ("asks", "asks and cones")
+TAKES_CONES = ("cones", "asks and cones")
+
+
+class _TargetQuery(NamedTuple):
+    key: str
+    robot: str
+    goal: Point
+    at: float
+
+
+class TargetRoutes(QObject):
+    """Keeps the way to the cone target or route on ``board`` as it is driven from where its robot is now.
+
+    To a target along the roads where the site has some, by the gateway's router; straight where there are
+    none, where no way leads there, where the robot can be told none, and where the operator chose that. To
+    the beginning of a route it is straight.
+    """
+
+    found = pyqtSignal(object)
+    """The way of a target that is not on the map any more, but was sent before it was known: the Draft."""
+
+    def __init__(
+        self,
+        board: PendingCommandModel,
+        checks: ValidationRunner,
+        state: FleetState,
+        sender: RequestSender,
+        parent: QObject,
+    ):
+        super().__init__(parent)
+        self._board, self._checks = board, checks
+        self._state, self._sender, self._clock = state, sender, state.clock
+        self._prefix, self._numbers = f"target-way-{id(self)}-", itertools.count(1)
+        self._pending: _TargetQuery | None = None
+        self._beside: dict[_TargetQuery, PendingCommand] = {}
+        """Questions for the ways of targets that go out when they are known."""
+        self._requested_at = -math.inf
+        self._is_amending = False
+        board.changed.connect(self.watch)
+
+    def set_command(self, draft: PendingCommand) -> None:
+        """Make ``draft`` the one on the map, with its way as far as that is known, and have it checked.
+
+        :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
+        """
+        self._checks.set_command(self._begun(draft))
+
+    def is_outdated(self, draft: PendingCommand) -> bool:
+        """Tell whether a draft's robot is not where its way begins any more."""
+        place = _robot_position(self._state.report_of(draft.robot))
+        line = draft.way.line
+        return bool(line) and place is not None and math.dist(place, line[0]) > OUTDATED_M
+
+    def seek_beside(self, draft: PendingCommand) -> None:
+        """Find the way of a target that is no more on the map; ``found`` tells of it."""
+        query = self._ask(draft)
+        if query is None:
+            refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())
+            self.found.emit(replace(draft, way=refused, is_checked=False))
+        else:
+            self._beside[query] = draft
+
+    def withdraw(self) -> list[PendingCommand]:
+        """Seek no way any more of targets that are not on the map; return them."""
+        drafts, self._beside = list(self._beside.values()), {}
+        return drafts
+
+    def watch(self) -> None:
+        """Find the way of the target on the map where it is not known, or no longer as it was."""
+        self._give_up_beside()
+        draft = self._board.draft
+        if self._is_amending or draft is None or draft.kind not in DRIVEN_TO or self._board.is_dragged:
+            return
+        if self._checks.has_order:
+            # What was looked at is what is sent.
+            return
+        if draft.kind == ROUTE and self._checks.is_under_way:
+            # Begun again for each half metre, a long check would never end.
+            return
+        if draft.way.kind is ApproachKind.SOUGHT:
+            self._seek(draft)
+        elif self._has_changed(draft):
+            fresh = self._begun(draft)
+            if fresh.way.kind is ApproachKind.SOUGHT and draft.way.kind in (
+                ApproachKind.PATH,
+                ApproachKind.ON_REQUEST,
+            ):
+                # The one before stays on the map until the other is known.
+                self._seek(draft)
+            else:
+                self._amend(fresh)
+
+    def accept_answer(self, answer: RequestResult) -> bool:
+        """Take in the answer to a question for a target's way; false when it is one to something else."""
+        if not answer.order.key.startswith(self._prefix):
+            return False
+        beside = next((query for query in self._beside if query.key == answer.order.key), None)
+        if beside is not None:
+            self.found.emit(replace(self._answered(self._beside.pop(beside), answer), is_checked=False))
+            return True
+        if self._pending is None or answer.order.key != self._pending.key:
+            return True
+        query, self._pending = self._pending, None
+        draft = self._board.draft
+        if draft is None or draft.kind != CONE or self._checks.has_order:
+            return True
+        if (draft.robot, draft.points[0]) == (query.robot, query.goal):
+            self._amend(self._answered(draft, answer))
+        return True
+
+    def _begun(self, draft: PendingCommand) -> PendingCommand:
+        """Return a draft with its way as far as it is known at once; another kind of draft as it is."""
+        if draft.kind not in DRIVEN_TO:
+            return draft
+        report = self._state.report_of(draft.robot)
+        place = _robot_position(report)
+        if place is None:
+            return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
+        if draft.kind == ROUTE or draft.is_direct or self._state.site is None or not self._state.site.roads:
+            return self._straight(draft, place, "")
+        if report is not None and report.paths is None:
+            return self._straight(draft, place, _not_declared(draft.robot))
+        return replace(draft, way=Approach(ApproachKind.SOUGHT))
+
+    def _has_changed(self, draft: PendingCommand) -> bool:
+        report, way = self._state.report_of(draft.robot), draft.way
+        place = _robot_position(report)
+        if place is None:
+            return False
+        if not way.line:
+            # What was refused is asked for again when the operator sets the target again.
+            return way.kind is ApproachKind.UNKNOWN and not way.refusal
+        return math.dist(place, way.line[0]) > MOVED_M or way.declared != (report and report.paths)
+
+    def _seek(self, draft: PendingCommand) -> None:
+        now, goal = self._clock.steady(), draft.points[0]
+        query = self._pending
+        if query is not None and (query.robot, query.goal) == (draft.robot, goal):
+            if now - query.at > SLOW_AFTER:
+                self._pending = None
+                self._amend(replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())))
+            return
+        if draft.way.kind is not ApproachKind.SOUGHT and now - self._requested_at < ASK_EVERY:
+            return
+        query = self._ask(draft)
+        if query is not None:
+            self._pending, self._requested_at = query, now
+        elif draft.way.kind is ApproachKind.SOUGHT:
+            self._amend(replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())))
+
+    def _ask(self, draft: PendingCommand) -> _TargetQuery | None:
+        """Ask for the way of a target; return None where that cannot be asked."""
+        goal, now = draft.points[0], self._clock.steady()
+        place = _robot_position(self._state.report_of(draft.robot))
+        if place is None:
+            return None
+        # By its place and not by the robot: of that a newer question, for the way to the mouse, would have
+        # the gateway refuse this one.
+        request = GetRoute(*goal, start=place)
+        key = f"{self._prefix}{next(self._numbers)}"
+        try:
+            self._sender.submit(OperatorRequest(key, request.method, to_json(request), now))
+        except NotSentError:
+            return None
+        return _TargetQuery(key, draft.robot, goal, now)
+
+    def _give_up_beside(self) -> None:
+        now = self._clock.steady()
+        for query, draft in list(self._beside.items()):
+            if now - query.at > SLOW_AFTER:
+                del self._beside[query]
+                refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())
+                self.found.emit(replace(draft, way=refused, is_checked=False))
+
+    def _answered(self, draft: PendingCommand, answer: RequestResult) -> PendingCommand:
+        report = self._state.report_of(draft.robot)
+        place = _robot_position(report)
+        declared = None if report is None else report.paths
+        route, why = route_in(answer)
+        if route is None and declared == "asks":
+            # It asks the same router, and is told the same.
+            return replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_no_route(why)))
+        if route is None or route.note or len(route.points) < 2:
+            if place is None:
+                return replace(draft, way=Approach(ApproachKind.UNKNOWN, note=_position_unknown(draft.robot)))
+            return self._straight(draft, place, _no_route(why if route is None else route.note))
+        kind = ApproachKind.PATH if declared in TAKES_CONES else ApproachKind.ON_REQUEST
+        way = Approach(kind, tuple(route.points), route_in_words(route, SHORTEST), declared=declared)
+        return replace(draft, way=way)
+
+    def _straight(self, draft: PendingCommand, place: Point, note: str) -> PendingCommand:
+        report = self._state.report_of(draft.robot)
+        declared = None if report is None else report.paths
+        way = Approach(ApproachKind.STRAIGHT, (place, draft.points[0]), note, declared=declared)
+        return replace(draft, way=way)
+
+    def _amend(self, draft: PendingCommand) -> None:
+        """Put a draft with another way in place of the present one, and have it checked."""
+        self._is_amending = True
+        try:
+            self._checks.amend(replace(draft, is_checked=False))
+        except FleetError as error:
+            refused = replace(draft.findings, refused=(str(error),))
+            self._board.renew(replace(draft, findings=refused, is_checked=True))
+        finally:
+            self._is_amending = False
+
+
+def _robot_position(report: RobotReport | None) -> Point | None:
+    if report is None or report.x is None or report.y is None:
+        return None
+    return report.x, report.y
+
+
+def _no_route(why: str) -> str:
+    return tr("No way along the roads leads there: {why}.", why=why.rstrip("."))
+
+
+def _not_declared(robot: str) -> str:
+    return tr(
+        "{robot} has not declared that it asks for its path or takes cones with one: sent now it drives "
+        "straight. Add to queue, with a route around what is in its way, where that is not wanted.",
+        robot=robot,
+    )
+
+
+def _position_unknown(robot: str) -> str:
+    return tr(
+        "It is not known where {robot} is, so nobody has looked at the way that it drives.", robot=robot
+    )
+
+
+def _target_unanswered() -> str:
+    return tr(
+        "The gateway does not answer which way leads there. Set the target again when the link is there."
+    )

@@ -1052,6 +1052,86 @@
             <translation>a la dreta</translation>
         </message>
         <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m és a {away:.2f} m de {what} de {robot} a {other_x:.2f}, {other_y:.2f}: deixeu {clear_m:g} m entre objectius.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>Cap capa del projecte diu on hi ha obstacles i zones prohibides, així que ningú no ho ha mirat. Obriu el projecte del recinte o doneu papers a les capes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>La capa {layer} no es pot llegir, així que no s'ha mirat què hi ha. Repareu-ne l'origen o traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>a task</source>
+            <translation>una tasca</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the end of the route</source>
+            <translation>el final de la ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the target</source>
+            <translation>l'objectiu</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>{robot} no es pot enviar a objectius.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A {robot} no se li pot dir on comença.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>{robot} no pot seguir rutes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} treballa per a {operator} ({task}): si s'envia, ho substitueix.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>{robot} només es veu: no accepta ordres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, se'n va saber per darrer cop fa {age}: rebrà això quan se'n torni a saber, si és prou aviat.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones.</source>
+            <translation>{robot} no col·loca cons.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>{robot} no col·loca cons: només hi va.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/control/coordinates.py" />
             <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
             <translation>Una via amb exactitud de {accuracy:g} m necessita la malla {grids}, que no està instal·lada.</translation>
@@ -1423,81 +1503,6 @@
             <translation>{words}: la passarel·la no ha respost des de fa {seconds:g} s, així que potser no ha arribat. Es repeteix quan torna l'enllaç; mai no es fa dues vegades.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
-            <translation>({x:.2f}, {y:.2f}) m és a {away:.2f} m de {what} de {robot} a {other_x:.2f}, {other_y:.2f}: deixeu {clear_m:g} m entre objectius.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>a task</source>
-            <translation>una tasca</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the end of the route</source>
-            <translation>el final de la ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the target</source>
-            <translation>l'objectiu</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be sent to targets.</source>
-            <translation>{robot} no es pot enviar a objectius.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be told where it starts.</source>
-            <translation>A {robot} no se li pot dir on comença.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot follow routes.</source>
-            <translation>{robot} no pot seguir rutes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
-            <translation>{robot} treballa per a {operator} ({task}): si s'envia, ho substitueix.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is only seen: it takes no commands.</source>
-            <translation>{robot} només es veu: no accepta ordres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, se'n va saber per darrer cop fa {age}: rebrà això quan se'n torni a saber, si és prou aviat.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones.</source>
-            <translation>{robot} no col·loca cons.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones: it only drives there.</source>
-            <translation>{robot} no col·loca cons: només hi va.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
-            <translation>No se sap on és {robot}, de manera que ningú no ha comprovat el camí que fa.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>No way along the roads leads there: {why}.</source>
-            <translation>Cap camí per les vies hi porta: {why}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
-            <translation>La passarel·la no respon quin camí hi porta. Torneu a posar l’objectiu quan hi hagi connexió.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/control/route_queries.py" />
             <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
             <translation>La passarel·la no ha respost des de fa {seconds:g} s quin camí porta on heu fet clic, així que la ruta no hi va. Torneu-hi a fer clic.</translation>
@@ -1554,11 +1559,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
-            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
-            <translation>{robot} no ha declarat que demani el seu camí ni que accepti cons amb un camí: enviat ara, va recte. On això no convingui, afegiu-lo a la cua amb una ruta que eviti el que hi ha al mig.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
         </message>
@@ -1594,23 +1594,23 @@
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
-            <translation>Cap capa del projecte diu on hi ha obstacles i zones prohibides, així que ningú no ho ha mirat. Obriu el projecte del recinte o doneu papers a les capes.</translation>
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>No se sap on és {robot}, de manera que ningú no ha comprovat el camí que fa.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
-            <translation>La capa {layer} no es pot llegir, així que no s'ha mirat què hi ha. Repareu-ne l'origen o traieu-li el paper.</translation>
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Cap camí per les vies hi porta: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>La passarel·la no respon quin camí hi porta. Torneu a posar l’objectiu quan hi hagi connexió.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
-            <translation>{where} m és fora del recinte {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Feu clic a dins.</translation>
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} no ha declarat que demani el seu camí ni que accepti cons amb un camí: enviat ara, va recte. On això no convingui, afegiu-lo a la cua amb una ruta que eviti el que hi ha al mig.</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />

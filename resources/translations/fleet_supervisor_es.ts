@@ -1052,6 +1052,86 @@
             <translation>a la derecha</translation>
         </message>
         <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m está a {away:.2f} m de {what} de {robot} en {other_x:.2f}, {other_y:.2f}: deje {clear_m:g} m entre objetivos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>Ninguna capa del proyecto dice dónde hay obstáculos y zonas prohibidas, así que nadie lo ha mirado. Abra el proyecto del recinto o dé papeles a las capas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>La capa {layer} no se puede leer, así que no se ha mirado qué hay en ella. Repare su origen o quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>a task</source>
+            <translation>una tarea</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the end of the route</source>
+            <translation>el final de la ruta</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the target</source>
+            <translation>el objetivo</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>{robot} no se puede enviar a objetivos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A {robot} no se le puede decir dónde empieza.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>{robot} no puede seguir rutas.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} trabaja para {operator} ({task}): al enviarlo lo sustituye.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>{robot} solo se ve: no acepta órdenes.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, se supo de él por última vez hace {age}: recibirá esto cuando se vuelva a saber de él, si es lo bastante pronto.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones.</source>
+            <translation>{robot} no coloca conos.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>{robot} no coloca conos: solo va hasta allí.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/control/coordinates.py" />
             <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
             <translation>Una vía con exactitud de {accuracy:g} m necesita la malla {grids}, que no está instalada.</translation>
@@ -1423,81 +1503,6 @@
             <translation>{words}: la pasarela no ha respondido desde hace {seconds:g} s, así que quizá no haya llegado. Se repite cuando vuelve el enlace; nunca se hace dos veces.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
-            <translation>({x:.2f}, {y:.2f}) m está a {away:.2f} m de {what} de {robot} en {other_x:.2f}, {other_y:.2f}: deje {clear_m:g} m entre objetivos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>a task</source>
-            <translation>una tarea</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the end of the route</source>
-            <translation>el final de la ruta</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the target</source>
-            <translation>el objetivo</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be sent to targets.</source>
-            <translation>{robot} no se puede enviar a objetivos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be told where it starts.</source>
-            <translation>A {robot} no se le puede decir dónde empieza.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot follow routes.</source>
-            <translation>{robot} no puede seguir rutas.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
-            <translation>{robot} trabaja para {operator} ({task}): al enviarlo lo sustituye.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is only seen: it takes no commands.</source>
-            <translation>{robot} solo se ve: no acepta órdenes.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, se supo de él por última vez hace {age}: recibirá esto cuando se vuelva a saber de él, si es lo bastante pronto.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones.</source>
-            <translation>{robot} no coloca conos.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones: it only drives there.</source>
-            <translation>{robot} no coloca conos: solo va hasta allí.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
-            <translation>No se sabe dónde está {robot}, así que nadie ha comprobado el camino que recorre.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>No way along the roads leads there: {why}.</source>
-            <translation>Ningún camino por las vías lleva allí: {why}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
-            <translation>La pasarela no responde qué camino lleva allí. Vuelva a poner el objetivo cuando haya conexión.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/control/route_queries.py" />
             <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
             <translation>La pasarela no ha respondido desde hace {seconds:g} s qué camino lleva adonde hizo clic, así que la ruta no va allí. Vuelva a hacer clic allí.</translation>
@@ -1554,11 +1559,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
-            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
-            <translation>{robot} no ha declarado que pida su camino ni que acepte conos con un camino: enviado ahora, va recto. Donde eso no convenga, añádalo a la cola con una ruta que evite lo que hay en medio.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
         </message>
@@ -1594,23 +1594,23 @@
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
-            <translation>Ninguna capa del proyecto dice dónde hay obstáculos y zonas prohibidas, así que nadie lo ha mirado. Abra el proyecto del recinto o dé papeles a las capas.</translation>
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>No se sabe dónde está {robot}, así que nadie ha comprobado el camino que recorre.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
-            <translation>La capa {layer} no se puede leer, así que no se ha mirado qué hay en ella. Repare su origen o quítele el papel.</translation>
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Ningún camino por las vías lleva allí: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>La pasarela no responde qué camino lleva allí. Vuelva a poner el objetivo cuando haya conexión.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
-            <translation>{where} m está fuera del recinto {name}, que va de ({x_min:g}, {y_min:g}) a ({x_max:g}, {y_max:g}) m. Haga clic dentro.</translation>
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} no ha declarado que pida su camino ni que acepte conos con un camino: enviado ahora, va recto. Donde eso no convenga, añádalo a la cola con una ruta que evite lo que hay en medio.</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />

@@ -1046,6 +1046,86 @@
             <translation>jobbra</translation>
         </message>
         <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
+            <translation>({x:.2f}, {y:.2f}) m {away:.2f} m-re van ettől: {what}, {robot}, itt: {other_x:.2f}, {other_y:.2f}; tartson {clear_m:g} m-t a célok között.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
+            <translation>A projekt egyik rétege sem mondja meg, hol vannak akadályok és tiltott területek, ezért ezt senki sem nézte. Nyissa meg a telephely projektjét, vagy adjon szerepet a rétegeknek.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
+            <translation>A(z) {layer} réteg nem olvasható, ezért a tartalmát senki sem nézte. Javítsa ki a forrását, vagy vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
+            <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>a task</source>
+            <translation>egy feladat</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the end of the route</source>
+            <translation>az útvonal vége</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>the target</source>
+            <translation>a cél</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be sent to targets.</source>
+            <translation>A(z) {robot} nem küldhető célhoz.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot be told where it starts.</source>
+            <translation>A(z) {robot} robotnak nem adható meg, honnan indul.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} cannot follow routes.</source>
+            <translation>A(z) {robot} nem tud útvonalat követni.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
+            <translation>{robot} éppen {operator} megbízásán dolgozik ({task}): az elküldés ennek a helyébe lép.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is only seen: it takes no commands.</source>
+            <translation>A(z) {robot} csak látható: parancsot nem fogad.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
+            <translation>{robot}: {state}, utoljára {age} ideje hallatszott: ezt akkor kapja meg, amikor újra hallatszik, ha az elég hamar van.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones.</source>
+            <translation>A(z) {robot} nem rak le bóját.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{robot} places no cones: it only drives there.</source>
+            <translation>A(z) {robot} nem rak le bóját: csak odamegy.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
+            <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
+        </message>
+        <message>
             <location filename="../../plugin/control/coordinates.py" />
             <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
             <translation>Egy {accuracy:g} m pontosságú úthoz a(z) {grids} rács kell, amely nincs telepítve.</translation>
@@ -1415,81 +1495,6 @@
             <translation>{words}: az átjáró {seconds:g} s óta nem válaszolt, így lehet, hogy nem érkezett meg. Ha a kapcsolat helyreáll, megismétlődik; kétszer sosem hajtódik végre.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
-            <translation>({x:.2f}, {y:.2f}) m {away:.2f} m-re van ettől: {what}, {robot}, itt: {other_x:.2f}, {other_y:.2f}; tartson {clear_m:g} m-t a célok között.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>a task</source>
-            <translation>egy feladat</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the end of the route</source>
-            <translation>az útvonal vége</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>the target</source>
-            <translation>a cél</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be sent to targets.</source>
-            <translation>A(z) {robot} nem küldhető célhoz.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot be told where it starts.</source>
-            <translation>A(z) {robot} robotnak nem adható meg, honnan indul.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} cannot follow routes.</source>
-            <translation>A(z) {robot} nem tud útvonalat követni.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is at work for {operator} ({task}): sending this takes its place.</source>
-            <translation>{robot} éppen {operator} megbízásán dolgozik ({task}): az elküldés ennek a helyébe lép.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is only seen: it takes no commands.</source>
-            <translation>A(z) {robot} csak látható: parancsot nem fogad.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} is {state}, last heard {age} ago: it is told this when it is heard again, if that is soon enough.</source>
-            <translation>{robot}: {state}, utoljára {age} ideje hallatszott: ezt akkor kapja meg, amikor újra hallatszik, ha az elég hamar van.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones.</source>
-            <translation>A(z) {robot} nem rak le bóját.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/robot_checks.py" />
-            <source>{robot} places no cones: it only drives there.</source>
-            <translation>A(z) {robot} nem rak le bóját: csak odamegy.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
-            <translation>Nem tudni, hol van {robot}, ezért senki sem nézte meg, milyen úton megy.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>No way along the roads leads there: {why}.</source>
-            <translation>Oda nem vezet út az utakon: {why}.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
-            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
-            <translation>Az átjáró nem válaszol, hogy melyik út vezet oda. Ha a kapcsolat helyreállt, tűzze ki újra a célt.</translation>
-        </message>
-        <message>
             <location filename="../../plugin/control/route_queries.py" />
             <source>The gateway has not answered for {seconds:g} s which way leads to where you clicked, so the route does not go there. Click there again.</source>
             <translation>Az átjáró {seconds:g} s óta nem válaszolt, melyik út vezet oda, ahová kattintott, ezért az útvonal nem megy oda. Kattintson oda újra.</translation>
@@ -1546,11 +1551,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/route_queries.py" />
-            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
-            <translation>{robot} nem jelezte, hogy elkéri az útját, vagy úttal együtt is elfogad bóját: most elküldve egyenesen megy. Ahol ez nem kívánatos, adja a sorhoz olyan útvonallal, amely kikerüli, ami az útjában van.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/route_queries.py" />
             <source>{seconds} s</source>
             <translation>{seconds} s</translation>
         </message>
@@ -1586,23 +1586,23 @@
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>No layer of the project says where obstacles and keepouts are, so nobody has looked. Open the site's project, or give layers their roles.</source>
-            <translation>A projekt egyik rétege sem mondja meg, hol vannak akadályok és tiltott területek, ezért ezt senki sem nézte. Nyissa meg a telephely projektjét, vagy adjon szerepet a rétegeknek.</translation>
+            <source>It is not known where {robot} is, so nobody has looked at the way that it drives.</source>
+            <translation>Nem tudni, hol van {robot}, ezért senki sem nézte meg, milyen úton megy.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The layer {layer} cannot be read, so what is in it was not looked at. Repair its source, or take its role away.</source>
-            <translation>A(z) {layer} réteg nem olvasható, ezért a tartalmát senki sem nézte. Javítsa ki a forrását, vagy vegye el a szerepét.</translation>
+            <source>No way along the roads leads there: {why}.</source>
+            <translation>Oda nem vezet út az utakon: {why}.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
-            <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
+            <source>The gateway does not answer which way leads there. Set the target again when the link is there.</source>
+            <translation>Az átjáró nem válaszol, hogy melyik út vezet oda. Ha a kapcsolat helyreállt, tűzze ki újra a célt.</translation>
         </message>
         <message>
             <location filename="../../plugin/control/validation.py" />
-            <source>{where} m is outside the site {name}, which reaches from ({x_min:g}, {y_min:g}) to ({x_max:g}, {y_max:g}) m. Click inside it.</source>
-            <translation>{where} m a(z) {name} telephelyen kívül van, amely ettől: ({x_min:g}, {y_min:g}), eddig terjed: ({x_max:g}, {y_max:g}) m. Kattintson belülre.</translation>
+            <source>{robot} has not declared that it asks for its path or takes cones with one: sent now it drives straight. Add to queue, with a route around what is in its way, where that is not wanted.</source>
+            <translation>{robot} nem jelezte, hogy elkéri az útját, vagy úttal együtt is elfogad bóját: most elküldve egyenesen megy. Ahol ez nem kívánatos, adja a sorhoz olyan útvonallal, amely kikerüli, ami az útjában van.</translation>
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />

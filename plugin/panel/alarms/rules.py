@@ -12,7 +12,7 @@ import numpy.typing as npt
 from qgis.core import QgsSettings
 
 from ....robot_bridge.core.messages.safety import RobotState
-from ...control.robot_checks import Ints, close_pairs
+from ...control.close_pairs import Ints, close_pairs
 from ...gateway_client.robot_states import STATES
 from ...ui.language import tr
 

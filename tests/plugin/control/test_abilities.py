@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
+from fleet_supervisor.plugin.control.command_checks import check_abilities
 from fleet_supervisor.plugin.control.pending_command import CONE, ROUTE, START, TARGETS, PendingCommand
-from fleet_supervisor.plugin.control.robot_checks import check_abilities
 from fleet_supervisor.plugin.gateway_client.robot_states import RobotView
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 

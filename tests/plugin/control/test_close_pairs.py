@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.control.robot_checks import close_pairs, pairs_between
+from fleet_supervisor.plugin.control.close_pairs import close_pairs, pairs_between
 
 
 def brute_force(xy, reach):
