@@ -338,7 +338,7 @@ def deal_out(items):
 
 
 @pytest.fixture
-def qgis_show_map_off(request) -> None:
+def qgis_show_map(request) -> None:
     """Show no map, in place of pytest-qgis, which has each test make and remove a folder for it.
 
     That it asks for ``request`` has pytest-qgis tidy up what layers a test has.

@@ -53,3 +53,7 @@ def test_a_test_of_it_that_reaches_for_qgis_fails(core, root, tmp_path):
 def test_each_file_that_is_dealt_out_early_is_there(root, request):
     conftest = request.config.pluginmanager.get_plugin(str(root / "tests" / "conftest.py"))
     assert [name for name in conftest.LONG if not (root / "tests" / name).is_file()] == []
+
+
+def test_no_test_is_given_a_folder_that_it_does_not_ask_for(request):
+    assert "tmp_path" not in request.fixturenames
