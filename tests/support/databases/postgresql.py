@@ -53,7 +53,7 @@ class PostgreSql(DatabaseServer):
         }
         if not self.durable:
             # What is committed still outlives a kill of the server, though not of the computer.
-            settings |= {"fsync": "off", "full_page_writes": "off"}
+            settings |= {"fsync": "off", "full_page_writes": "off", "max_wal_size": "128MB"}
         given = [word for name, value in settings.items() for word in ("-c", f"{name}={value}")]
         return [self._program("postgres"), "-D", self.folder / "data", *given]
 
