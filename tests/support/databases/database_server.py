@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import abc
 import contextlib
+import hashlib
 import itertools
 import os
 import pwd
@@ -26,6 +27,8 @@ from tests.support.processes import free_port
 
 OWNER = "fleet"
 """The account that owns every new database; it is no superuser and may make no accounts."""
+MODELS = Path(__file__).parents[3] / "build" / "databases"
+"""What new servers begin with."""
 MEMORY = Path("/dev/shm")
 ROOM_IN_MEMORY = 4 << 30
 """Bytes that must be free there before one more server is put there: a dozen may grow to 0.5 GB each."""
@@ -86,7 +89,7 @@ class DatabaseServer(abc.ABC):
         self._remover = _remove_when_this_program_ends(self.folder)
         try:
             self._give(self.folder)
-            self._initialise()
+            self._copy_or_initialise()
             self.port = free_port()
             self.start()
             self._make_owner()
@@ -100,6 +103,28 @@ class DatabaseServer(abc.ABC):
         shutil.rmtree(self.folder, ignore_errors=True)
         self._remover.kill()
         self._remover.communicate()
+
+    def _copy_or_initialise(self) -> None:
+        """Begin with a copy of what the first server of these programs began with: it takes a tenth."""
+        data, model = self.folder / "data", self._model()
+        if model.is_dir():
+            _copy(model, data)
+            return
+        self._initialise()
+        model.parent.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=model.parent, prefix=f"{model.name}-") as place:
+            copied = Path(place) / "data"
+            _copy(data, copied)
+            # Others may have been as fast.
+            with contextlib.suppress(OSError):
+                copied.rename(model)
+
+    def _model(self) -> Path:
+        """Return where a new server's files are kept, for these very programs and this account."""
+        programs = [Path(self._program(name)).resolve() for name in self.programs]
+        facts = [(str(file), file.stat().st_size, file.stat().st_mtime_ns) for file in programs]
+        word = hashlib.sha256(repr((facts, os.geteuid(), *self._options())).encode()).hexdigest()[:16]
+        return MODELS / f"{self.scheme}-{word}"
 
     def require_programs(self) -> None:
         """Raise StageError when a program that this server needs is not on this machine."""
@@ -225,6 +250,10 @@ class DatabaseServer(abc.ABC):
         """Run statements as the superuser; return what they print. Raises StageError."""
 
     @abc.abstractmethod
+    def _options(self) -> list[str]:
+        """What :meth:`_initialise` is to make, apart from where; it is the same for each server."""
+
+    @abc.abstractmethod
     def _initialise(self) -> None: ...
 
     @abc.abstractmethod
@@ -238,6 +267,10 @@ class DatabaseServer(abc.ABC):
 
     @abc.abstractmethod
     def _create_database(self, name: str) -> None: ...
+
+
+def _copy(data: Path, to: Path) -> None:
+    subprocess.run(["cp", "-a", "--reflink=auto", str(data), str(to)], check=True)
 
 
 def _quick_place() -> Path:

@@ -22,9 +22,11 @@ class MariaDb(DatabaseServer):
             [self._program("mariadb"), *options], text, MYSQL_PWD=self.admin_password
         ).strip()
 
+    def _options(self) -> list[str]:
+        return ["--skip-test-db", "--auth-root-authentication-method=normal", "--skip-name-resolve"]
+
     def _initialise(self) -> None:
-        options = ["--no-defaults", f"--datadir={self.folder / 'data'}", "--skip-test-db"]
-        options += ["--auth-root-authentication-method=normal", "--skip-name-resolve"]
+        options = ["--no-defaults", f"--datadir={self.folder / 'data'}", *self._options()]
         # Each server removes what it finds of others in the folder for temporary tables.
         install = [*self._as_account(), self._program("mariadb-install-db"), *options]
         self._require(install, TMPDIR=str(self.folder))

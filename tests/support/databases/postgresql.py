@@ -11,6 +11,9 @@ from pathlib import Path
 
 from tests.support.databases.database_server import OWNER, DatabaseServer, find_program
 
+FIRST_PASSWORD = "new"
+"""The superuser's before a server has begun to serve."""
+
 
 class PostgreSql(DatabaseServer):
     """PostgreSQL 15 or newer, with passwords (SCRAM) for everyone."""
@@ -22,11 +25,12 @@ class PostgreSql(DatabaseServer):
     ending = signal.SIGINT  # the fast shutdown: it waits for no client
 
     def sql(self, text: str, database: str | None = None) -> str:
-        address = ["-h", "127.0.0.1", "-p", str(self.port), "-U", self.admin, "-d", database or "postgres"]
+        return self._ask(text, database or "postgres", self.admin_password)
+
+    def _ask(self, text: str, database: str, password: str) -> str:
+        address = ["-h", "127.0.0.1", "-p", str(self.port), "-U", self.admin, "-d", database]
         options = ["-X", "-q", "-A", "-t", "-v", "ON_ERROR_STOP=1"]
-        return self._require(
-            [self._program("psql"), *options, *address], text, PGPASSWORD=self.admin_password
-        ).strip()
+        return self._require([self._program("psql"), *options, *address], text, PGPASSWORD=password).strip()
 
     def copied_database(self, model: str) -> str:
         """Make a copy of the database named so, to which nobody is connected; return its owner's URL."""
@@ -35,14 +39,15 @@ class PostgreSql(DatabaseServer):
         self.sql(f'create database "{name}" template "{model}" owner {OWNER} strategy file_copy')
         return self.url(name, OWNER, self.owner_password)
 
+    def _options(self) -> list[str]:
+        return ["--no-sync", "-A", "scram-sha-256", "-U", self.admin, "-E", "UTF8", "--locale=C.UTF-8"]
+
     def _initialise(self) -> None:
         secret = self.folder / "password"
-        secret.write_text(self.admin_password, encoding="utf-8")
-        secret.chmod(0o600)
+        secret.write_text(FIRST_PASSWORD, encoding="utf-8")
         self._give(secret)
-        options = ["--no-sync", "-A", "scram-sha-256", f"--pwfile={secret}", "-U", self.admin]
-        options += ["-E", "UTF8", "--locale=C.UTF-8", "-D", str(self.folder / "data")]
-        self._require([*self._as_account(), self._program("initdb"), *options])
+        where = [f"--pwfile={secret}", "-D", str(self.folder / "data")]
+        self._require([*self._as_account(), self._program("initdb"), *self._options(), *where])
 
     def _command(self) -> list[str | Path]:
         settings = {
@@ -62,7 +67,11 @@ class PostgreSql(DatabaseServer):
         return self._run(ask).returncode == 0
 
     def _make_owner(self) -> None:
-        self.sql(f"create role {OWNER} login password '{_quick_secret(self.owner_password)}'")
+        text = (
+            f"alter role {self.admin} password '{_quick_secret(self.admin_password)}';"
+            f"create role {OWNER} login password '{_quick_secret(self.owner_password)}'"
+        )
+        self._ask(text, "postgres", FIRST_PASSWORD)
 
     def _create_database(self, name: str) -> None:
         self.sql(f'create database "{name}" owner {OWNER}')
