@@ -363,8 +363,8 @@ class _Fenced(BatchedWork[Any]):
             robots.setdefault(fence, set()).update(names)
         for fence, some in robots.items():
             fence.check(connection, sorted(some))
-        done = do_together(connection, [(work, arguments) for *_, work, arguments in asked])
-        return [result for _, result in sorted(done, key=lambda one: one.number)]
+        results = dict(do_together(connection, [(work, arguments) for *_, work, arguments in asked]))
+        return [results[number] for number in range(len(asked))]
 
 
 _fenced = _Fenced()

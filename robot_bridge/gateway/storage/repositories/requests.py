@@ -263,7 +263,8 @@ def remove_answers(connection: Connection, ids: Sequence[int]) -> None:
 def remove_own(connection: Connection, answers: Sequence[tuple[str, int]]) -> None:
     """Delete answers by robot and id, if they are the robot's own."""
     if len(answers) == 1:
-        connection.execute(_REMOVE_OWN, dict(zip(("of", "one"), answers[0], strict=True)))
+        ((robot, id),) = answers
+        connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
     elif answers:
         # Found first, as the kinds below. A robot may have deleted some by then.
         own = set(answers)
