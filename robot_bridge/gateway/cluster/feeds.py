@@ -39,6 +39,8 @@ LOOK_S = 1.0
 """seconds between two looks when nobody tells of a change."""
 WAKE_S = 0.02
 """seconds for which changes here wait for one another before other gateways are woken."""
+APART_S = 0.05
+"""seconds between two looks at least: in an emergency stop others tell of changes without a pause."""
 
 
 class Followed(Protocol):
@@ -70,6 +72,7 @@ class Follower:
             while True:
                 self._woken.clear()
                 await self._followed.follow()
+                await asyncio.sleep(APART_S)
                 await wait_at_most(self._woken, LOOK_S)
         finally:
             waking.cancel()
