@@ -30,7 +30,7 @@ PEER = os.environ.get("PEER", "2a3f103a")
 """The revision beside which this one is measured: the last before several gateways could serve a fleet."""
 ROUNDS, QUARTETS = size((3, 25), (1, 2))
 TURNS = "now", "then", "then", "now"
-ROBOTS, OPERATORS, OPERATOR_RATE = size(50, 5), 5, 5.0
+ROBOTS, OPERATORS, OPERATOR_RATE = size(100, 5), 5, 5.0
 POSITIONS, COMMANDS, READIES = size((1000, 20, 20), (100, 5, 5))
 """in each turn."""
 ANSWER_WITHIN = 60.0

@@ -17,7 +17,7 @@ from typing import Any
 
 from tests.support.robots.robot_lives import Said
 
-FIRST_X, STEP_X = 10.0, 0.01
+FIRST_X, STEP_X = 10.0, 0.005
 """metres: the x of command 0, and what each further one adds."""
 POSE_EVERY, OBJECT_EVERY = 0.25, 2.0
 LONGEST_DRIVE = 0.4
