@@ -190,13 +190,15 @@ class NearnessWatch:
     async def _meetings(self, now: float, limits: NearnessLimits) -> list[Meeting]:
         if limits.metres <= 0:
             return []
-        known = [_mover(one, one.pose) for one in self._robots.changed(-1) if one.located and one.pose]
-        people = [one for one, robot in known if self._is_seen(robot)]
+        located = [(one, one.pose) for one in self._robots.changed(-1) if one.located and one.pose]
+        people = [_mover(robot, pose) for robot, pose in located if self._is_seen(robot)]
         if not people:
             return []
         reach = limits.metres + MARGIN_M + limits.within_s * 2 * FASTEST_MS
         tasked = [
-            one for one, robot in known if robot.abilities != "" and robot.state is not RobotState.OFFLINE
+            _mover(robot, pose)
+            for robot, pose in located
+            if robot.abilities != "" and robot.state is not RobotState.OFFLINE
         ]
         robots = _within(tasked, people, reach)
         near = {pair for pair, (is_near, _) in self._since.items() if is_near}
@@ -227,11 +229,11 @@ class NearnessWatch:
             self._listeners.announce("nearness", "nearness", to_json(self.report()))
 
 
-def _mover(robot: Robot, pose: SendPos) -> tuple[Mover, Robot]:
+def _mover(robot: Robot, pose: SendPos) -> Mover:
     # Who does not know where it heads stands, as far as can be known.
     goes = abs(pose.v) >= SLOWEST_MS and pose.theta_from != "unknown"
     velocity = (pose.v * math.cos(pose.theta), pose.v * math.sin(pose.theta)) if goes else (0.0, 0.0)
-    return Mover(robot.name, (pose.x, pose.y), velocity), robot
+    return Mover(robot.name, (pose.x, pose.y), velocity)
 
 
 def _within(robots: list[Mover], people: list[Mover], reach: float) -> list[Mover]:

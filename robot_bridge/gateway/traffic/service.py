@@ -94,7 +94,8 @@ class TrafficControl:
                 await self._waiting.see_to(self.situation())
         if not listened_to or time.monotonic() < self._next:
             return
-        seen, began = self.situation(), time.monotonic()
+        began = time.monotonic()
+        seen = self.situation()
         found = await asyncio.to_thread(_found, seen) if seen.underway else []
         self._next = time.monotonic() + (time.monotonic() - began) / SHARE
         report = messages.Conflicts(seen.now, found, self._waiting.report())
