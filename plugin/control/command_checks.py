@@ -163,7 +163,7 @@ class LayerCheck(QObject):
         return (yield from _checked(check, draft, _without_repetition(draft, found_for), is_watched))
 
     def _unseen(self) -> Findings:
-        """Tell of what a draft has to be held against and cannot be."""
+        """Return findings on the layers that a draft should be checked against and cannot be."""
         layers = layers_with_role(self._project, *(role for check in self._checks for role in check.roles))
         if not layers:
             return Findings(

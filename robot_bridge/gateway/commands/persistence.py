@@ -310,6 +310,7 @@ class RobotLocks:
         self._database = database
         self._known = known
         self._fence = fence
+        self._fenced = _FencedWork(fence)
         self._locks = NamedLocks()
         self._doubts = self._settled = 0
 
@@ -338,7 +339,7 @@ class RobotLocks:
         try:
             if self._fence is SOLE_FENCE:
                 return await self._database.run(work, *arguments)
-            return await self._database.run(_fenced, self._fence, list(names), work, arguments)
+            return await self._database.run(self._fenced, list(names), work, arguments)
         except UncertainError:
             self._doubts += 1
             raise
@@ -349,25 +350,19 @@ class RobotLocks:
             await self._database.read(self._fence.check, names)
 
 
-class _Fenced(BatchedWork[Any]):
-    """Work on robots that this gateway has."""
+class _FencedWork(BatchedWork[Any]):
+    """Work on robots of this gateway, all of them checked by one statement."""
+
+    def __init__(self, fence: OwnerFence) -> None:
+        self._fence = fence
 
     def do_all(
-        self,
-        connection: Connection,
-        asked: Sequence[tuple[OwnerFence, Sequence[str], Callable[..., Any], Any]],
+        self, connection: Connection, asked: Sequence[tuple[Sequence[str], Callable[..., Any], Any]]
     ) -> list[Any]:
-        """Do what each asks for as ``(fence, robots, work, arguments)``; raises FencedError for all."""
-        robots: dict[OwnerFence, set[str]] = {}
-        for fence, names, *_ in asked:
-            robots.setdefault(fence, set()).update(names)
-        for fence, some in robots.items():
-            fence.check(connection, sorted(some))
-        results = dict(do_together(connection, [(work, arguments) for *_, work, arguments in asked]))
+        """Do what each asks for as ``(robots, work, arguments)``; raises FencedError for all."""
+        self._fence.check(connection, sorted({robot for robots, _, _ in asked for robot in robots}))
+        results = dict(do_together(connection, [(work, arguments) for _, work, arguments in asked]))
         return [results[number] for number in range(len(asked))]
-
-
-_fenced = _Fenced()
 
 
 # --- What a robot says of its commands, in its order: acknowledgements stored, positions judged behind them

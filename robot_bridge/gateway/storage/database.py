@@ -120,8 +120,8 @@ Outcome = tuple[DatabaseJob, Any, BaseException | None]
 class DatabaseWorker:
     """Does jobs in the order they came, batched work with the first of its kind.
 
-    What waits together is committed together, told in the order in which it was done, and fails by itself:
-    it is done again by halves.
+    What waits together is committed together, reported in the order in which it was done, and fails by
+    itself: it is done again by halves.
     A transaction that the database gave up, or whose connection turned out to be dead before its commit, is
     done again: work changes nothing but the database.
     """

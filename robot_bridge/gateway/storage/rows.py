@@ -150,14 +150,14 @@ def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) ->
         connection.exec_driver_sql(_DELETE_BY_KEY.format(table=table.name), (json.dumps(list(ids)),))
 
 
-def padded(values: Sequence[T]) -> list[T]:
-    """Return ``values`` for an IN, with the last one repeated until they are 1, 2, 4, 8 … of them.
+def padded_pieces(values: Sequence[T]) -> Iterator[list[T]]:
+    """Yield pieces of ``values`` for an IN, the last one of each repeated until they are 1, 2, 4, 8 … .
 
-    Drivers and servers keep a statement ready for each number that comes up.
+    Drivers and servers keep a statement ready for each number that comes up, and take so many at most.
     """
-    if not values:
-        return []
-    return [*values, *itertools.repeat(values[-1], (1 << (len(values) - 1).bit_length()) - len(values))]
+    for begin in range(0, len(values), TOGETHER):
+        some = values[begin : begin + TOGETHER]
+        yield [*some, *itertools.repeat(some[-1], (1 << (len(some) - 1).bit_length()) - len(some))]
 
 
 def _delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:

@@ -10,7 +10,7 @@ from sqlalchemy import Connection, Select, bindparam, delete, func, insert, sele
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
-from ..rows import beside_the_time, delete_oldest, padded, readable
+from ..rows import beside_the_time, delete_oldest, padded_pieces, readable
 from ..schema import command_steps, commands
 
 # --- Commands and every step of their lives ---
@@ -92,8 +92,11 @@ def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
 
 def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
     """Return those of some commands that are stored, by their ids."""
-    found = _load(connection, _BY_ID, {"ids": padded(ids)}) if ids else []
-    return {command.report.command: command for command in found}
+    return {
+        command.report.command: command
+        for some in padded_pieces(ids)
+        for command in _load(connection, _BY_ID, {"ids": some})
+    }
 
 
 def find(connection: Connection, command: str) -> CommandReport | None:
@@ -106,12 +109,15 @@ def find_messages(
     connection: Connection, messages: Sequence[tuple[str, int]]
 ) -> dict[tuple[str, int], StoredCommand]:
     """Return the commands of robots whose ``messages`` are, or were, those rows of SA, by robot and id."""
-    if not messages:
-        return {}
-    robots, ids = (padded(sorted(set(some))) for some in zip(*messages, strict=True))
-    # Both are in the index; of the robots' commands with another one's number nothing is returned.
-    found = _load(connection, _BY_MESSAGES, {"robots": robots, "messages": ids})
-    return {key: command for command in found if (key := (command.report.robot, command.sa_id)) in messages}
+    wanted = set(messages)
+    found: dict[tuple[str, int], StoredCommand] = {}
+    for some in padded_pieces(messages):
+        robots, ids = map(list, zip(*some, strict=True))
+        # By the index of both, which also finds a robot's command that has another one's number.
+        for command in _load(connection, _BY_MESSAGES, {"robots": robots, "messages": ids}):
+            if (key := (command.report.robot, command.sa_id)) in wanted:
+                found[key] = command
+    return found
 
 
 def newest(connection: Connection, robot: str | None, limit: int) -> list[CommandReport]:
@@ -168,7 +174,11 @@ def _load(
 ) -> list[StoredCommand]:
     rows = connection.execute(query, values).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
-    found = connection.execute(_STEPS, {"commands": padded(list(steps))}).mappings() if rows else ()
+    found = (
+        row
+        for some in padded_pieces(list(steps))
+        for row in connection.execute(_STEPS, {"commands": some}).mappings()
+    )
     for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
         steps[command].append(step)
     return list(

@@ -26,7 +26,7 @@ from sqlalchemy import (
 from ....core.json_decoder import SHORT, DecodingError, decode_json
 from ....core.messages.base import LARGEST_MESSAGE, to_json
 from ....core.messages.robots import COMMANDS, Abort, Answer, SetMap
-from ..rows import TOGETHER, BatchedWork, Row, add_messages, delete_messages, padded
+from ..rows import BatchedWork, Row, add_messages, delete_messages, padded_pieces
 from ..schema import rr, sa
 
 # --- Table RR: robots insert, the gateway reads and deletes ---
@@ -148,9 +148,8 @@ _LATER = or_(
 _ANSWER = select(sa.c.id, sa.c.op, sa.c.params, sa.c.payload, sa.c.urgent)
 _READ_ANSWERS = _ANSWER.where(sa.c.robot == bindparam("of"), _LATER).order_by(sa.c.urgent.desc(), sa.c.id)
 _READ_THESE = _ANSWER.add_columns(sa.c.robot).where(sa.c.id.in_(bindparam("ids", expanding=True)))
-_OF_ROBOTS = select(sa.c.id, sa.c.robot, sa.c.urgent).where(
-    sa.c.robot.in_(bindparam("robots", expanding=True))
-)
+_OF_THESE = sa.c.robot.in_(bindparam("robots", expanding=True))
+_OF_ROBOTS = select(sa.c.id, sa.c.robot, sa.c.urgent).where(_OF_THESE)
 _ROBOT_OF = select(sa.c.id, sa.c.robot).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 _UNFILLED_MAPS = select(sa.c.id).where(
     sa.c.robot == bindparam("of"), sa.c.op == SetMap.__name__, sa.c.payload.is_(None)
@@ -163,11 +162,8 @@ _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
 # Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
-_KINDS_OF_ROBOTS = (
-    select(sa.c.id, sa.c.robot, sa.c.op)
-    .where(sa.c.robot.in_(bindparam("robots", expanding=True)), sa.c.op.in_(bindparam("ops", expanding=True)))
-    .order_by(sa.c.id.desc())
-)
+_UNLOCKED_KINDS = _KINDS.where(_OF_THESE).with_for_update(skip_locked=True)
+_KINDS_OF_ROBOTS = _KINDS.add_columns(sa.c.robot, sa.c.op).where(_OF_THESE).order_by(sa.c.id.desc())
 
 
 class AnswerRow(NamedTuple):
@@ -232,19 +228,20 @@ class _ReadOutbox(BatchedWork[list[AnswerRow]]):
         """Return the answers that wait for each."""
         if len(asked) == 1:
             return [read_answers(connection, *asked[0])]
-        # Of what was sent already the payload, which may be megabytes, is not to be read again.
+        # The payload of what was sent already, which may be megabytes, must not be read again.
         oldest: dict[str, tuple[int, int]] = {}
         for robot, *last in asked:
             after, after_urgent = oldest.get(robot, last)
             oldest[robot] = min(after, last[0]), min(after_urgent, last[1])
         ids = [
             row.id
-            for row in connection.execute(_OF_ROBOTS, {"robots": padded(list(oldest))})
+            for some in padded_pieces(list(oldest))
+            for row in connection.execute(_OF_ROBOTS, {"robots": some})
             if row.robot in oldest and row.id > oldest[row.robot][row.urgent > 0]
         ]
         found: dict[str, list[AnswerRow]] = {robot: [] for robot in oldest}
-        for begin in range(0, len(ids), AT_ONCE):
-            for row in connection.execute(_READ_THESE, {"ids": padded(ids[begin : begin + AT_ONCE])}):
+        for some_ids in padded_pieces(ids):
+            for row in connection.execute(_READ_THESE, {"ids": some_ids}):
                 id, op, params, payload, urgent, robot = row
                 found[robot].append(AnswerRow(id, op, params, payload, bool(urgent)))
         for rows in found.values():
@@ -265,10 +262,11 @@ def remove_own(connection: Connection, answers: Sequence[tuple[str, int]]) -> No
     if len(answers) == 1:
         ((robot, id),) = answers
         connection.execute(_REMOVE_OWN, {"of": robot, "one": id})
-    elif answers:
-        # Found first, as the kinds below. A robot may have deleted some by then.
-        own = set(answers)
-        found = connection.execute(_ROBOT_OF, {"ids": padded([id for _, id in answers])})
+        return
+    # Found first, as the kinds below. A robot may have deleted some by then.
+    own = set(answers)
+    for some in padded_pieces([id for _, id in answers]):
+        found = connection.execute(_ROBOT_OF, {"ids": some})
         remove_answers(connection, [id for id, robot in found if (robot, id) in own])
 
 
@@ -283,9 +281,9 @@ def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
 
 def remove_kinds(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
     """Delete the answers of the kinds ``ops`` for ``robots``."""
-    for begin in range(0, len(robots), TOGETHER):
-        some = {"robots": padded(robots[begin : begin + TOGETHER]), "ops": ops}
-        remove_answers(connection, list(connection.scalars(_KINDS_OF_ROBOTS, some)))
+    for some in padded_pieces(robots):
+        found = connection.scalars(_KINDS_OF_ROBOTS, {"robots": some, "ops": ops})
+        remove_answers(connection, list(found))
 
 
 def remove_void(connection: Connection, void: Mapping[str, Collection[str]]) -> None:
@@ -294,13 +292,10 @@ def remove_void(connection: Connection, void: Mapping[str, Collection[str]]) -> 
     Of maps those that nothing waits behind which needs one.
     """
     ops = sorted({op for kinds in void.values() for op in kinds} | set(ORDERS))
-    robots = [robot for robot, kinds in void.items() if kinds]
-    for begin in range(0, len(robots), TOGETHER):
+    for some in padded_pieces([robot for robot, kinds in void.items() if kinds]):
         gone, needing = [], set()
         # The newest first.
-        for id, robot, op in connection.execute(
-            _KINDS_OF_ROBOTS, {"robots": padded(robots[begin : begin + TOGETHER]), "ops": ops}
-        ):
+        for id, robot, op in connection.execute(_KINDS_OF_ROBOTS, {"robots": some, "ops": ops}):
             kinds = void.get(robot, ())
             if op in kinds and not (op == SetMap.__name__ and robot in needing):
                 gone.append(id)
@@ -317,9 +312,8 @@ def fill_maps(connection: Connection, robot: str, content: bytes) -> None:
 
 def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
     """Delete the answers of the kinds ``ops`` for ``robots`` but for those that a robot is just reading."""
-    for begin in range(0, len(robots), TOGETHER):
-        some = sa.c.robot.in_(robots[begin : begin + TOGETHER])
-        found = connection.scalars(_KINDS.where(some).with_for_update(skip_locked=True), {"ops": ops})
+    for some in padded_pieces(robots):
+        found = connection.scalars(_UNLOCKED_KINDS, {"robots": some, "ops": ops})
         remove_answers(connection, list(found))
 
 

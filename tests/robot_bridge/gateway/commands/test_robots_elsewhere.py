@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import asyncio
-import time
-
 import pytest
 
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.commands.persistence import RobotLocks
 from robot_bridge.gateway.storage.repositories.robots import FencedError, SoleFence
+from tests.support.bridge.busy_database import done_together
 
 PATHS = {"r1": [(20.0, 40.0), (60.0, 40.0)], "r2": [(20.0, 50.0), (60.0, 50.0)]}
 
@@ -30,8 +29,9 @@ async def book(two):
         await two.acknowledge_all(robot)
         for x in (25.0, 30.0):
             await two.at(x, path[0][1], v=1.0, robot=robot)
-    two.fleet._book._held._fence = Elsewhere()
-    return two.fleet._book
+    book = two.fleet._book
+    book._held = RobotLocks(two.database, book, Elsewhere())
+    return book
 
 
 async def test_how_far_the_others_have_come_is_stored(two, book):
@@ -52,8 +52,6 @@ async def test_aborts_of_the_others_that_were_kept_are_stored(two, book):
 
 
 async def test_what_waits_for_the_database_beside_them_is_stored(two, book):
-    busy = two.database.run(lambda _: time.sleep(0.3))
-    ended = [book.give_up(robot, "gone") for robot in PATHS]
-    _, theirs, ours = await asyncio.gather(busy, *ended, return_exceptions=True)
+    theirs, ours = await done_together(two.database, *(book.give_up(robot, "gone") for robot in PATHS))
     assert isinstance(theirs, FencedError) and ours is None
     assert await two.states() == {"path-r1": "acknowledged", "path-r2": "failed"}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import dataclasses
-import threading
 from types import SimpleNamespace
 
 import pytest
@@ -21,6 +20,7 @@ from robot_bridge.gateway.storage.repositories import trajectories
 from robot_bridge.gateway.storage.repositories.trajectories import Fix
 from robot_bridge.gateway.storage.schema import trajectories as table
 from robot_bridge.gateway.trajectories.recording import TrajectoryRecorder, TrajectoryWriter
+from tests.support.bridge.busy_database import kept_busy
 
 EVERY = TrajectorySettings(min_distance_m=0.0, min_turn_deg=0.0, min_interval_s=0.0)
 
@@ -80,17 +80,8 @@ def yard(database):
 @pytest.fixture
 async def busy(database):
     """Let the database's thread wait until ``go`` is set; return that."""
-    begun, go = threading.Event(), threading.Event()
-
-    def wait(_connection):
-        begun.set()
-        go.wait(20)
-
-    waiting = asyncio.ensure_future(database.run(wait))
-    await asyncio.to_thread(begun.wait)
-    yield go
-    go.set()
-    await waiting
+    async with kept_busy(database) as go:
+        yield go
 
 
 async def test_what_is_being_saved_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):

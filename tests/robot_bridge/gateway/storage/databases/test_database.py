@@ -16,6 +16,7 @@ from robot_bridge.core.errors import DataRefusedError, StoreError
 from robot_bridge.gateway.storage.database import WRONG_AT_ONCE_S, Database
 from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
+from tests.support.bridge.busy_database import done_together
 
 
 @pytest.fixture
@@ -145,20 +146,16 @@ async def test_batched_work_that_waits_is_done_at_once_and_told_in_the_order_in_
     async def ask(work, *arguments):
         told.append(await database.run(work, *arguments))
 
-    # What comes while the first is under way is done together.
-    await asyncio.gather(
-        ask(lambda _: time.sleep(0.3)), ask(work, "r1"), ask(names), ask(work, "r2"), ask(work, "r3")
-    )
+    await done_together(database, ask(work, "r1"), ask(names), ask(work, "r2"), ask(work, "r3"))
     assert work.calls == [["r1", "r2", "r3"]]
     # Who read what the others wrote hears of it after them.
-    assert told == [None, "R1", "R2", "R3", ["r1", "r2", "r3"]]
+    assert told == ["R1", "R2", "R3", ["r1", "r2", "r3"]]
 
 
 async def test_batched_work_that_fails_for_one_is_done_for_the_others_by_halves(database):
     work = AddAll(refused=["r2"])
-    asked = [database.run(lambda _: time.sleep(0.3)), *(database.run(work, f"r{n}") for n in range(5))]
-    done = await asyncio.gather(*asked, return_exceptions=True)
-    assert [isinstance(result, StoreError) for result in done] == [False] * 3 + [True] + [False] * 2
+    done = await done_together(database, *(database.run(work, f"r{n}") for n in range(5)))
+    assert [isinstance(result, StoreError) for result in done] == [False, False, True, False, False]
     assert list(map(len, work.calls)) == [5, 2, 3, 1, 2]
     assert await database.run(names) == ["r0", "r1", "r3", "r4"]
 
@@ -167,11 +164,13 @@ async def test_work_that_is_refused_fails_nobody_elses_though_the_database_is_sl
     def refuse(_):
         raise StoreError("another gateway has the robot")
 
-    slow = partial(time.sleep, WRONG_AT_ONCE_S + 0.1)
-    # What comes while the first is under way is done together.
-    work = [lambda _: time.sleep(0.3), lambda _: slow(), refuse, partial(add, robot="r1")]
-    done = await asyncio.gather(*map(database.run, work), return_exceptions=True)
-    assert [isinstance(result, StoreError) for result in done] == [False, False, True, False]
+    def be_slow(_):
+        # Longer than after which the database itself is taken to be at fault.
+        time.sleep(WRONG_AT_ONCE_S + 0.1)
+
+    work = [be_slow, refuse, partial(add, robot="r1")]
+    done = await done_together(database, *map(database.run, work))
+    assert [isinstance(result, StoreError) for result in done] == [False, True, False]
     assert await database.run(names) == ["r1"]
 
 
@@ -179,10 +178,9 @@ async def test_a_statement_that_is_wrong_fails_nobody_elses_work(database):
     def wrong(connection):
         return connection.execute(text("select 1 from nowhere")).first()
 
-    # What comes while the first is under way is done together.
-    work = [lambda _: time.sleep(0.3), partial(add, robot="r1"), wrong, partial(add, robot="r2")]
-    done = await asyncio.gather(*map(database.run, work), return_exceptions=True)
-    assert [isinstance(result, StoreError) for result in done] == [False, False, True, False]
+    work = [partial(add, robot="r1"), wrong, partial(add, robot="r2")]
+    done = await done_together(database, *map(database.run, work))
+    assert [isinstance(result, StoreError) for result in done] == [False, True, False]
     assert await database.run(names) == ["r1", "r2"]
 
 

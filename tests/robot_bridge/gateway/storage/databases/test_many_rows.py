@@ -8,7 +8,7 @@ from sqlalchemy import create_engine, event, func, select
 from robot_bridge.core.messages.robots import OpAck, SendPos, SetMap
 from robot_bridge.gateway.model.robots import Robot
 from robot_bridge.gateway.storage.database import Database
-from robot_bridge.gateway.storage.repositories import requests, robots, trajectories
+from robot_bridge.gateway.storage.repositories import commands, requests, robots, trajectories
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 from robot_bridge.gateway.storage.rows import TOGETHER
@@ -111,3 +111,9 @@ def test_sqlite_is_asked_in_few_kinds_of_statements(tmp_path):
         found = connection.execute(select(func.count()).select_from(stored_positions)).scalar()
     assert found == sum(range(1, 3 * TOGETHER))
     assert len([text for text in texts if text.startswith("INSERT")]) <= TOGETHER.bit_length()
+
+
+async def test_more_are_looked_up_than_a_statement_takes_values(database):
+    many = [f"command-{number}" for number in range(70_000)]
+    assert await database.run(commands.find_all, many) == {}
+    assert await database.run(commands.find_messages, [("r1", number) for number in range(70_000)]) == {}

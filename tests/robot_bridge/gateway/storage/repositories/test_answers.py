@@ -8,6 +8,7 @@ from sqlalchemy import event, insert, select
 from robot_bridge.core.messages.robots import Abort, SetMap, SetPosEnd, Start
 from robot_bridge.gateway.storage.repositories import requests
 from robot_bridge.gateway.storage.repositories.requests import AnswerRow
+from robot_bridge.gateway.storage.rows import TOGETHER
 from robot_bridge.gateway.storage.schema import sa
 
 TARGET = SetPosEnd(1.0, 2.0)
@@ -154,7 +155,7 @@ def test_kinds_are_removed_for_one_robot_or_for_all(connection):
 
 
 @pytest.mark.parametrize("remove", [requests.remove_unlocked, requests.remove_kinds])
-@pytest.mark.parametrize("count", [0, 1, requests.TOGETHER, requests.TOGETHER + 1, 2 * requests.TOGETHER + 1])
+@pytest.mark.parametrize("count", [0, 1, TOGETHER, TOGETHER + 1, 2 * TOGETHER + 1])
 def test_kinds_are_removed_for_many_robots_in_groups(connection, count, remove):
     fleet = [f"r{number}" for number in range(count)]
     requests.add_answers(
@@ -163,7 +164,7 @@ def test_kinds_are_removed_for_many_robots_in_groups(connection, count, remove):
     asked = []
     event.listen(connection, "before_cursor_execute", lambda *call: asked.append(call[2].partition(" ")[0]))
     remove(connection, fleet, ("SetPosEnd", "SetPath"))
-    assert asked.count("SELECT") == -(-count // requests.TOGETHER)
+    assert asked.count("SELECT") == -(-count // TOGETHER)
     assert robots(connection) == [*fleet, "other", "other"]
     assert [row.op for robot in fleet for row in requests.read_answers(connection, robot)] == [
         "Abort"
