@@ -1,9 +1,10 @@
-"""The clocks that parts read, as one object that a test or a simulation can move by hand."""
+"""Clocks: as one object that a test or a simulation can move by hand, set while a program runs, in doubt."""
 
 from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from typing import NamedTuple
 
 _COUNTS_SLEEP: int | None = getattr(time, "CLOCK_BOOTTIME", getattr(time, "CLOCK_MONOTONIC", None))
 """On Linux only the first counts sleep, on macOS the second does, unlike Python's own clock; Windows has
@@ -49,3 +50,94 @@ class ManualClock(Clock):
         """Move both clocks on by ``seconds``."""
         self.wall += seconds
         self.uptime += seconds
+
+
+# --- Noticing that this computer's clock was set, while the gateway goes by it ---
+# A small computer without a battery for its clock begins with a wrong time, set right once it has a
+# network.
+
+LEAST_STEP = 1.0
+"""seconds; less is what a clock is corrected by all the time."""
+
+
+class ClockStep(NamedTuple):
+    """The clock was set forward by ``by`` seconds, back where that is negative, after ``since``.
+
+    ``since`` and ``now``, when that was noticed, are by the clock as it is set now.
+    """
+
+    by: float
+    since: float
+    now: float
+
+    def moved(self, at: float) -> float:
+        """Return a time that was noted before as the clock would have it now."""
+        return at if self.since <= at <= self.now else at + self.by
+
+
+class ClockWatch:
+    """Compares the time of a ``clock`` with its steady one, to notice when that time is set."""
+
+    def __init__(self, clock: Clock = SYSTEM_CLOCK) -> None:
+        self._clock = clock
+        self._seen = clock.time(), clock.steady()
+
+    def measure_step(self) -> ClockStep | None:
+        """Return how the clock was set since the last look, None where it was not."""
+        (then, steady_then), self._seen = self._seen, (self._clock.time(), self._clock.steady())
+        now, steady_now = self._seen
+        passed = steady_now - steady_then
+        by = now - then - passed
+        return None if abs(by) < LEAST_STEP else ClockStep(by, now - passed, now)
+
+
+# --- What the times in the database say of this computer's clock when the gateway starts; no I/O ---
+# A clock that is wrong before the gateway runs is not seen to be set: see :class:`ClockWatch` for that.
+
+LEAST_BEHIND = 5.0
+"""seconds; less is what a clock is corrected by."""
+LONG_IDLE = 7 * 86400.0
+"""seconds without anything stored after which it may be the clock that is ahead."""
+UNKNOWN_AGE = 30 * 86400.0
+"""seconds ago that something counts as being that is yet to come by a clock that is behind: long ago, since
+nobody knows."""
+RELEASED = 1_767_225_600.0
+"""2026-01-01 UTC: no computer with this version has an earlier time."""
+_SET_IT = "set it ('timedatectl' shows it, 'timedatectl set-ntp true' has the network set it)"
+
+
+class ClockDoubt(NamedTuple):
+    """Why the clock may be wrong, with what to do; ``may_be_ahead`` if it may make what is kept too old."""
+
+    text: str
+    may_be_ahead: bool = False
+
+
+def check_clock_at_start(now: float, newest: float | None) -> ClockDoubt | None:
+    """Return why the clock, which says ``now``, may be wrong; None where nothing speaks against it.
+
+    ``newest`` is the newest time in the database, None in an empty one; both are seconds since 1970.
+    """
+    if newest is not None and newest - now >= LEAST_BEHIND:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}: "
+            f"the clock is behind now, or was ahead then. If it is behind, end the gateway, {_SET_IT}, and "
+            "start the gateway again: until then it stores times that are wrong"
+        )
+    if now < RELEASED:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, which is before this version was made: end the "
+            f"gateway, {_SET_IT}, and start the gateway again"
+        )
+    if newest is not None and now - newest >= LONG_IDLE:
+        return ClockDoubt(
+            f"the clock of this computer says {_utc(now)}, and what was stored last is from {_utc(newest)}. "
+            f"For a day nothing is deleted for its age; if the clock is ahead, end the gateway before then, "
+            f"{_SET_IT}, and start the gateway again",
+            may_be_ahead=True,
+        )
+    return None
+
+
+def _utc(at: float) -> str:
+    return time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(at))

@@ -19,6 +19,7 @@ from websockets.asyncio.server import Server, ServerConnection
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
+from ..core.clock import ClockWatch, check_clock_at_start
 from ..core.errors import BridgeError, SiteError, StoreError
 from ..core.messages.administration import Stopping
 from ..core.messages.base import MessageError, check_robot_name, to_json
@@ -50,7 +51,6 @@ from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
-from .model.clocks import ClockWatch, check_clock_at_start
 from .model.events import Answering, RequestHandlers
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService

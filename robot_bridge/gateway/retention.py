@@ -12,10 +12,9 @@ from typing import NamedTuple
 
 from sqlalchemy import Connection
 
-from ..core.clock import SYSTEM_CLOCK, Clock
+from ..core.clock import SYSTEM_CLOCK, Clock, ClockWatch
 from ..core.sites.settings import SettingsSource, SiteSettings
 from .auth import audit
-from .model.clocks import ClockWatch
 from .storage.database import Database
 from .storage.repositories import closures, commands, emergency_stops, queues, records, trajectories
 from .storage.repositories.trajectories import DAY

@@ -12,7 +12,7 @@ from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from ...core.clock import SYSTEM_CLOCK, Clock
+from ...core.clock import SYSTEM_CLOCK, Clock, ClockStep
 from ...core.errors import RefusedError
 from ...core.logs import RepeatedLines
 from ...core.messages.administration import Gateways
@@ -40,7 +40,6 @@ from ..commands.service import CommandService
 from ..commands.validation import CommandRules, WaitingRobots
 from ..model import events
 from ..model.arrival import Planner, StraightPlanner
-from ..model.clocks import ClockStep
 from ..model.position_checks import NO_FIX, GroundTracks, PlaceChecks
 from ..model.robots import Robot, RobotPose, Robots
 from ..monitoring import Counters, Steps

@@ -6,13 +6,13 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple, TypeVar
 
+from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
 from ...core.messages.base import check_robot_name
 from ...core.messages.positions import RobotReport, link_elsewhere
 from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
-from .clocks import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from .events import EventBus, RobotReturned
 from .position_checks import AcceptedArea, PoseOrder
 

@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.clock import ClockStep
 from ...core.errors import BridgeError, RefusedError, UncertainError
 from ...core.logs import log_unforeseen
 from ...core.messages.base import to_json
@@ -26,7 +27,6 @@ from ..commands.persistence import Also, AlsoOf
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Floats, Point
-from ..model.clocks import ClockStep
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import closures as stored

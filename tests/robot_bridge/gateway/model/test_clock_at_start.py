@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.gateway.model.clocks import check_clock_at_start
+from robot_bridge.core.clock import check_clock_at_start
 
 NOW = 1_790_000_000.0
 DAY = 86400.0

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.clock import ManualClock
+from robot_bridge.core.clock import ClockStep, ClockWatch, ManualClock
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.gateway.model.clocks import ClockStep, ClockWatch
 from robot_bridge.gateway.model.robots import Robots
 
 DAY = 86400.0

@@ -19,6 +19,7 @@ from robot_bridge.core.assignment.job import (
 )
 from robot_bridge.core.assignment.plan import document_of
 from robot_bridge.core.assignment.solver import Objective, assign
+from robot_bridge.core.clock import ClockWatch
 from robot_bridge.core.errors import OutdatedError, RefusedError
 from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.messages.plans import (
@@ -35,7 +36,6 @@ from robot_bridge.core.messages.plans import (
 )
 from robot_bridge.core.messages.queues import TaskState
 from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
-from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.plans.service import PlanService
 
 CONES = {"c1": (30.0, 40.0), "c2": (40.0, 40.0), "c3": (50.0, 40.0), "c4": (60.0, 40.0)}

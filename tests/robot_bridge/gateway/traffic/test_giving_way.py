@@ -7,11 +7,11 @@ import math
 
 import pytest
 
+from robot_bridge.core.clock import ClockWatch
 from robot_bridge.core.errors import RefusedError, StoreError
 from robot_bridge.core.messages.commands import AbortAll, AbortTask
 from robot_bridge.core.messages.roads import ResolveConflict
 from robot_bridge.core.messages.robots import GetPath
-from robot_bridge.gateway.model.clocks import ClockWatch
 from robot_bridge.gateway.storage.repositories import closures as stored_closures
 from tests.support.bridge.road_places import highest
 
