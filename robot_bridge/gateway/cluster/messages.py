@@ -27,6 +27,7 @@ from ...core.logs import RepeatedLines
 from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import PathDeclaration
 from ..model.events import EventBus
+from ..model.robots_elsewhere import TOLD_NUMBERS
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
 
@@ -41,10 +42,9 @@ SIGNATURE = 16
 FRAME = 128
 """bytes of a message at most beside the robots in it."""
 MOST_ROBOTS = 8192
-"""in one message of positions."""
-COLUMNS = 6
-"""numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its
-last message."""
+"""in one message."""
+PLACE_BYTES = 4 * TOLD_NUMBERS + 1 + 2
+"""bytes that a robot takes in a message of positions, beside its name."""
 
 MOST_NAMED = 50
 """robots that are named one by one in a message."""
@@ -123,19 +123,19 @@ class AbortCall(BusMessage, frozen=True, tag="abort"):
 class PositionBatch(BusMessage, frozen=True, tag="positions"):
     """Where robots of the gateway are, at the database's time ``t``, in seconds.
 
-    ``numbers`` are float32, robot by robot, :data:`COLUMNS` of each, NaN where there is none; ``flags`` a
-    byte of each robot: 1 it ended in good order, 2 it has said where it is since its Ready, 4 it is only
-    seen.
+    ``numbers`` are float32, robot by robot, NaN where there is none: x, y (m, site frame), theta (rad), v
+    (m/s), seconds since its pose, and since its last message. ``flags`` are a byte of each robot: see
+    :data:`~..model.robots_elsewhere.TOLD_FLAGS`.
     """
 
     t: float
     names: Annotated[list[Robot], Meta(max_length=MOST_ROBOTS)]
-    numbers: Annotated[bytes, Meta(max_length=4 * COLUMNS * MOST_ROBOTS)]
+    numbers: Annotated[bytes, Meta(max_length=4 * TOLD_NUMBERS * MOST_ROBOTS)]
     flags: Annotated[bytes, Meta(max_length=MOST_ROBOTS)]
 
     def table(self) -> npt.NDArray[np.float32]:
         """Return the numbers, a row for each robot."""
-        return np.frombuffer(self.numbers, dtype="<f4").reshape(len(self.names), COLUMNS)
+        return np.frombuffer(self.numbers, dtype="<f4").reshape(len(self.names), TOLD_NUMBERS)
 
 
 class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
@@ -232,7 +232,23 @@ class Codec:
         return hashlib.blake2b(content, digest_size=SIGNATURE, key=self._key).digest()
 
 
-def in_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[list[RobotDetails]]:
+def position_batches(
+    gateway: str, now: float, names: list[str], table: npt.NDArray[np.float32], flags: bytes, largest: int
+) -> Iterator[PositionBatch]:
+    """Yield where robots are, in messages of at most ``largest`` bytes."""
+    room, begin = largest - FRAME, 0
+    # Names are ASCII.
+    ends = np.cumsum(list(map(len, names))) + PLACE_BYTES * np.arange(1, len(names) + 1)
+    while begin < len(names):
+        before = int(ends[begin - 1]) if begin else 0
+        fitting = int(np.searchsorted(ends, before + room, side="right")) - begin
+        end = begin + min(max(fitting, 1), MOST_ROBOTS)
+        numbers = table[begin:end].tobytes()
+        yield PositionBatch(gateway, now, names[begin:end], numbers, flags[begin:end])
+        begin = end
+
+
+def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[list[RobotDetails]]:
     """Yield the details in lists that fit into messages of ``largest`` bytes."""
     some: list[RobotDetails] = []
     size = FRAME
@@ -249,7 +265,7 @@ def in_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[list[Ro
 
 def _check_lengths(batch: PositionBatch) -> None:
     count = len(batch.names)
-    if len(batch.numbers) != 4 * COLUMNS * count or len(batch.flags) != count:
+    if len(batch.numbers) != 4 * TOLD_NUMBERS * count or len(batch.flags) != count:
         raise BusMessageError(f"positions of {count} robots with numbers of others")
 
 

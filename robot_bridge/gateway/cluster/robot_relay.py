@@ -8,28 +8,28 @@ from __future__ import annotations
 
 import asyncio
 import math
-from collections.abc import Iterable, Mapping
-from typing import Any
+from collections.abc import Iterable, Sequence
+from operator import attrgetter
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from ...core.messages.base import LONGEST_STATUS, one_line
-from ...core.messages.robots import SendPos
-from ..model.robots import DescribedElsewhere, ReportedElsewhere, Robot, Robots
+from ..model.robots import DescribedElsewhere, Robot, Robots
+from ..model.robots_elsewhere import ENDED, LOCATED, ONLY_SEEN, TOLD_NUMBERS, ToldElsewhere
 from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership
 from .messages import (
-    COLUMNS,
     LARGEST,
-    MOST_ROBOTS,
     DetailBatch,
     Exchange,
     PositionBatch,
     RobotDetails,
     Wake,
-    in_batches,
+    detail_batches,
+    position_batches,
 )
 
 
@@ -54,11 +54,21 @@ POSITION_TICK_S = 0.2
 """seconds between two messages: of each robot only the newest position of a tick goes out."""
 POSITION_OLD_S = 1.0
 """seconds after which a message is dropped: it has waited somewhere, and newer ones follow it."""
-POSITION_ALL_S = 1.0
-"""seconds after which robots that say nothing new are told again: another gateway may have come."""
-ENDED, LOCATED, ONLY_SEEN = 1, 2, 4
-NAME_BYTES = 24
-"""bytes that a robot's name takes on average at most, for how many fit into a notification."""
+POSITION_ALL_S = 5.0
+"""seconds after which robots that say nothing new are told again: a message may have been lost. A gateway
+that comes, or learns that another one has a robot now, asks for all."""
+
+
+class _Nowhere(NamedTuple):
+    """In place of the pose of a robot that has not said where it is."""
+
+    x: float = math.nan
+    y: float = math.nan
+    theta: float = math.nan
+    v: float = math.nan
+
+
+NOWHERE = _Nowhere()
 
 
 class PositionRelay:
@@ -71,7 +81,7 @@ class PositionRelay:
         self._robots = robots
         self._membership = membership
         self._exchange = exchange
-        self._most = LARGEST_NOTIFICATION // (4 * COLUMNS + 1 + NAME_BYTES) if small else MOST_ROBOTS
+        self._largest = LARGEST_NOTIFICATION if small else LARGEST
         self._revision = -1
         self._told_all_at, self._was_cut_off = -math.inf, True
         self._newest = NewestBatches(POSITION_OLD_S)
@@ -101,20 +111,12 @@ class PositionRelay:
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
             self._told_all_at = now
-        mine = [robot for robot in self._robots.changed(since) if robot.gateway is None]
-        for begin in range(0, len(mine), self._most):
-            some = mine[begin : begin + self._most]
-            self._exchange.send(POSITIONS, self._batch(some, now))
-
-    def _batch(self, robots: list[Robot], now: float) -> PositionBatch:
-        wall = now - self._membership.clock_offset
-        return PositionBatch(
-            self._exchange.gateway,
-            now,
-            [robot.name for robot in robots],
-            _numbers(robots, wall).tobytes(),
-            bytes(_flags(robots)),
-        )
+        mine = self._robots.own(since)
+        if not mine:
+            return
+        names, table = [robot.name for robot in mine], _table(mine, now - self._membership.clock_offset)
+        for batch in position_batches(self._exchange.gateway, now, names, table, _flags(mine), self._largest):
+            self._exchange.send(POSITIONS, batch)
 
     def _woken(self, wake: Wake) -> None:
         if wake.what == "positions":
@@ -125,56 +127,53 @@ class PositionRelay:
         if not self._newest.accept(batch, self._membership.database_time()):
             return
         wall = batch.t - self._membership.clock_offset
-        for name, row, flags in zip(batch.names, batch.table().tolist(), batch.flags, strict=True):
-            x, y, theta, v, pose_age, age_of = row
-            if not math.isfinite(age_of):
-                continue
-            has_pose = all(map(math.isfinite, (x, y, theta, v, pose_age)))
-            before = self._robots.pose(name)
-            # What changes seldom comes by itself.
-            battery, status = (None, None) if before is None else (before.battery, before.status)
-            seen = ReportedElsewhere(
-                received_at=wall - age_of,
-                ended_in_order=bool(flags & ENDED),
-                located=bool(flags & LOCATED),
-                only_seen=bool(flags & ONLY_SEEN),
-                pose=SendPos(x, y, theta, v, battery=battery, status=status) if has_pose else None,
-                pose_at=wall - pose_age if has_pose else None,
-            )
-            self._robots.observe_elsewhere(name, batch.gw, seen)
+        flags = np.frombuffer(batch.flags, dtype=np.uint8)
+        self._robots.observe_elsewhere(ToldElsewhere(batch.gw, batch.names, batch.table(), flags, wall))
 
 
-def _numbers(robots: Iterable[Robot], wall: float) -> npt.NDArray[np.float32]:
-    rows = []
-    for robot in robots:
-        pose, at = robot.pose, robot.pose_at
-        place = (
-            (math.nan,) * 5 if pose is None or at is None else (pose.x, pose.y, pose.theta, pose.v, wall - at)
-        )
-        rows.append((*place, wall - robot.received_at))
-    return np.array(rows, dtype="<f4").reshape(len(rows), COLUMNS)
+def _table(robots: Sequence[Robot], wall: float) -> npt.NDArray[np.float32]:
+    """Return what is told of robots: (n, :data:`TOLD_NUMBERS`)."""
+    table = np.empty((len(robots), TOLD_NUMBERS))
+    # Column by column: rows of tuples would take twice as long.
+    poses = [robot.pose or NOWHERE for robot in robots]
+    table[:, 0], table[:, 1] = [at.x for at in poses], [at.y for at in poses]
+    table[:, 2], table[:, 3] = [at.theta for at in poses], [at.v for at in poses]
+    table[:, 4], table[:, 5] = [robot.pose_at for robot in robots], [robot.received_at for robot in robots]
+    table[:, 4:] = wall - table[:, 4:]
+    return table.astype("<f4")
 
 
-def _flags(robots: Iterable[Robot]) -> list[int]:
-    return [
+def _flags(robots: Sequence[Robot]) -> bytes:
+    return bytes(
         ENDED * robot.ended_in_order | LOCATED * robot.located | ONLY_SEEN * (robot.abilities == "")
         for robot in robots
-    ]
+    )
 
 
 # --- What changes seldom: battery, status, latency and what robots declared; told when it has changed ---
 
 DETAIL_TICK_S = 1.0
 """seconds between two messages."""
-DETAIL_ALL_S = 5.0
-"""seconds after which all is told again: another gateway may have come, or a message been lost."""
+DETAIL_ALL_S = 30.0
+"""seconds after which all is told again: a message may have been lost."""
 DETAIL_OLD_S = 5.0
-"""seconds after which a message is dropped: all has been told again since."""
+"""seconds after which a message is dropped: it has waited somewhere."""
 
 PIECE = 500
 """robots that are looked at before others have their turn: less than a millisecond."""
 
+_OF_ROBOT = attrgetter("doubt", "latency", "paths", "abilities", "magic")
+_OF_POSE = attrgetter("battery", "status")
+_UNKNOWN = (None, None)
 _Facts = tuple[Any, ...]
+
+
+class _Told(NamedTuple):
+    """What was told of a robot last, and the values that it was made of: most often those are the same."""
+
+    of_robot: _Facts
+    of_pose: _Facts
+    facts: _Facts
 
 
 class DetailRelay:
@@ -191,10 +190,11 @@ class DetailRelay:
         self._membership = membership
         self._exchange = exchange
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
-        self._told: dict[str, _Facts] = {}
-        self._told_all_at = -math.inf
+        self._told: dict[str, _Told] = {}
+        self._revision, self._told_all_at = -1, -math.inf
         self._newest = NewestBatches(DETAIL_OLD_S)
         exchange.subscribe(DetailBatch, self._take)
+        exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
         """Tell until cancelled."""
@@ -205,24 +205,33 @@ class DetailRelay:
     async def send_changes(self) -> None:
         """Tell what changed since the last time, everything once in a while; others have turns meanwhile."""
         now = self._membership.database_time()
-        if not self._exchange.connected or now - self._told_all_at >= DETAIL_ALL_S:
-            self._told.clear()
-            self._told_all_at = now
-        told, self._told = self._told, {}
-        robots = self._robots.changed(-1)
+        if not self._exchange.connected:
+            self._told_all_at = -math.inf
+            return
+        if now - self._told_all_at >= DETAIL_ALL_S:
+            self._told, self._revision, self._told_all_at = {}, -1, now
+        since, self._revision = self._revision, self._robots.revision
+        robots = self._robots.own(since)
         for begin in range(0, len(robots), PIECE):
-            self._send_changed(robots[begin : begin + PIECE], told, now)
+            self._send_changed(robots[begin : begin + PIECE], now)
             await asyncio.sleep(0)
 
-    def _send_changed(self, robots: Iterable[Robot], told: Mapping[str, _Facts], now: float) -> None:
-        changed = []
+    def _woken(self, wake: Wake) -> None:
+        if wake.what == "positions":
+            self._told_all_at = -math.inf
+
+    def _send_changed(self, robots: Iterable[Robot], now: float) -> None:
+        changed, told = [], self._told
         for robot in robots:
-            if robot.gateway is None:
-                name, facts = robot.name, _facts(robot)
-                if told.get(name) != facts:
-                    changed.append(_details(name, facts))
-                self._told[name] = facts
-        for some in in_batches(changed, self._largest):
+            name, last = robot.name, told.get(robot.name)
+            of_robot, of_pose = _OF_ROBOT(robot), _OF_POSE(robot.pose) if robot.pose else _UNKNOWN
+            if last is not None and last.of_robot == of_robot and last.of_pose == of_pose:
+                continue
+            facts = _facts(of_robot, of_pose)
+            told[name] = _Told(of_robot, of_pose, facts)
+            if last is None or last.facts != facts:
+                changed.append(_details(name, facts))
+        for some in detail_batches(changed, self._largest):
             self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
 
     def _take(self, batch: DetailBatch) -> None:
@@ -235,19 +244,17 @@ class DetailRelay:
             self._robots.describe_elsewhere(one.name, batch.gw, described)
 
 
-def _facts(robot: Robot) -> _Facts:
+def _facts(of_robot: _Facts, of_pose: _Facts) -> _Facts:
     """Return what is told of a robot, in the order of its :class:`RobotDetails`."""
-    pose, latency = robot.pose, robot.latency
-    battery, status = (None, None) if pose is None else (pose.battery, pose.status)
+    doubt, latency, *declared = of_robot
+    battery, status = of_pose
     return (
         # Not told again for less than an operator sees.
         None if battery is None else round(battery, 2),
         status,
-        robot.doubt,
+        doubt,
         None if latency is None else round(latency, 3),
-        robot.paths,
-        robot.abilities,
-        robot.magic,
+        *declared,
     )
 
 

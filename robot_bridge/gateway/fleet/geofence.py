@@ -25,6 +25,7 @@ from ...core.sites.settings_tables import GeofenceSettings
 from ..commands.requests import CommandRequests
 from ..model.events import Listeners
 from ..model.robots import Robot, Robots
+from ..model.robots_elsewhere import FRESH, LOCATED, OFFLINE
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
 from .emergency_stop import EmergencyStops
@@ -302,7 +303,7 @@ class GeofenceWatch:
         if gone:
             self._stays.forget(gone)
         seen = self._robots.revision
-        names, places = _placed(self._robots.changed(self._seen))
+        names, places = _placed(self._robots, self._seen)
         settings = self._site.settings
         found = FoundStays({}, {}, set())
         if names:
@@ -403,13 +404,16 @@ class GeofenceWatch:
 
     def _unjudged(self, now: float) -> list[str]:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
-        known = (self._robots.get(name) for name in self._robots.names())
         lost_after = self._site.settings.liveness.lost_after_s
-        return [
+        own = [
             one.name
-            for one in known
+            for one in self._robots.own()
             if one.state is not RobotState.OFFLINE and not _is_seen(one, now, lost_after)
         ]
+        others = self._robots.places_elsewhere()
+        seen = (others.states == FRESH) & ((others.flags & LOCATED) > 0) & (now - others.pose_at < lost_after)
+        rows = np.flatnonzero((others.states != OFFLINE) & ~seen)
+        return sorted(own + [others.names[row] for row in rows.tolist()])
 
 
 def _is_seen(robot: Robot, now: float, lost_after: float) -> bool:
@@ -417,13 +421,17 @@ def _is_seen(robot: Robot, now: float, lost_after: float) -> bool:
     return fresh and now - (robot.pose_at or 0.0) < lost_after
 
 
-def _placed(robots: list[Robot]) -> tuple[list[str], Points]:
-    """Return the names and places, (n, 2), of those that have said where they are since they connected."""
-    placed = [(one.name, one.pose) for one in robots if one.located and one.pose is not None]
-    places = np.array([(pose.x, pose.y) for _, pose in placed], dtype=np.float64).reshape(-1, 2)
-    names = [name for name, _ in placed]
+def _placed(robots: Robots, since: int) -> tuple[list[str], Points]:
+    """Return the names and places, (n, 2), of those that changed after revision ``since`` and have said where
+    they are since they connected."""
+    own = [(one.name, one.pose) for one in robots.own(since) if one.located and one.pose is not None]
+    others = robots.places_elsewhere(since)
+    places = np.array([(pose.x, pose.y) for _, pose in own], dtype=np.float64).reshape(-1, 2)
+    there = np.stack([others.x, others.y], axis=1)
+    there[(others.flags & LOCATED) == 0] = np.nan
+    names, places = [name for name, _ in own] + others.names, np.concatenate([places, there])
     rows = finite_places(places)
-    return [name for name, row in zip(names, rows.tolist(), strict=True) if row], places[rows]
+    return [names[row] for row in np.flatnonzero(rows).tolist()], places[rows]
 
 
 def _where(stay: Stay) -> str:

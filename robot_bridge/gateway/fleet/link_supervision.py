@@ -168,7 +168,7 @@ class LinkWatch:
         return None
 
     def _of(self, link: str) -> list[str]:
-        return [robot.name for robot in self._robots.changed(-1) if robot.link == link]
+        return [robot.name for robot in self._robots.own() if robot.link == link]
 
 
 def _reaches(known: _Known, now: float) -> bool:

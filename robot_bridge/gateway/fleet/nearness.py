@@ -190,10 +190,11 @@ class NearnessWatch:
     async def _meetings(self, now: float, limits: NearnessLimits) -> list[Meeting]:
         if limits.metres <= 0:
             return []
-        located = [(one, one.pose) for one in self._robots.changed(-1) if one.located and one.pose]
-        people = [_mover(robot, pose) for robot, pose in located if self._is_seen(robot)]
+        seen = [one for one in self._robots.only_seen() if self._is_seen(one)]
+        people = [_mover(one, one.pose) for one in seen if one.located and one.pose]
         if not people:
             return []
+        located = [(one, one.pose) for one in self._robots.changed(-1) if one.located and one.pose]
         reach = limits.metres + MARGIN_M + limits.within_s * 2 * FASTEST_MS
         tasked = [
             _mover(robot, pose)
@@ -206,9 +207,9 @@ class NearnessWatch:
         return await asyncio.to_thread(_judged, people, robots, situation, limits, near)
 
     def _is_seen(self, robot: Robot) -> bool:
-        """Tell whether it is only seen, and heard now: where somebody is who is lost is not known."""
+        """Tell whether who is only seen is there now: where somebody is who is lost is not known."""
         replayed = self._links.kind_of(robot.link) == REPLAY
-        return robot.abilities == "" and robot.state in CONNECTED and not replayed
+        return robot.state in CONNECTED and not replayed
 
     def _note(self, found: list[Meeting]) -> None:
         now = self._clock.time()

@@ -98,9 +98,14 @@ class Takeover:
         strange = [r for r in changes.gateways if r not in self._robots and r not in changes.gone]
         if strange:
             await self._meet(strange, changes.gateways)
+        came_to = {gateway for robot, gateway in changes.gateways.items() if robot in changes.lost}
         for robot, gateway in changes.gateways.items():
             if self._robots.gateway_of(robot) not in (None, gateway):
                 self._robots.let_go(robot, gateway)
+                came_to.add(gateway)
+        # What those said of these robots before this gateway knew that they have them was not taken in.
+        for gateway in sorted(came_to):
+            self._exchange.wake("positions", gateway)
 
     async def _meet(self, names: Collection[str], gateways: dict[str, str]) -> None:
         """Get to know robots that other gateways have."""

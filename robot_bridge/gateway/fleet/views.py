@@ -8,10 +8,10 @@ what it is sent, and the size of the fleet costs the gateway and no desk.
 from __future__ import annotations
 
 import asyncio
-import heapq
 import math
 import time
 from collections.abc import Collection, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 import msgspec
@@ -34,9 +34,9 @@ from ...core.messages.positions import (
     PositionForm,
     View,
 )
-from ...core.messages.safety import RobotState
 from ..model.events import Encoded, handles
 from ..model.robots import Robot, Robots, reports_of
+from ..model.robots_elsewhere import DOUBTED, LOST, STATES
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions
 
@@ -53,11 +53,10 @@ Bounds = tuple[float, float, float, float]
 
 # --- Where all robots are at one moment, as arrays ---
 
-_STATES = tuple(state.value for state in RobotState)
+_STATES = tuple(state.value for state in STATES)
 _CODES = {state: code for code, state in enumerate(_STATES)}
 _GROUPS = np.array([{"fresh": 0, "offline": 2}.get(state, 1) for state in _STATES])
 """Of each state whether it counts as fresh, silent or offline."""
-_LOST = _CODES[RobotState.LOST.value]
 
 
 class _Nowhere(NamedTuple):
@@ -75,16 +74,23 @@ _NOWHERE = _Nowhere()
 class FleetPlaces:
     """All robots at one moment; what is asked of it is worked out once. ``bounds`` are the site's."""
 
-    def __init__(self, robots: Sequence[Robot], bounds: Bounds) -> None:
-        self.names = [robot.name for robot in robots]
+    def __init__(self, robots: Robots, bounds: Bounds) -> None:
+        own, others = robots.own(), robots.places_elsewhere()
+        self.names = [robot.name for robot in own] + others.names
         self._bounds = bounds
-        self._codes = np.array([_CODES[robot.state._value_] for robot in robots], dtype=np.intp)
-        self._disbelieved = np.array([robot.doubt is not None for robot in robots], dtype=np.bool_)
+        codes = np.array([_CODES[robot.state._value_] for robot in own], dtype=np.intp)
+        self._codes = np.concatenate([codes, others.states])
+        disbelieved = np.array([robot.doubt is not None for robot in own], dtype=np.bool_)
+        self._disbelieved = np.concatenate([disbelieved, (others.flags & DOUBTED) > 0])
         # Column by column: 100 000 rows in tuples would take twice as long.
-        poses = [robot.pose or _NOWHERE for robot in robots]
-        self._x, self._y = (np.array(one) for one in ([at.x for at in poses], [at.y for at in poses]))
-        self._battery = np.array([at.battery for at in poses], dtype=np.float64)
-        self._accuracy = np.array([at.accuracy for at in poses], dtype=np.float64)
+        poses = [robot.pose or _NOWHERE for robot in own]
+        self._x = np.concatenate([[at.x for at in poses], others.x])
+        self._y = np.concatenate([[at.y for at in poses], others.y])
+        battery = np.array([at.battery for at in poses], dtype=np.float64)
+        self._battery = np.concatenate([battery, others.battery])
+        accuracy = np.array([at.accuracy for at in poses], dtype=np.float64)
+        # Other gateways do not tell how sure their robots are.
+        self._accuracy = np.concatenate([accuracy, np.full(len(others.names), np.nan)])
         self.counts = dict(zip(_STATES, np.bincount(self._codes, minlength=4).tolist(), strict=True))
         self._alarmed: dict[AlarmLimits, tuple[list[str], int]] = {}
         self._grid: DensityGrid | None = None
@@ -113,7 +119,7 @@ class FleetPlaces:
 
     def _are_alarmed(self, limits: AlarmLimits) -> npt.NDArray[np.bool_]:
         # What is not known is NaN, and compares false.
-        found: npt.NDArray[np.bool_] = (self._codes == _LOST) | self._disbelieved
+        found: npt.NDArray[np.bool_] = (self._codes == LOST) | self._disbelieved
         if limits.low_battery is not None:
             found |= self._battery < limits.low_battery
         if limits.unsure is not None:
@@ -342,7 +348,7 @@ class FleetViews:
         now = self.clock.steady()
         if self._places is None or now >= self._due_at:
             began = time.perf_counter()
-            self._places = FleetPlaces(self.robots.changed(-1), self._site.report.bounds)
+            self._places = FleetPlaces(self.robots, self._site.report.bounds)
             took = time.perf_counter() - began
             self._due_at = now + max(PLACES_EVERY_S, took / PLACES_PART)
         return self._places
@@ -351,8 +357,8 @@ class FleetViews:
     async def find(self, request: FindRobots) -> Encoded[FoundRobots]:
         """Return the robots whose names hold a text, by name."""
         text = request.text.lower()
-        names = [robot.name for robot in self.robots.changed(-1) if text in robot.name.lower()]
-        told = heapq.nsmallest(request.limit, (name for name in names if name > request.after))
+        names = [name for name in self.robots.names() if text in name.lower()]
+        told = islice((name for name in names if name > request.after), request.limit)
         rows = reports_of(self.robots.known(told), self.clock.time(), ReportRow)
         return Encoded({"t": round(time.time(), 3), "robots": rows, "count": len(names)})
 

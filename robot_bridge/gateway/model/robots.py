@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import NamedTuple, TypeVar
 
 from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
@@ -15,24 +16,7 @@ from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
 from .position_checks import AcceptedArea, PoseOrder
-
-# --- How far the knowledge of a robot can be trusted, from the age of its last message ---
-
-
-def liveness(
-    age: float, *, ended_in_order: bool, stale_after: float = 3.0, lost_after: float = 10.0
-) -> RobotState:
-    """Return the state of a robot whose last message is ``age`` seconds old.
-
-    ``ended_in_order`` is true when the robot said Stopped last, or closed its link in good order: silence
-    is expected of it then, so it goes offline where another would be lost.
-    """
-    if age < stale_after:
-        return RobotState.FRESH
-    if ended_in_order:
-        return RobotState.OFFLINE
-    return RobotState.STALE if age < lost_after else RobotState.LOST
-
+from .robots_elsewhere import RECEIVED_AT, PlacesElsewhere, RobotColumns, ToldElsewhere, liveness
 
 # --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
 # Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the
@@ -43,17 +27,6 @@ Report = TypeVar("Report")
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
-
-
-class ReportedElsewhere(NamedTuple):
-    """What another gateway says of a robot; times by this computer's clock."""
-
-    received_at: float
-    ended_in_order: bool
-    located: bool
-    only_seen: bool
-    pose: SendPos | None
-    pose_at: float | None
 
 
 class DescribedElsewhere(NamedTuple):
@@ -124,6 +97,10 @@ class Robots:
         self._stale_after = stale_after
         self._lost_after = lost_after
         self._robots: dict[str, Robot] = {}
+        self._elsewhere: dict[str, Robot] = {}
+        """those of other gateways, each as it was when somebody asked for it last."""
+        self._columns = RobotColumns()
+        """what other gateways said of theirs last."""
         self._removed: dict[str, int] = {}
         """the robots that were removed and have not come back, with the revision of that."""
         self.revision = 0
@@ -134,47 +111,42 @@ class Robots:
         self._stale_after, self._lost_after = stale_after, lost_after
 
     def __contains__(self, name: str) -> bool:
-        return name in self._robots
+        return name in self._robots or name in self._columns
 
     def count(self) -> int:
         """Return how many there are."""
-        return len(self._robots)
+        return len(self._robots) + len(self._columns)
 
     def names(self) -> list[str]:
         """Return the names of all robots, sorted."""
-        return sorted(self._robots)
+        return sorted([*self._robots, *self._columns.names()])
 
     def commanded(self) -> list[str]:
         """Return the names of those that this gateway has and that are not only seen, sorted."""
-        return sorted(
-            name for name, robot in self._robots.items() if robot.abilities != "" and robot.gateway is None
-        )
+        return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
 
     def commanded_elsewhere(self) -> list[str]:
         """Return the names of those that other gateways have and that are not only seen, sorted."""
-        return sorted(
-            name
-            for name, robot in self._robots.items()
-            if robot.abilities != "" and robot.gateway is not None
-        )
+        return sorted(set(self._columns.names()).difference(self._columns.only_seen()))
 
     def doing(self, command: str) -> str | None:
         """Return the robot that is busy with a command, None where none is known to be."""
-        return next((name for name, robot in self._robots.items() if robot.command == command), None)
+        everybody = chain(self._robots.items(), self._elsewhere.items())
+        return next((name for name, robot in everybody if robot.command == command), None)
 
     def gateway_of(self, name: str) -> str | None:
         """Return the other gateway of the fleet that has a robot; None for this one, and for none at all."""
-        robot = self._robots.get(name)
+        robot = self._elsewhere.get(name)
         return None if robot is None else robot.gateway
 
     def is_only_seen(self, name: str) -> bool:
         """Tell whether the robot said that it can do nothing, so that it is told nothing."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         return robot is not None and robot.abilities == ""
 
     def get(self, name: str) -> Robot:
         """Return the robot ``name``; raises NotReadyError if it never said Ready."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is None:
             raise NotReadyError(f"robot {name!r} has not said Ready to this gateway; send Ready first")
         return robot
@@ -188,7 +160,7 @@ class Robots:
 
     def pose(self, name: str) -> SendPos | None:
         """Return where a robot was when it said so last, None for one that never did."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         return None if robot is None else robot.pose
 
     def straight_from(self, name: str, message: Command) -> tuple[float, float] | None:
@@ -197,7 +169,7 @@ class Robots:
         That is where it was when it said so last; None for one that never did, and for one that is told a way
         to the target first.
         """
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is None or robot.pose is None or not isinstance(message, (SetPosEnd, SetPath)):
             return None
         if isinstance(message, SetPosEnd) and robot.asks_path:
@@ -211,7 +183,7 @@ class Robots:
 
         What is known of others is where they were: they may have driven on unseen.
         """
-        robot = self._robots.get(name)
+        robot = self._find(name)
         fresh = robot is not None and robot.located and robot.state is RobotState.FRESH
         return robot is not None and fresh and robot.doubt is None
 
@@ -219,7 +191,7 @@ class Robots:
         """Tell whether a robot may have come further since it said where it is: too long ago, or before its
         link or the gateway broke.
         """
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is None or robot.pose_at is None:
             return False
         return not robot.located or now - robot.pose_at >= self._stale_after
@@ -230,7 +202,6 @@ class Robots:
         One that was heard later than ``now``, as on a computer whose clock stands still without power, counts
         as not heard for long.
         """
-        self._robots[robot.name] = robot
         if robot.received_at > now:
             is_behind = robot.received_at - now >= LEAST_BEHIND
             robot.received_at = now - UNKNOWN_AGE if is_behind else now
@@ -239,11 +210,11 @@ class Robots:
         if robot.pose is not None:
             robot.order = PoseOrder(robot.pose.fix_t, robot.pose.t, robot.link)
         robot.state = self._judge(robot, now)
-        self._touch(robot)
+        self._add(robot)
 
     def starts_anew(self, name: str, magic: int) -> bool:
         """Tell whether a Ready with ``magic`` comes from another run of a robot that is known."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         return robot is not None and robot.magic != magic
 
     def ready(
@@ -257,8 +228,9 @@ class Robots:
     ) -> None:
         """Register a robot, or this run of it; ``paths`` and ``abilities`` are what it declares of them."""
         anew = self.starts_anew(name, magic)
-        robot = self._robots.setdefault(name, Robot(name, magic, link, now))
-        self._removed.pop(name, None)
+        robot = self._find(name) or Robot(name, magic, link, now)
+        robot.gateway = None
+        self._add(robot)
         if anew and robot.pose is not None:
             # A robot that started again may have a clock that did so too.
             robot.pose = replace(robot.pose, t=None)
@@ -363,31 +335,26 @@ class Robots:
 
     def let_go(self, name: str, gateway: str) -> None:
         """Note that another gateway has a robot."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is not None and robot.gateway != gateway:
             robot.gateway, robot.link = gateway, link_elsewhere(gateway)
-            self._touch(robot)
+            self._add(robot)
 
-    def observe_elsewhere(self, name: str, gateway: str, seen: ReportedElsewhere) -> None:
-        """Take in what another gateway says of a robot that it has; of others nothing is taken in."""
-        robot = self._robots.get(name)
-        if robot is None:
-            robot = self._robots[name] = Robot(
-                name, 0, link_elsewhere(gateway), seen.received_at, gateway=gateway
-            )
-            self._removed.pop(name, None)
-        if robot.gateway != gateway:
+    def observe_elsewhere(self, told: ToldElsewhere) -> None:
+        """Take in what another gateway says of robots that it has; of others nothing is taken in."""
+        self.revision, missing = self._columns.observe(told, self.revision)
+        new = [row for row in missing if told.names[row] not in self._robots]
+        if not new:
             return
-        robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
-        robot.located = seen.located
-        robot.abilities = "" if seen.only_seen else robot.abilities
-        if seen.pose is not None:
-            robot.pose, robot.pose_at = seen.pose, seen.pose_at
-        self._touch(robot)
+        link = link_elsewhere(told.gateway)
+        for row in new:
+            received_at = told.wall - float(told.table[row, RECEIVED_AT])
+            self._add(Robot(told.names[row], 0, link, received_at, gateway=told.gateway))
+        self.revision, _ = self._columns.observe(told.only(new), self.revision)
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
         """Take in the details that another gateway tells of a robot that it has."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is None or robot.gateway != gateway:
             return
         robot.doubt, robot.latency = said.doubt, said.latency
@@ -405,7 +372,8 @@ class Robots:
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""
-        if self._robots.pop(name, None) is not None:
+        if self._robots.pop(name, None) or self._elsewhere.pop(name, None):
+            self._columns.remove(name)
             self.revision += 1
             self._removed[name] = self.revision
 
@@ -415,20 +383,20 @@ class Robots:
 
     def closed(self, name: str) -> None:
         """Note that the robot closed its link in good order."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is not None:
             robot.ended_in_order = True
             self._touch(robot)
 
     def measured(self, name: str, latency: float) -> None:
         """Note how many seconds the robot's link took there and back; told with the robot's next change."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is not None:
             robot.latency = latency
 
     def assign(self, name: str, command: str | None) -> None:
         """Set the command that the robot is busy with."""
-        robot = self._robots.get(name)
+        robot = self._find(name)
         if robot is not None and robot.command != command:
             robot.command = command
             self._touch(robot)
@@ -438,6 +406,7 @@ class Robots:
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
+        self._columns.move_times(step)
 
     def age(self, now: float) -> None:
         """Bring the state of every robot up to ``now``; what changed gets a new revision."""
@@ -448,6 +417,7 @@ class Robots:
             if state is not robot.state:
                 robot.state = state
                 self._touch(robot)
+        self.revision = self._columns.age(now, self._stale_after, self._lost_after, self.revision)
 
     def reports(self, now: float, since: int = -1) -> list[RobotReport]:
         """Return the robots that changed after revision ``since``, as operators are told."""
@@ -458,12 +428,57 @@ class Robots:
         return reports_of(self.changed(since), now, kind)
 
     def changed(self, since: int) -> list[Robot]:
-        """Return the robots that changed after revision ``since``."""
+        """Return the robots that changed after revision ``since``, those of this gateway first."""
+        return self.own(since) + [self._renewed(name) for name in self._columns.changed(since)]
+
+    def own(self, since: int = -1) -> list[Robot]:
+        """Return the robots of this gateway that changed after revision ``since``."""
         return [robot for robot in self._robots.values() if robot.revision > since]
+
+    def places_elsewhere(self, since: int = -1) -> PlacesElsewhere:
+        """Return where the robots of other gateways are that changed after revision ``since``."""
+        return self._columns.places(since)
+
+    def only_seen(self) -> list[Robot]:
+        """Return the robots that can do nothing."""
+        here = [robot for robot in self._robots.values() if robot.abilities == ""]
+        return here + [self._renewed(name) for name in self._columns.only_seen()]
 
     def known(self, names: Iterable[str]) -> list[Robot]:
         """Return those of ``names`` that there are."""
-        return [robot for name in names if (robot := self._robots.get(name)) is not None]
+        return [robot for name in names if (robot := self._find(name)) is not None]
+
+    def _find(self, name: str) -> Robot | None:
+        robot = self._robots.get(name)
+        return self._renewed(name) if robot is None and name in self._elsewhere else robot
+
+    def _renewed(self, name: str) -> Robot:
+        """Return a robot of another gateway as that says it is by now."""
+        robot = self._elsewhere[name]
+        if robot.revision != self._columns.revision(name):
+            seen = self._columns.sighting(name)
+            robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
+            robot.located, robot.state, robot.revision = seen.located, seen.state, seen.revision
+            robot.abilities = "" if seen.only_seen else robot.abilities
+            robot.pose_at = seen.pose_at
+            if seen.place is not None:
+                # What changes seldom comes by itself.
+                last = robot.pose
+                battery, status = (None, None) if last is None else (last.battery, last.status)
+                robot.pose = SendPos(*seen.place, battery=battery, status=status)
+        return robot
+
+    def _add(self, robot: Robot) -> None:
+        """Count a robot as its gateway's from now on."""
+        self._removed.pop(robot.name, None)
+        if robot.gateway is None:
+            self._elsewhere.pop(robot.name, None)
+            self._columns.remove(robot.name)
+            self._robots[robot.name] = robot
+        else:
+            self._robots.pop(robot.name, None)
+            self._elsewhere[robot.name] = robot
+        self._touch(robot)
 
     def _judge(self, robot: Robot, now: float) -> RobotState:
         return liveness(
@@ -476,6 +491,8 @@ class Robots:
     def _touch(self, robot: Robot) -> None:
         self.revision += 1
         robot.revision = self.revision
+        if robot.gateway is not None:
+            self._columns.write(robot)
 
 
 def reports_of(robots: Iterable[Robot], now: float, kind: Callable[..., Report]) -> list[Report]:

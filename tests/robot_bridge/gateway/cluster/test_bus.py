@@ -23,6 +23,7 @@ from robot_bridge.gateway.cluster.bus import (
 )
 from robot_bridge.gateway.cluster.messages import (
     LARGEST,
+    PLACE_BYTES,
     Beat,
     BusMessageError,
     Codec,
@@ -33,7 +34,8 @@ from robot_bridge.gateway.cluster.messages import (
     StopCall,
     StopSeen,
     Wake,
-    in_batches,
+    detail_batches,
+    position_batches,
 )
 from robot_bridge.gateway.storage.database import read_address
 from tests.support.faults.proxy import Proxy
@@ -91,10 +93,27 @@ def test_details_of_many_robots_fit_into_messages():
     long = [
         RobotDetails(f"robot-{n}", 0.5, 256 * "ű", 256 * "ő", 0.001, "asks", 128 * "a") for n in range(50)
     ]
-    lists = list(in_batches(long, LARGEST_NOTIFICATION))
+    lists = list(detail_batches(long, LARGEST_NOTIFICATION))
     assert [one for some in lists for one in some] == long
     assert all(len(details(*some)) <= LARGEST_NOTIFICATION for some in lists)
-    assert len(list(in_batches(long, LARGEST))) == 1
+    assert len(list(detail_batches(long, LARGEST))) == 1
+
+
+@pytest.mark.parametrize("largest", [LARGEST, LARGEST_NOTIFICATION])
+@pytest.mark.parametrize("letters", [1, 63])
+def test_positions_of_any_number_of_robots_fit_into_messages(largest, letters):
+    names = [str(number).rjust(letters, "r") for number in range(12_000)]
+    table = np.arange(6 * len(names), dtype="<f4").reshape(-1, 6)
+    flags = bytes(number % 8 for number in range(len(names)))
+    codec = Codec(KEY)
+    sent = [codec.encode(one) for one in position_batches("a", 1e9 + 0.1, names, table, flags, largest)]
+    assert all(len(one) <= largest for one in sent)
+    # None is much smaller than it may be.
+    assert len(sent) <= 1.1 * (sum(map(len, names)) + PLACE_BYTES * len(names)) / largest + 1
+    heard = [codec.decode(one) for one in sent]
+    assert [name for one in heard for name in one.names] == names
+    assert np.array_equal(np.concatenate([one.table() for one in heard]), table)
+    assert b"".join(one.flags for one in heard) == flags
 
 
 def signed(content):

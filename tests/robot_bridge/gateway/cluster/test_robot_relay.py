@@ -9,7 +9,7 @@ import pytest
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.cluster.bus import EVERYBODY
 from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
-from robot_bridge.gateway.cluster.robot_relay import PositionRelay
+from robot_bridge.gateway.cluster.robot_relay import DetailRelay, PositionRelay
 from robot_bridge.gateway.model.robots import Robots
 
 CODEC = Codec(b"k" * 32)
@@ -35,6 +35,7 @@ class Place:
         self.exchange = Exchange("b", b"k" * 32, [self.bus, Bus()])
         membership = SimpleNamespace(database_time=lambda: 1000.0, clock_offset=0.0)
         self.relay = PositionRelay(self.robots, membership, self.exchange)
+        self.details = DetailRelay(self.robots, membership, self.exchange)
         self.robots.ready("r1", 1, "yard", 1000.0)
         self.robots.observe("r1", SendPos(1.0, 2.0, 0.0, 0.0), "yard", 1000.0)
 
@@ -44,6 +45,12 @@ class Place:
         self.relay.send_changes()
         named = [name for one in self.bus.sent if isinstance(one, PositionBatch) for name in one.names]
         return named, [one.what for one in self.bus.sent if isinstance(one, Wake)]
+
+    async def detailed(self):
+        """Return the names of the robots whose details go out next."""
+        self.bus.sent.clear()
+        await self.details.send_changes()
+        return [robot.name for one in self.bus.sent for robot in one.robots]
 
 
 @pytest.fixture
@@ -71,4 +78,27 @@ def test_a_gateway_that_asks_is_told_of_all_robots(place):
     place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
     assert place.tick() == (["r1"], [])
     place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "site")))
+    assert place.tick() == ([], [])
+
+
+async def test_details_are_told_when_they_have_changed_and_when_somebody_asks(place):
+    place.robots.ready("r2", 1, "yard", 1000.0)
+    place.robots.let_go("r2", "a")
+    assert await place.detailed() == ["r1"]
+    place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    assert await place.detailed() == []
+    place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0, battery=0.5), "yard", 1000.0)
+    assert await place.detailed() == ["r1"]
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
+    assert await place.detailed() == ["r1"]
+    assert await place.detailed() == []
+    place.bus.connected = False
+    assert await place.detailed() == []
+    place.bus.connected = True
+    assert await place.detailed() == ["r1"]
+
+
+def test_a_robot_of_another_gateway_is_told_by_that_alone(place):
+    place.robots.let_go("r1", "a")
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
     assert place.tick() == ([], [])

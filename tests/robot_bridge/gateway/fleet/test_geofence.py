@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from robot_bridge.core.errors import StoreError
@@ -15,6 +16,7 @@ from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.fleet import geofence as watch
 from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
+from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ToldElsewhere
 
 IN_THE_BASIN = 66.0, 32.0
 OUTSIDE = 60.0, 22.0
@@ -54,6 +56,26 @@ async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarde
         await guarded.at(66.0, 31.0)
         await look(guarded)
     assert await guarded.acknowledge_all() == []
+
+
+async def test_a_robot_of_another_gateway_is_told_of_and_left_to_that(guarded):
+    def told(place, *, wall, located=True):
+        table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
+        flags = np.array([LOCATED * located], dtype=np.uint8)
+        guarded.fleet.robots.observe_elsewhere(ToldElsewhere("south", ["far"], table, flags, wall))
+
+    told(IN_THE_BASIN, wall=guarded.now, located=False)
+    report = await look(guarded)
+    assert (report.alarms, report.unjudged) == ([], ["far"])
+    told(OUTSIDE, wall=guarded.now)
+    report = await look(guarded)
+    assert (report.alarms, report.unjudged) == ([], [])
+    told(IN_THE_BASIN, wall=guarded.now)
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.robot, alarm.name, alarm.outcome) == ("far", "Water basin", "none")
+    guarded.now += 20
+    guarded.fleet.robots.age(guarded.now)
+    assert (await look(guarded)).unjudged == ["far", "r1"]
 
 
 async def test_a_stop_that_cannot_be_stored_is_tried_until_it_is(guarded, monkeypatch):

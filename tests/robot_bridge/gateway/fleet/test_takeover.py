@@ -8,7 +8,10 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import StoreError
+from robot_bridge.gateway.cluster.ownership import OwnerChanges
 from robot_bridge.gateway.fleet.registration import Takeover
+from robot_bridge.gateway.model.events import EventBus
+from robot_bridge.gateway.model.robots import Robots
 
 ROBOTS = ["r1", "r2", "r3", "r4"]
 
@@ -91,3 +94,28 @@ async def test_who_does_not_wait_any_more_keeps_nobody_else_out(takeover, owners
     await asyncio.sleep(0)
     gone.cancel()
     assert await others == dict.fromkeys(ROBOTS)
+
+
+async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership):
+    woken = []
+    exchange = SimpleNamespace(wake=lambda what, gateway: woken.append((what, gateway)))
+    known = Robots()
+    for robot in ("r1", "r2", "r3"):
+        known.ready(robot, 1, "websocket", 0.0)
+    known.let_go("r2", "b")
+    known.let_go("r3", "d")
+    ignored, held = SimpleNamespace(drop=lambda _robots: None), SimpleNamespace(forget=lambda _robot: None)
+    takeover = Takeover(ownership, exchange, known, ignored, ignored, held, ignored, None, None, EventBus())
+    owners = {"r1": "b", "r2": "c", "r3": "d"}
+
+    async def refresh():
+        return OwnerChanges(
+            {"r1"} if "r1" in {one.name for one in known.own()} else set(), set(), set(), owners
+        )
+
+    ownership.refresh = refresh
+    await takeover.follow()
+    assert {robot: known.gateway_of(robot) for robot in owners} == owners
+    assert woken == [("positions", "b"), ("positions", "c")]
+    await takeover.follow()
+    assert len(woken) == 2

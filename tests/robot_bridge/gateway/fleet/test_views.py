@@ -26,6 +26,7 @@ from robot_bridge.gateway.fleet import views as views_module
 from robot_bridge.gateway.fleet.operator_updates import position_table
 from robot_bridge.gateway.fleet.views import DensityGrid, FleetViews, RowStore, ViewWatch
 from robot_bridge.gateway.model.robots import Robots
+from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ToldElsewhere
 
 BOUNDS = (0.0, 0.0, 100.0, 100.0)
 LIMITS = AlarmLimits(low_battery=0.2, unsure=2.0, outside=0.5)
@@ -96,6 +97,29 @@ def test_at_first_it_is_told_of_who_is_in_the_view_and_how_many_there_are():
     assert desk.view == {
         "robots": 3, "fresh": 3, "stale": 0, "lost": 0, "offline": 0, "inside": 2, "alarmed": 0,
     }  # fmt: skip
+
+
+def test_robots_of_other_gateways_count_as_those_of_this_one():
+    places = {"a": (1, 1), "b": (5, 5), "c": (10, 0), "d": (3, 200.0), "e": (50, 50), "f": (60, 50)}
+    ours, shared = Fleet(**places), Fleet(**places)
+    for name in ("f", "d", "b"):
+        ours.put(name, *places[name], battery=0.1 if name == "f" else 0.9)
+        shared.put(name, *places[name], battery=0.1 if name == "f" else 0.9)
+        shared.robots.let_go(name, "south")
+    for more in ({"alarms": LIMITS}, {"bounds": BOUNDS, "most": 1}):
+        desks = [fleet.desk(**more) for fleet in (ours, shared)]
+        for desk in desks:
+            desk.listen()
+        assert desks[0].at == desks[1].at and desks[0].view == desks[1].view
+    assert {"d", "f"} <= set(shared.desk(alarms=LIMITS).show(NEAR, alarms=LIMITS)["robots"])
+    there = np.array([[2.0, 1.0, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
+    desk = shared.desk()
+    desk.listen()
+    shared.robots.observe_elsewhere(
+        ToldElsewhere("south", ["b"], there, np.array([LOCATED], dtype=np.uint8), shared.clock.time())
+    )
+    desk.listen()
+    assert (desk.told, desk.at["b"]) == (["b"], 2.0)
 
 
 def test_then_it_is_told_of_who_has_changed_and_of_nobody_else():
@@ -286,7 +310,12 @@ coordinates = st.floats(-2e3, 2e3) | st.sampled_from([0.0, -1.0, 64.0, 512.0, fl
 @settings(deadline=None)
 @given(
     st.lists(st.tuples(coordinates, coordinates, st.integers(0, 2)), max_size=40),
-    st.tuples(st.floats(-3e3, 3e3), st.floats(-3e3, 3e3), st.floats(0.5, 5e3), st.floats(0.5, 5e3)),
+    st.tuples(
+        st.floats(-3e3, 3e3, allow_subnormal=False),
+        st.floats(-3e3, 3e3, allow_subnormal=False),
+        st.floats(0.5, 5e3),
+        st.floats(0.5, 5e3),
+    ),
 )
 def test_each_cell_counts_the_robots_in_it(robots, view):
     x_min, y_min, wide, high = view

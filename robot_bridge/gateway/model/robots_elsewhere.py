@@ -1,0 +1,289 @@
+"""What other gateways say of their robots, in columns: thousands are taken in at once, and judged at once.
+
+No I/O. :class:`.Robots` makes a :class:`.Robot` of a row when somebody asks for that robot.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from ...core.clock import ClockStep
+from ...core.messages.base import COORDINATE, SPEED, THETA
+from ...core.messages.robots import SendPos
+from ...core.messages.safety import RobotState
+
+ENDED, LOCATED, ONLY_SEEN, DOUBTED = 1, 2, 4, 8
+"""Flags of a robot: it ended in good order, has said where it is since its Ready, is only seen, and the place
+that it said last is not believed. The last is told with its details."""
+TOLD_FLAGS = ENDED | LOCATED | ONLY_SEEN
+X, Y, POSE_AT, RECEIVED_AT, BATTERY = 0, 1, 4, 5, 6
+"""Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, and
+0 to 1."""
+TOLD_NUMBERS = 6
+"""numbers of a robot in a message, the first of those; in place of times there are seconds since."""
+STATES = tuple(RobotState)
+"""States by their codes."""
+_CODES = {state: code for code, state in enumerate(STATES)}
+FRESH, STALE, LOST, OFFLINE = (
+    _CODES[state] for state in (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
+)
+_LARGEST = np.array([COORDINATE[1], COORDINATE[1], THETA[1], SPEED[1]])
+_SPARE = 256
+
+Numbers = npt.NDArray[np.float64]
+Flags = npt.NDArray[np.uint8]
+Rows = npt.NDArray[np.intp]
+
+
+def liveness(
+    age: float, *, ended_in_order: bool, stale_after: float = 3.0, lost_after: float = 10.0
+) -> RobotState:
+    """Return the state of a robot whose last message is ``age`` seconds old.
+
+    ``ended_in_order`` is true when the robot said Stopped last, or closed its link in good order: silence
+    is expected of it then, so it goes offline where another would be lost.
+    """
+    if age < stale_after:
+        return RobotState.FRESH
+    if ended_in_order:
+        return RobotState.OFFLINE
+    return RobotState.STALE if age < lost_after else RobotState.LOST
+
+
+def state_codes(
+    ages: Numbers, ended_in_order: npt.NDArray[np.bool_], stale_after: float, lost_after: float
+) -> Flags:
+    """Return the codes of what :func:`liveness` says of many robots."""
+    silent = np.where(ended_in_order, OFFLINE, np.where(ages < lost_after, STALE, LOST))
+    return np.where(ages < stale_after, FRESH, silent).astype(np.uint8)
+
+
+class ToldElsewhere(NamedTuple):
+    """What another gateway says of n of its robots.
+
+    ``table`` is (n, :data:`TOLD_NUMBERS`), NaN where there is nothing; ``wall`` the time by this computer's
+    clock since which its ages count, and ``flags`` (n,).
+    """
+
+    gateway: str
+    names: Sequence[str]
+    table: npt.NDArray[np.float32]
+    flags: Flags
+    wall: float
+
+    def only(self, rows: Sequence[int]) -> ToldElsewhere:
+        """Return what is said of some robots."""
+        names = [self.names[row] for row in rows]
+        return ToldElsewhere(self.gateway, names, self.table[rows], self.flags[rows], self.wall)
+
+
+class PlacesElsewhere(NamedTuple):
+    """Where robots of other gateways are, by robot: (n,) each but ``names``; NaN where nothing is known."""
+
+    names: list[str]
+    x: Numbers
+    y: Numbers
+    pose_at: Numbers
+    battery: Numbers
+    states: Flags
+    flags: Flags
+
+
+class RobotElsewhere(Protocol):
+    """A robot as it is written into a row: see :class:`.Robot`."""
+
+    name: str
+    gateway: str | None
+    received_at: float
+    ended_in_order: bool
+    pose: SendPos | None
+    pose_at: float | None
+    located: bool
+    state: RobotState
+    doubt: str | None
+    abilities: str | None
+    revision: int
+
+
+class RowReading(NamedTuple):
+    """What a row says of its robot; times by this computer's clock, ``place`` is x, y, theta and v."""
+
+    received_at: float
+    ended_in_order: bool
+    located: bool
+    only_seen: bool
+    place: tuple[float, float, float, float] | None
+    pose_at: float | None
+    state: RobotState
+    revision: int
+
+
+class RobotColumns:
+    """Robots of other gateways by row; a row whose robot is gone is used again."""
+
+    def __init__(self) -> None:
+        self._rows: dict[str, int] = {}
+        self._names: list[str] = []
+        self._free: list[int] = []
+        self._gateways: dict[str, int] = {}
+        self._numbers = np.empty((BATTERY + 1, 0))
+        self._flags = np.empty(0, dtype=np.uint8)
+        self._states = np.empty(0, dtype=np.uint8)
+        self._owners = np.empty(0, dtype=np.int32)
+        self._revisions = np.empty(0, dtype=np.int64)
+        """-1 of a row that is free."""
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._rows
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    def names(self) -> list[str]:
+        """Return the names of all."""
+        return list(self._rows)
+
+    # --- One robot ---
+
+    def write(self, robot: RobotElsewhere) -> None:
+        """Write all that is known of a robot that another gateway has into its row."""
+        row = self._rows.get(robot.name)
+        if row is None:
+            row = self._new_row(robot.name)
+        pose, pose_at = robot.pose, robot.pose_at
+        place = (math.nan,) * 4 if pose is None else (pose.x, pose.y, pose.theta, pose.v)
+        battery = None if pose is None else pose.battery
+        self._numbers[:, row] = (
+            *place,
+            math.nan if pose_at is None else pose_at,
+            robot.received_at,
+            math.nan if battery is None else battery,
+        )
+        self._flags[row] = (
+            ENDED * robot.ended_in_order
+            | LOCATED * robot.located
+            | ONLY_SEEN * (robot.abilities == "")
+            | DOUBTED * (robot.doubt is not None)
+        )
+        self._states[row] = _CODES[robot.state]
+        self._owners[row] = self._owner(robot.gateway or "")
+        self._revisions[row] = robot.revision
+
+    def remove(self, name: str) -> None:
+        """Have no row of a robot any more."""
+        row = self._rows.pop(name, None)
+        if row is not None:
+            self._revisions[row] = -1
+            self._free.append(row)
+
+    def revision(self, name: str) -> int:
+        """Return the revision of a robot that has a row."""
+        return int(self._revisions[self._rows[name]])
+
+    def sighting(self, name: str) -> RowReading:
+        """Return what the row of a robot says."""
+        row = self._rows[name]
+        x, y, theta, v, pose_at, received_at, _ = self._numbers[:, row].tolist()
+        flags, placed = int(self._flags[row]), not math.isnan(x)
+        return RowReading(
+            received_at,
+            bool(flags & ENDED),
+            bool(flags & LOCATED),
+            bool(flags & ONLY_SEEN),
+            (x, y, theta, v) if placed else None,
+            pose_at if placed and not math.isnan(pose_at) else None,
+            STATES[int(self._states[row])],
+            int(self._revisions[row]),
+        )
+
+    # --- Many ---
+
+    def observe(self, told: ToldElsewhere, revision: int) -> tuple[int, list[int]]:
+        """Take in what a gateway says of the robots that are known as its own.
+
+        Returns the newest revision, each robot having got one after ``revision``, and which of those that
+        were told of have no row.
+        """
+        rows = np.array([self._rows.get(name, -1) for name in told.names], dtype=np.intp)
+        table = told.table.astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            heard = np.isfinite(table[:, RECEIVED_AT])
+            placed = (
+                (np.abs(table[:, :POSE_AT]) <= _LARGEST).all(axis=1) & np.isfinite(table[:, POSE_AT]) & heard
+            )
+        missing = np.flatnonzero((rows < 0) & heard).tolist()
+        counts = (rows >= 0) & heard
+        counts[counts] = self._owners[rows[counts]] == self._owner(told.gateway)
+        placed &= counts
+        at = rows[placed]
+        self._numbers[:POSE_AT, at] = table[placed, :POSE_AT].T
+        self._numbers[POSE_AT, at] = told.wall - table[placed, POSE_AT]
+        rows = rows[counts]
+        self._numbers[RECEIVED_AT, rows] = told.wall - table[counts, RECEIVED_AT]
+        self._flags[rows] = (self._flags[rows] & DOUBTED) | (told.flags[counts] & TOLD_FLAGS)
+        return self._changed(rows, revision), missing
+
+    def age(self, now: float, stale_after: float, lost_after: float, revision: int) -> int:
+        """Bring the states of all up to ``now``; returns the newest revision after ``revision``."""
+        times = self._numbers[RECEIVED_AT]
+        np.minimum(times, now, out=times)
+        states = state_codes(now - times, (self._flags & ENDED) > 0, stale_after, lost_after)
+        rows = np.flatnonzero((states != self._states) & (self._revisions >= 0))
+        self._states[rows] = states[rows]
+        return self._changed(rows, revision)
+
+    def move_times(self, step: ClockStep) -> None:
+        """Keep the times since robots were heard when the clock was set."""
+        times = self._numbers[[POSE_AT, RECEIVED_AT]]
+        as_set = (times >= step.since) & (times <= step.now)
+        self._numbers[[POSE_AT, RECEIVED_AT]] = np.where(as_set, times, times + step.by)
+
+    def changed(self, since: int) -> list[str]:
+        """Return the names of those that changed after revision ``since``."""
+        return self._named(np.flatnonzero(self._revisions > since))
+
+    def only_seen(self) -> list[str]:
+        """Return the names of those that are only seen."""
+        return self._named(np.flatnonzero(((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)))
+
+    def places(self, since: int = -1) -> PlacesElsewhere:
+        """Return where those are that changed after revision ``since``."""
+        rows = np.flatnonzero(self._revisions > since)
+        x, y, pose_at, battery = self._numbers[[X, Y, POSE_AT, BATTERY]][:, rows]
+        names, states, flags = self._named(rows), self._states[rows], self._flags[rows]
+        return PlacesElsewhere(names, x, y, pose_at, battery, states, flags)
+
+    def _named(self, rows: Rows) -> list[str]:
+        names = self._names
+        return [names[row] for row in rows.tolist()]
+
+    def _changed(self, rows: Rows, revision: int) -> int:
+        self._revisions[rows] = np.arange(revision + 1, revision + 1 + len(rows))
+        return revision + len(rows)
+
+    def _owner(self, gateway: str) -> int:
+        return self._gateways.setdefault(gateway, len(self._gateways))
+
+    def _new_row(self, name: str) -> int:
+        if not self._free:
+            self._grow()
+        row = self._free.pop()
+        self._rows[name] = row
+        self._names[row] = name
+        return row
+
+    def _grow(self) -> None:
+        have = len(self._names)
+        more = max(have, _SPARE)
+        self._names += [""] * more
+        self._free += range(have + more - 1, have - 1, -1)
+        self._numbers = np.concatenate([self._numbers, np.full((BATTERY + 1, more), np.nan)], axis=1)
+        self._flags = np.concatenate([self._flags, np.zeros(more, np.uint8)])
+        self._states = np.concatenate([self._states, np.zeros(more, np.uint8)])
+        self._owners = np.concatenate([self._owners, np.zeros(more, np.int32)])
+        self._revisions = np.concatenate([self._revisions, np.full(more, -1, np.int64)])
