@@ -13,9 +13,9 @@ import json
 import random
 import sys
 import time
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMessage
@@ -44,6 +44,13 @@ class Plan:
     robots: int
     robot_rate: float
     rate: float
+
+
+class Timetable(Protocol):
+    """Knows when robots said what desks are told."""
+
+    def times(self, frame: bytes) -> Iterable[tuple[str, float]]:
+        """Return robots of a table of positions, and when each said that it is there."""
 
 
 class Robot:
@@ -121,8 +128,8 @@ class Robot:
 class Desk:
     """A desk at one gateway: when it was told of what the robots said, and of stops."""
 
-    def __init__(self, address: str, plan: Plan, sayings: Sayings) -> None:
-        self._address, self._plan, self._sayings = address, plan, sayings
+    def __init__(self, address: str, subscription: dict[str, Any] | None, sayings: Timetable) -> None:
+        self._address, self._subscription, self._sayings = address, subscription, sayings
         self._ids, self._answers = itertools.count(10), dict[int, asyncio.Future[Any]]()
         self._socket: ClientConnection | None = None
         self.newest: dict[str, tuple[float, float]] = {}
@@ -138,9 +145,8 @@ class Desk:
             try:
                 async with _open(f"{self._address}/desk") as self._socket:
                     await self._socket.send(rpc_call("hello", {"operator": "Ada"}, 1))
-                    if self._plan.rate:
-                        subscription = {"rate": self._plan.rate, "form": "columns"}
-                        await self._socket.send(rpc_call("subscribe", subscription, 2))
+                    if self._subscription is not None:
+                        await self._socket.send(rpc_call("subscribe", self._subscription, 2))
                     self.up.set()
                     await self._hear(self._socket)
             except GONE:
@@ -188,7 +194,8 @@ class Crowd:
     def __init__(self, plan: Plan) -> None:
         self._plan, sayings = plan, Sayings()
         self._robots = [Robot(number, plan, sayings) for number in range(plan.robots)]
-        self._desks = [Desk(address, plan, sayings) for address in plan.addresses]
+        subscription = {"rate": plan.rate, "form": "columns"} if plan.rate else None
+        self._desks = [Desk(address, subscription, sayings) for address in plan.addresses]
         self._tasks: list[asyncio.Task[None]] = []
         self._numbers, self._late = itertools.count(1), 0.0
 

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 from benchmarks.clock import spread, table
 from benchmarks.cluster_crowd import JITTER_S
 from benchmarks.cluster_crowd import Plan as CrowdPlan
-from benchmarks.load import LIMITS, site_with_room
+from benchmarks.load import site_with_room
 from benchmarks.page import Part, goal
 from benchmarks.swarm import Onlooker
 from benchmarks.trial import size
@@ -128,12 +128,7 @@ def _lose_one_of_many() -> float:
     """Return the seconds until all robots of a gateway that was killed are heard again at another one."""
     with ExitStack() as stack:
         root = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fleet-many-")))
-        site = site_with_room(root)
-        settings = site / "site.toml"
-        text = settings.read_text("utf-8")
-        settings.write_text(
-            text.replace(LIMITS, f"\n[limits]\nrobots = {ROOM}\nper_address = {ROOM}\n"), "utf-8"
-        )
+        site = site_with_room(root, ROOM)
         url = stack.enter_context(PostgreSql(durable=True)).new_database()
         run_once(url, revisions.create)
         nats = stack.enter_context(NatsServer(root))

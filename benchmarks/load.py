@@ -251,12 +251,14 @@ def _both(windows: list[list[float | None]]) -> list[str]:
     return told
 
 
-def site_with_room(folder: Path) -> Path:
-    """Return the sample site, copied into ``folder``, with limits that let a crowd in from one address."""
+def site_with_room(folder: Path, robots: int = 0) -> Path:
+    """Return the sample site, copied into ``folder``, with limits that let a crowd in from one address, or so
+    many ``robots``."""
     site = folder / "site"
     site.mkdir(exist_ok=True)
     shutil.copy(SITE / "site.gpkg", site)
-    (site / "site.toml").write_text((SITE / "site.toml").read_text("utf-8") + LIMITS, "utf-8")
+    limits = f"\n[limits]\nrobots = {robots}\nper_address = {robots}\n" if robots else LIMITS
+    (site / "site.toml").write_text((SITE / "site.toml").read_text("utf-8") + limits, "utf-8")
     return site
 
 

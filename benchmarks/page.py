@@ -62,6 +62,7 @@ BENCH = [
     "appliance",
     "full_disk",
     "cluster",
+    "cluster_positions",
     "cluster_kills",
     "before",
     "endurance",

@@ -9,6 +9,8 @@ import json
 import select
 import struct
 import time
+from dataclasses import asdict
+from typing import Any
 
 from benchmarks.raw_websocket import BINARY, Peer, call, frame
 from benchmarks.swarm_robots import ARRIVED_WITHIN, Sent, serve
@@ -49,6 +51,10 @@ class LinkRobots:
             self._peer.send()
             if self._poll.poll(left * 1000):
                 self._let_in += sum(b'"result"' in payload for _, payload in self._peer.received())
+
+    def do(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """Do what is asked: drive."""
+        return asdict(self.drive(**asked))
 
     def drive(self, begin: float, seconds: float, rate: float, measured: float) -> Sent:
         """Send ``rate`` positions a second of each robot, evenly, from ``begin``."""

@@ -10,8 +10,9 @@ import json
 import select
 import sys
 import time
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from benchmarks.raw_websocket import TEXT, Peer, call, frame, result
 
@@ -57,8 +58,13 @@ class Robot(Peer):
     def hear(self) -> None:
         """Take in what came."""
         for opcode, payload in self.received():
-            if opcode == TEXT and not self.arrived:
-                self._take_map(payload)
+            if opcode == TEXT:
+                self.take_text(payload)
+
+    def take_text(self, payload: bytes) -> None:
+        """Take in a message."""
+        if not self.arrived:
+            self._take_map(payload)
 
     def _take_map(self, payload: bytes) -> None:
         """Acknowledge the map, if this is it."""
@@ -68,23 +74,32 @@ class Robot(Peer):
             self.arrived = True
 
 
-class Robots:
+Kind = TypeVar("Kind", bound=Robot)
+
+
+class Robots(Generic[Kind]):
     """All of them."""
 
-    def __init__(self, plan: dict[str, object]) -> None:
-        number = int(str(plan["robots"]))
-        self._robots = [
-            Robot(str(plan["host"]), int(str(plan["port"])), n, rpc=bool(plan["rpc"])) for n in range(number)
-        ]
+    def __init__(self, plan: dict[str, Any]) -> None:
+        self.robots: list[Kind] = []
+        self._by_file: dict[int, Kind] = {}
         self._poll = select.epoll()
-        self._by_file = {robot.sock.fileno(): robot for robot in self._robots}
-        for file in self._by_file:
-            self._poll.register(file, select.EPOLLIN)
+        for robot in self.make(plan):
+            self.robots.append(robot)
+            self._by_file[robot.sock.fileno()] = robot
+            self._poll.register(robot.sock.fileno(), select.EPOLLIN)
+            if len(self.robots) % AT_ONCE == 0:
+                # Who answers no pings is cut off before thousands have come.
+                self.hear(PAUSE)
+
+    def make(self, plan: dict[str, Any]) -> Iterator[Kind]:
+        """Yield robots that have said Ready."""
+        raise NotImplementedError
 
     def arrive(self) -> None:
         """Hear until every robot has its map."""
         until = time.monotonic() + ARRIVED_WITHIN
-        while missing := sum(not robot.arrived for robot in self._robots):
+        while missing := sum(not robot.arrived for robot in self.robots):
             if time.monotonic() > until:
                 raise TimeoutError(f"{missing} robots have no map after {ARRIVED_WITHIN:g} s")
             self.hear(0.02)
@@ -96,10 +111,14 @@ class Robots:
             for file, _ in self._poll.poll(left):
                 self._by_file[file].hear()
 
+    def do(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """Do what is asked: drive."""
+        return asdict(self.drive(**asked))
+
     def drive(self, begin: float, seconds: float, rate: float, measured: float) -> Sent:
         """Send ``rate`` messages a second of each robot, evenly, from ``begin``; what counts is from
         ``measured`` seconds on."""
-        robots, sent, number = self._robots, Sent(), 0
+        robots, sent, number = self.robots, Sent(), 0
         gap = 1 / (rate * len(robots))
         self.hear(begin - time.monotonic())
         cpu = None
@@ -121,6 +140,15 @@ class Robots:
         return sent
 
 
+class PlainRobots(Robots[Robot]):
+    """Robots that say where they are, and hear nothing but their maps."""
+
+    def make(self, plan: dict[str, Any]) -> Iterator[Robot]:
+        """Yield robots that have said Ready."""
+        for number in range(plan["robots"]):
+            yield Robot(plan["host"], plan["port"], number, rpc=plan["rpc"])
+
+
 def serve(kind: Any) -> None:
     """Drive robots of a ``kind`` like Robots as told on standard input, until that ends."""
     began = time.monotonic()
@@ -136,8 +164,8 @@ def serve(kind: Any) -> None:
         line = sys.stdin.readline()
         if not line:
             return
-        print(json.dumps(asdict(robots.drive(**json.loads(line)))), flush=True)
+        print(json.dumps(robots.do(json.loads(line))), flush=True)
 
 
 if __name__ == "__main__":
-    serve(Robots)
+    serve(PlainRobots)

@@ -45,6 +45,12 @@ class NatsServer:
         """Where it is."""
         return f"nats://127.0.0.1:{self.port}"
 
+    @property
+    def pid(self) -> int:
+        """The id of the process that runs."""
+        assert self._process is not None
+        return self._process.pid
+
     def __enter__(self) -> NatsServer:
         self.start()
         return self

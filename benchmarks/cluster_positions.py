@@ -1,0 +1,317 @@
+"""The part on a large fleet: four gateways, each with what one alone has, and desks with views."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import quantiles
+from typing import Any, NamedTuple
+
+from benchmarks.clock import table
+from benchmarks.cluster_crowd import Plan as Desks
+from benchmarks.cluster_onlookers import Plan as Onlookers
+from benchmarks.cluster_swarm import APART, ROW, home
+from benchmarks.load import site_with_room
+from benchmarks.page import Part, goal
+from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
+from benchmarks.trial import size
+from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
+from robot_bridge.gateway.storage import revisions
+from robot_bridge.gateway.storage.database import run_once
+from tests.support.databases.postgresql import PostgreSql
+from tests.support.errors import StageError
+from tests.support.fleet import serve
+from tests.support.nats_server import NatsServer
+from tests.support.processes import Processes
+
+GATEWAYS = 4
+ROBOTS, RATE = size(5000, 50), 1.0
+"""robots of a gateway, and how often each says where it is in a second."""
+NEAR, DESK_RATE = size(500, 20), 10.0
+"""robots in a view that shows them one by one, and frames a second."""
+SECONDS, SETTLE = size(20.0, 3.0), size(15.0, 2.0)
+"""seconds that are watched, and those before, in which everybody has just come."""
+STOPPED, STOPS = size(1250, 20), size(10, 1)
+"""robots of a gateway that are stopped, and how often."""
+WHILE_STOPPED, STANDING = size(3.0, 1.5), size(1.0, 0.2)
+"""seconds for which robots go on speaking about a stop, and between a stop and the next one."""
+SHARE, ACROSS_MS, IN_FORCE_MS, LAST_MS = 0.9, 50, 50, 500
+"""What is to be kept to: see :func:`report`."""
+LATEST_MS = 1000 / DESK_RATE + POSITION_TICK_S * 1000 + ACROSS_MS
+"""milliseconds in which a position is to be at a desk elsewhere."""
+
+TEXT = """\
+{gateways} gateways of one fleet on PostgreSQL, which waits for its disk, and one NATS server, with {robots}
+robots each on WebSockets, {all_robots} in all; and beside them, in the same run, one gateway alone on
+PostgreSQL with {robots}. Robots say where they are {rate:g} times a second. Each gateway has two desks at
+{desk_rate:g} Hz, as the panel in QGIS asks: one shows {near} robots, of all gateways, and one the whole site,
+as a density. All of it is on this machine's {cpus} processors, the robots of each gateway and all desks in
+processes of their own. Delays are from the moment at which a robot was to speak; a tick of the desk is
+{desk_tick:.0f} ms, and one between gateways {tick:.0f} ms.
+
+{rows}
+
+Four gateways take in {share:.2f} times as many positions for each second of a core as one does with a quarter
+of the robots. {share_goal}
+
+### Emergency stops of many robots
+
+From when a desk at the first gateway asks, of {stops} stops each: until each gateway says to a desk of its
+own that the stop is in force, and until the last of {stopped} robots has heard, which go on saying where they
+are. *Frozen* is SIGSTOP; the frozen gateway and its robots do not count.
+
+{rows_of_stops}
+
+In force, while all is well: {in_force_goal}. Last robot, also of the worst case: {last_goal}.
+"""
+
+
+@dataclass
+class Run:
+    """What came of a number of gateways: delays in ms; ``cpu`` and ``bus`` are seconds of processor time."""
+
+    here: list[float]
+    elsewhere: list[float]
+    sent: int
+    cpu: float
+    bus: float
+    megabytes: list[float]
+    late: float
+
+    @property
+    def microseconds(self) -> float:
+        """Of the gateways' processor time for each position."""
+        return self.cpu / self.sent * 1e6
+
+
+class Stop(NamedTuple):
+    """Milliseconds until a stop was in force at each gateway, and until the last robot heard of it."""
+
+    in_force: list[float]
+    last: float
+
+
+def measure(_data: Path) -> Part:
+    """Measure one gateway and several."""
+    try:
+        with PostgreSql(durable=True) as database:
+            one, several = (_watched(database, count) for count in (1, GATEWAYS))
+            return report(one, several, _stopped(database))
+    except StageError as error:
+        sys.exit(f"bench: {error}")
+
+
+class Fleet(ExitStack):
+    """A context with gateways, each with robots of its own, and the servers that they need."""
+
+    def __init__(self, database: PostgreSql, count: int, robots: int) -> None:
+        super().__init__()
+        self.database = database
+        url = database.new_database()
+        run_once(url, revisions.create)
+        root = Path(self.enter_context(tempfile.TemporaryDirectory(prefix="fleet-large-")))
+        site = site_with_room(root, 2 * count * robots)
+        processes = self.enter_context(Processes(root / "logs"))
+        self.nats = self.enter_context(NatsServer(root)) if count > 1 else None
+        self.gateways = []
+        for number in range(count):
+            state = root / f"state-{number}"
+            state.mkdir()
+            options: list[Any] = ["--state", state]
+            if self.nats is not None:
+                options += ["--gateway-name", f"g{number}", "--bus", self.nats.url]
+            self.gateways.append(serve(processes, site, url, *options, name=f"gateway-{number}"))
+        self.addresses = [one.address for one in self.gateways]
+        self.crowds = [
+            self.begin("benchmarks.cluster_swarm", {**of_all, "port": one.port, "first": number})
+            for of_all in ({"host": "127.0.0.1", "robots": robots, "stride": count},)
+            for number, one in enumerate(self.gateways)
+        ]
+        for crowd in self.crowds:
+            crowd.line()
+
+    def begin(self, module: str, plan: dict[str, Any]) -> Onlooker:
+        """Start a process that ends with this."""
+        onlooker = Onlooker(sys.executable, "-m", module, json.dumps(plan))
+        self.callback(onlooker.end)
+        return onlooker
+
+    @contextmanager
+    def without_nats(self) -> Iterator[None]:
+        """Have the bus dead."""
+        assert self.nats is not None
+        self.nats.kill()
+        yield
+        self.nats.start()
+
+    @contextmanager
+    def without_database(self) -> Iterator[None]:
+        """Have PostgreSQL dead."""
+        self.database.kill()
+        yield
+        self.database.start()
+
+    @contextmanager
+    def frozen(self, gateway: int) -> Iterator[None]:
+        """Have a gateway stand still."""
+        process = self.gateways[gateway].process
+        process.send_signal(signal.SIGSTOP)
+        yield
+        process.send_signal(signal.SIGCONT)
+
+
+def _watched(database: PostgreSql, count: int) -> Run:
+    with Fleet(database, count, ROBOTS) as fleet:
+        plan = Onlookers(fleet.addresses, _subscriptions(count))
+        desks = fleet.begin("benchmarks.cluster_onlookers", asdict(plan))
+        desks.line()
+        begin = time.monotonic() + 0.5
+        wall = time.time() + begin - time.monotonic()
+        for crowd in fleet.crowds:
+            crowd.tell(begin=begin, seconds=SETTLE + SECONDS, rate=RATE, measured=SETTLE)
+        schedule = {"robots": ROBOTS, "rate": RATE, "begin": wall}
+        desks.tell(schedule=schedule, begin=wall + SETTLE, seconds=SECONDS)
+        time.sleep(begin + SETTLE - time.monotonic())
+        gateways = [one.process.pid for one in fleet.gateways]
+        bus = [] if fleet.nats is None else [fleet.nats.pid]
+        before = [sum(map(cpu_seconds, pids)) for pids in (gateways, bus)]
+        time.sleep(max(0.0, begin + SETTLE + SECONDS - time.monotonic()))
+        now = [sum(map(cpu_seconds, pids)) for pids in (gateways, bus)]
+        sent, seen = [crowd.line() for crowd in fleet.crowds], desks.line()
+        return Run(
+            seen["here"],
+            seen["elsewhere"],
+            round(count * ROBOTS * RATE * SECONDS),
+            now[0] - before[0],
+            now[1] - before[1],
+            [megabytes_of(pid) for pid in gateways],
+            max(one["late"] for one in sent),
+        )
+
+
+def _subscriptions(count: int) -> list[dict[str, Any]]:
+    """Return what the desks ask for: at each of ``count`` gateways robots one by one, and a density."""
+    rows = NEAR // ROW + 1
+    columns = NEAR // rows
+    found = []
+    for number in range(count):
+        x, y = home(number * rows * ROW)
+        half = APART / 2
+        near = [x - half, y - half, x + columns * APART - half, y + rows * APART - half]
+        for bounds, most in ((near, 5000), ([0.0, 0.0, 1e4, 1e4], 1)):
+            view = {"bounds": bounds, "most": most}
+            found.append({"rate": DESK_RATE, "form": "columns", "view": view})
+    # Dealt out to the gateways in turns: the first half shows robots, the other one densities.
+    return found[::2] + found[1::2]
+
+
+def _stopped(database: PostgreSql) -> dict[str, list[Stop]]:
+    """Return what came of emergency stops, by what was dead or frozen."""
+    others = list(range(1, GATEWAYS))
+    with Fleet(database, GATEWAYS, STOPPED) as fleet:
+        desks = fleet.begin("benchmarks.cluster_crowd", asdict(Desks(fleet.addresses, 0, RATE, 0.0)))
+        desks.line()
+        cases: dict[str, tuple[Callable[[], AbstractContextManager[None]], list[int]]] = {
+            "all is well": (nullcontext, []),
+            "NATS is dead": (fleet.without_nats, []),
+            "one other gateway is frozen": (lambda: fleet.frozen(others[-1]), others[-1:]),
+            "PostgreSQL is dead": (fleet.without_database, []),
+        }
+        return {
+            name: [_stop(fleet, desks, trouble, without) for _ in range(STOPS)]
+            for name, (trouble, without) in cases.items()
+        }
+
+
+def _stop(
+    fleet: Fleet, desks: Onlooker, trouble: Callable[[], AbstractContextManager[None]], without: list[int]
+) -> Stop:
+    begin = time.monotonic() + 0.2
+    for crowd in fleet.crowds:
+        crowd.tell(begin=begin, seconds=WHILE_STOPPED, rate=RATE, measured=0.0)
+    with trouble():
+        time.sleep(begin + WHILE_STOPPED / 3 - time.monotonic())
+        desks.tell(do="stop", desk=0, without=without)
+        made = desks.line()
+        for crowd in fleet.crowds:
+            crowd.line()
+        last = made["began"]
+        for number, crowd in enumerate(fleet.crowds):
+            if number not in without:
+                crowd.tell(stop=made["stop"])
+                found = crowd.line()
+                if found["heard"] < STOPPED:
+                    missed = STOPPED - found["heard"]
+                    raise RuntimeError(f"{missed} robots of gateway {number} did not hear of {made['stop']}")
+                last = max(last, found["last"])
+    desks.tell(do="clear")
+    desks.line()
+    time.sleep(STANDING)
+    return Stop(made["gateways"], (last - made["began"]) * 1e3)
+
+
+def report(one: Run, several: Run, stops: dict[str, list[Stop]]) -> Part:
+    """Return the part of the page."""
+    share = one.microseconds / several.microseconds
+    across = _percentile(several.elsewhere, 99)
+    rows = table(
+        ["", "one gateway", f"{GATEWAYS} gateways", ""],
+        [
+            ["robots", ROBOTS, GATEWAYS * ROBOTS, ""],
+            [
+                "processor time of gateways for a position",
+                f"{one.microseconds:.0f} µs",
+                f"{several.microseconds:.0f} µs",
+                "",
+            ],
+            ["... of the NATS server", "", f"{several.bus / several.sent * 1e6:.1f} µs", ""],
+            ["position → desk at the same gateway, p50 / p99", _both(one.here), _both(several.here), ""],
+            [
+                "position → desk at another one",
+                "",
+                _both(several.elsewhere),
+                goal(f"p99 at most {LATEST_MS:.0f} ms", across <= LATEST_MS),
+            ],
+            ["memory of a gateway", f"{max(one.megabytes):.0f} MB", f"{max(several.megabytes):.0f} MB", ""],
+            ["most that a robot was late", f"{one.late:.0f} ms", f"{several.late:.0f} ms", ""],
+        ],
+    )
+    in_force = [ms for stop in stops["all is well"] for ms in stop.in_force]
+    last = max(stop.last for some in stops.values() for stop in some)
+    stopped = table(
+        ["", "in force at a gateway, p50 / worst", "last robot, p50 / worst"],
+        [
+            [name, _worst([ms for stop in some for ms in stop.in_force]), _worst([s.last for s in some])]
+            for name, some in stops.items()
+        ],
+    )
+    text = TEXT.format(
+        **{"gateways": GATEWAYS, "robots": ROBOTS, "all_robots": GATEWAYS * ROBOTS, "rate": RATE},
+        **{"desk_rate": DESK_RATE, "near": NEAR, "cpus": os.cpu_count(), "desk_tick": 1000 / DESK_RATE},
+        **{"tick": POSITION_TICK_S * 1000, "rows": rows, "share": share},
+        **{"stops": STOPS, "stopped": GATEWAYS * STOPPED, "rows_of_stops": stopped},
+        in_force_goal=goal(f"p99 at most {IN_FORCE_MS} ms", _percentile(in_force, 99) <= IN_FORCE_MS),
+        last_goal=goal(f"at most {LAST_MS} ms", last <= LAST_MS),
+        share_goal=f"{goal(f'at least {SHARE}', share >= SHARE).capitalize()}.",
+    )
+    return Part("Several gateways and a large fleet", text)
+
+
+def _percentile(values: list[float], share: int) -> float:
+    return quantiles(values, n=100, method="inclusive")[share - 1] if len(values) > 1 else values[0]
+
+
+def _worst(values: list[float]) -> str:
+    return f"{_percentile(values, 50):.0f} / {max(values):.0f} ms"
+
+
+def _both(values: list[float]) -> str:
+    return f"{_percentile(values, 50):.0f} / {_percentile(values, 99):.0f} ms"
