@@ -115,6 +115,13 @@ class Fleet(ExitStack):
     def __init__(self, database: PostgreSql, count: int, robots: int) -> None:
         super().__init__()
         self.database = database
+        try:
+            self._start(database, count, robots)
+        except BaseException:
+            self.close()
+            raise
+
+    def _start(self, database: PostgreSql, count: int, robots: int) -> None:
         url = database.new_database()
         run_once(url, revisions.create)
         root = Path(self.enter_context(tempfile.TemporaryDirectory(prefix="fleet-large-")))

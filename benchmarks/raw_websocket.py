@@ -9,7 +9,7 @@ import os
 import socket
 import struct
 
-BINARY, PING, TEXT = 2, 9, 1
+BINARY, CLOSE, PING, TEXT = 2, 8, 9, 1
 
 
 def frame(text: str | bytes, opcode: int = TEXT) -> bytes:
@@ -143,6 +143,9 @@ class Peer:
         for opcode, payload in frames:
             if opcode == PING:
                 self.send(pong(payload))
+            elif opcode == CLOSE:
+                code, reason = int.from_bytes(payload[:2], "big"), payload[2:].decode(errors="replace")
+                raise ConnectionError(f"{self._where[2]}: the server closed with {code}: {reason}")
         return frames
 
 

@@ -20,6 +20,8 @@ PAUSE = 0.0005
 """seconds between two looks at the clock."""
 ARRIVED_WITHIN = 120.0
 """seconds."""
+BETWEEN = 20
+"""robots that connect before those that have come hear again."""
 AT_ONCE = 200
 """messages before robots hear again, however late they are."""
 
@@ -88,9 +90,10 @@ class Robots(Generic[Kind]):
             self.robots.append(robot)
             self._by_file[robot.sock.fileno()] = robot
             self._poll.register(robot.sock.fileno(), select.EPOLLIN)
-            if len(self.robots) % AT_ONCE == 0:
+            if len(self.robots) % BETWEEN == 0:
                 # Who answers no pings is cut off before thousands have come.
-                self.hear(PAUSE)
+                while self._take_in(0.0):
+                    pass
 
     def make(self, plan: dict[str, Any]) -> Iterator[Kind]:
         """Yield robots that have said Ready."""
@@ -108,8 +111,14 @@ class Robots(Generic[Kind]):
         """Take in what comes for that long."""
         until = time.monotonic() + seconds
         while (left := until - time.monotonic()) > 0:
-            for file, _ in self._poll.poll(left):
-                self._by_file[file].hear()
+            self._take_in(left)
+
+    def _take_in(self, seconds: float) -> bool:
+        """Take in what has come, or is the first to come in that time; tell whether anything did."""
+        found = self._poll.poll(seconds)
+        for file, _ in found:
+            self._by_file[file].hear()
+        return bool(found)
 
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Do what is asked: drive."""
