@@ -159,6 +159,9 @@ DETAIL_ALL_S = 30.0
 DETAIL_OLD_S = 5.0
 """seconds after which a message is dropped: it has waited somewhere."""
 
+LATENCY_S, LATENCY_PART = 0.005, 0.25
+"""A latency that differs from the one told last by no more seconds, and no more of that, is not told: each
+robot's is measured every few seconds, and is never twice the same."""
 PIECE = 500
 """robots that are looked at before others have their turn: less than a millisecond."""
 
@@ -227,7 +230,7 @@ class DetailRelay:
             of_robot, of_pose = _OF_ROBOT(robot), _OF_POSE(robot.pose) if robot.pose else _UNKNOWN
             if last is not None and last.of_robot == of_robot and last.of_pose == of_pose:
                 continue
-            facts = _facts(of_robot, of_pose)
+            facts = _facts(of_robot, of_pose, None if last is None else last.facts)
             told[name] = _Told(of_robot, of_pose, facts)
             if last is None or last.facts != facts:
                 changed.append(_details(name, facts))
@@ -244,18 +247,20 @@ class DetailRelay:
             self._robots.describe_elsewhere(one.name, batch.gw, described)
 
 
-def _facts(of_robot: _Facts, of_pose: _Facts) -> _Facts:
-    """Return what is told of a robot, in the order of its :class:`RobotDetails`."""
+def _facts(of_robot: _Facts, of_pose: _Facts, told: _Facts | None) -> _Facts:
+    """Return what is told of a robot, in the order of its :class:`RobotDetails`, after what was ``told``."""
     doubt, latency, *declared = of_robot
     battery, status = of_pose
-    return (
-        # Not told again for less than an operator sees.
-        None if battery is None else round(battery, 2),
-        status,
-        doubt,
-        None if latency is None else round(latency, 3),
-        *declared,
-    )
+    # Not told again for less than an operator sees, or minds.
+    battery = None if battery is None else round(battery, 2)
+    return battery, status, doubt, _latency(latency, None if told is None else told[3]), *declared
+
+
+def _latency(now: float | None, told: float | None) -> float | None:
+    if now is None:
+        return None
+    is_same = told is not None and abs(now - told) <= max(LATENCY_S, LATENCY_PART * told)
+    return told if is_same else round(now, 3)
 
 
 def _details(name: str, facts: _Facts) -> RobotDetails:

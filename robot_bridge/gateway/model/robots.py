@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 from typing import NamedTuple, TypeVar
@@ -354,15 +354,20 @@ class Robots:
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
         """Take in the details that another gateway tells of a robot that it has."""
-        robot = self._find(name)
+        robot = self._elsewhere.get(name)
         if robot is None or robot.gateway != gateway:
             return
+        if robot.pose is None:
+            self._renew([name])
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
         robot.magic = robot.magic if said.magic is None else said.magic
-        if robot.pose is not None:
-            robot.pose = replace(robot.pose, battery=said.battery, status=said.status)
-        self._touch(robot)
+        pose = robot.pose
+        if pose is not None and (pose.battery, pose.status) != (said.battery, said.status):
+            robot.pose = replace(pose, battery=said.battery, status=said.status)
+        self.revision += 1
+        only_seen, battery = said.abilities == "", None if pose is None else said.battery
+        self._columns.describe(name, battery, said.doubt is not None, only_seen, self.revision)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
         """Note that the robot is heard, and that the place that it says cannot be."""
@@ -429,7 +434,7 @@ class Robots:
 
     def changed(self, since: int) -> list[Robot]:
         """Return the robots that changed after revision ``since``, those of this gateway first."""
-        return self.own(since) + [self._renewed(name) for name in self._columns.changed(since)]
+        return self.own(since) + self._renew(self._columns.changed(since))
 
     def own(self, since: int = -1) -> list[Robot]:
         """Return the robots of this gateway that changed after revision ``since``."""
@@ -442,21 +447,23 @@ class Robots:
     def only_seen(self) -> list[Robot]:
         """Return the robots that can do nothing."""
         here = [robot for robot in self._robots.values() if robot.abilities == ""]
-        return here + [self._renewed(name) for name in self._columns.only_seen()]
+        return here + self._renew(self._columns.only_seen())
 
     def known(self, names: Iterable[str]) -> list[Robot]:
         """Return those of ``names`` that there are."""
-        return [robot for name in names if (robot := self._find(name)) is not None]
+        names = list(names)
+        self._renew([name for name in names if name in self._elsewhere])
+        found = (self._robots.get(name) or self._elsewhere.get(name) for name in names)
+        return [robot for robot in found if robot is not None]
 
     def _find(self, name: str) -> Robot | None:
         robot = self._robots.get(name)
-        return self._renewed(name) if robot is None and name in self._elsewhere else robot
+        return self._renew([name])[0] if robot is None and name in self._elsewhere else robot
 
-    def _renewed(self, name: str) -> Robot:
-        """Return a robot of another gateway as that says it is by now."""
-        robot = self._elsewhere[name]
-        if robot.revision != self._columns.revision(name):
-            seen = self._columns.sighting(name)
+    def _renew(self, names: Sequence[str]) -> list[Robot]:
+        """Return robots of other gateways as those say that they are by now."""
+        robots = [self._elsewhere[name] for name in names]
+        for robot, seen in self._columns.read_changed(robots):
             robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
             robot.located, robot.state, robot.revision = seen.located, seen.state, seen.revision
             robot.abilities = "" if seen.only_seen else robot.abilities
@@ -466,7 +473,7 @@ class Robots:
                 last = robot.pose
                 battery, status = (None, None) if last is None else (last.battery, last.status)
                 robot.pose = SendPos(*seen.place, battery=battery, status=status)
-        return robot
+        return robots
 
     def _add(self, robot: Robot) -> None:
         """Count a robot as its gateway's from now on."""

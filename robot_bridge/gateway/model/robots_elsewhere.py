@@ -6,8 +6,8 @@ No I/O. :class:`.Robots` makes a :class:`.Robot` of a row when somebody asks for
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -110,6 +110,9 @@ class RobotElsewhere(Protocol):
     revision: int
 
 
+Known = TypeVar("Known", bound=RobotElsewhere)
+
+
 class RowReading(NamedTuple):
     """What a row says of its robot; times by this computer's clock, ``place`` is x, y, theta and v."""
 
@@ -181,25 +184,15 @@ class RobotColumns:
             self._revisions[row] = -1
             self._free.append(row)
 
-    def revision(self, name: str) -> int:
-        """Return the revision of a robot that has a row."""
-        return int(self._revisions[self._rows[name]])
-
-    def sighting(self, name: str) -> RowReading:
-        """Return what the row of a robot says."""
+    def describe(
+        self, name: str, battery: float | None, doubted: bool, only_seen: bool, revision: int
+    ) -> None:
+        """Write what changes seldom of a robot that has a row."""
         row = self._rows[name]
-        x, y, theta, v, pose_at, received_at, _ = self._numbers[:, row].tolist()
-        flags, placed = int(self._flags[row]), not math.isnan(x)
-        return RowReading(
-            received_at,
-            bool(flags & ENDED),
-            bool(flags & LOCATED),
-            bool(flags & ONLY_SEEN),
-            (x, y, theta, v) if placed else None,
-            pose_at if placed and not math.isnan(pose_at) else None,
-            STATES[int(self._states[row])],
-            int(self._revisions[row]),
-        )
+        self._numbers[BATTERY, row] = math.nan if battery is None else battery
+        told = int(self._flags[row]) & ~(ONLY_SEEN | DOUBTED)
+        self._flags[row] = told | ONLY_SEEN * only_seen | DOUBTED * doubted
+        self._revisions[row] = revision
 
     # --- Many ---
 
@@ -227,6 +220,30 @@ class RobotColumns:
         self._numbers[RECEIVED_AT, rows] = told.wall - table[counts, RECEIVED_AT]
         self._flags[rows] = (self._flags[rows] & DOUBTED) | (told.flags[counts] & TOLD_FLAGS)
         return self._changed(rows, revision), missing
+
+    def read_changed(self, robots: Sequence[Known]) -> Iterator[tuple[Known, RowReading]]:
+        """Yield those of ``robots`` with rows that are not as their rows say, with what those say."""
+        rows = np.array([self._rows[robot.name] for robot in robots], dtype=np.intp)
+        revisions = self._revisions[rows]
+        changed = np.flatnonzero(revisions != np.array([robot.revision for robot in robots], np.int64))
+        rows = rows[changed]
+        columns = (*self._numbers[:BATTERY, rows], self._flags[rows], self._states[rows], revisions[changed])
+        values = zip(changed.tolist(), *(column.tolist() for column in columns), strict=True)
+        for place, x, y, theta, v, pose_at, received_at, flags, state, revision in values:
+            placed = not math.isnan(x)
+            yield (
+                robots[place],
+                RowReading(
+                    received_at,
+                    bool(flags & ENDED),
+                    bool(flags & LOCATED),
+                    bool(flags & ONLY_SEEN),
+                    (x, y, theta, v) if placed else None,
+                    pose_at if placed and not math.isnan(pose_at) else None,
+                    STATES[state],
+                    revision,
+                ),
+            )
 
     def age(self, now: float, stale_after: float, lost_after: float, revision: int) -> int:
         """Bring the states of all up to ``now``; returns the newest revision after ``revision``."""
