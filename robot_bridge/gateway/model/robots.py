@@ -83,6 +83,16 @@ class Robot:
         """Whether it declared that it places and collects cones at the ends of paths."""
         return self.paths in ("cones", "asks and cones")
 
+    @property
+    def is_placed(self) -> bool:
+        """Whether it is known where it is now: it is heard, and has said so since its last Ready.
+
+        It is not known of one whose last place is not believed.
+
+        What is known of others is where they were: they may have driven on unseen.
+        """
+        return self.located and self.state is RobotState.FRESH and self.doubt is None
+
     def can(self, ability: Ability) -> bool:
         """Tell whether it did not declare that it cannot do this."""
         return self.abilities is None or ability in self.abilities.split()
@@ -177,15 +187,9 @@ class Robots:
         return robot.pose.x, robot.pose.y
 
     def is_placed(self, name: str) -> bool:
-        """Tell whether it is known where a robot is now: it is heard, and has said so since its last Ready.
-
-        It is not known of one whose last place is not believed.
-
-        What is known of others is where they were: they may have driven on unseen.
-        """
+        """Tell whether it is known where a robot is now."""
         robot = self._find(name)
-        fresh = robot is not None and robot.located and robot.state is RobotState.FRESH
-        return robot is not None and fresh and robot.doubt is None
+        return robot is not None and robot.is_placed
 
     def is_unseen(self, name: str, now: float) -> bool:
         """Tell whether a robot may have come further since it said where it is: too long ago, or before its
@@ -457,8 +461,10 @@ class Robots:
         return [robot for robot in found if robot is not None]
 
     def _find(self, name: str) -> Robot | None:
-        robot = self._robots.get(name)
-        return self._renew([name])[0] if robot is None and name in self._elsewhere else robot
+        robot = self._robots.get(name) or self._elsewhere.get(name)
+        if robot is not None and robot.gateway is not None and self._columns.has_changed(robot):
+            self._renew([name])
+        return robot
 
     def _renew(self, names: Sequence[str]) -> list[Robot]:
         """Return robots of other gateways as those say that they are by now."""

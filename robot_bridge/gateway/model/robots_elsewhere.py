@@ -194,6 +194,10 @@ class RobotColumns:
         self._flags[row] = told | ONLY_SEEN * only_seen | DOUBTED * doubted
         self._revisions[row] = revision
 
+    def has_changed(self, robot: RobotElsewhere) -> bool:
+        """Tell whether a robot with a row is not as that says."""
+        return bool(self._revisions[self._rows[robot.name]] != robot.revision)
+
     # --- Many ---
 
     def observe(self, told: ToldElsewhere, revision: int) -> tuple[int, list[int]]:

@@ -147,12 +147,14 @@ class RobotPaths:
 
     def own(self) -> list[DrivenTask]:
         """Return what the robots of this gateway are doing that have a task."""
-        return [one for one in self.all() if self._robots.gateway_of(one.robot) is None]
+        underway = (self.of(robot.name) for robot in self._robots.own())
+        return sorted((one for one in underway if one is not None), key=lambda one: one.robot)
 
     def all(self) -> list[DrivenTask]:
         """Return what all robots are doing that have a task, also those that other gateways have."""
-        underway = (self.of(robot) for robot in self._robots.names())
-        return [one for one in underway if one is not None]
+        elsewhere = (self.of(robot) for robot in self._elsewhere if self._robots.gateway_of(robot))
+        found = [*self.own(), *(one for one in elsewhere if one is not None)]
+        return sorted(found, key=lambda one: one.robot)
 
     def _of_elsewhere(self, robot: str) -> DrivenTask | None:
         task, pose = self._elsewhere.get(robot), self._robots.pose(robot)

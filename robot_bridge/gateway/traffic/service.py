@@ -94,11 +94,11 @@ class TrafficControl:
                 await self._waiting.see_to(self.situation())
         if not listened_to or time.monotonic() < self._next:
             return
-        began = time.monotonic()
-        seen = self.situation()
-        found = await asyncio.to_thread(_found, seen) if seen.underway else []
+        began, found = time.monotonic(), list[messages.ConflictReport]()
+        if self._ways.all():
+            found = await asyncio.to_thread(_found, self.situation())
         self._next = time.monotonic() + (time.monotonic() - began) / SHARE
-        report = messages.Conflicts(seen.now, found, self._waiting.report())
+        report = messages.Conflicts(self._clock.time(), found, self._waiting.report())
         something = bool(report.conflicts or report.waiting)
         if something or self._had_conflicts:
             self._listeners.announce("conflicts", "conflicts", to_json(report))
@@ -126,16 +126,17 @@ class TrafficControl:
 
         Of what is only seen nobody knows the way: :mod:`...nearness` tells of that.
         """
-        settings, places = self._site.settings.routes, {}
+        settings, places, placed = self._site.settings.routes, {}, set()
         everybody = [*self._robots.commanded(), *self._robots.commanded_elsewhere()]
-        for name in everybody if names is None else names:
-            pose = self._robots.get(name).pose
+        for robot in self._robots.known(everybody if names is None else names):
+            pose = robot.pose
             if pose is not None:
                 usual = abs(pose.v) >= SLOWEST * settings.speed_ms
-                places[name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
-        placed = frozenset(name for name in places if self._robots.is_placed(name))
+                places[robot.name] = (pose.x, pose.y), abs(pose.v) if usual else settings.speed_ms
+                if robot.is_placed:
+                    placed.add(robot.name)
         return TrafficSnapshot(
-            self._clock.time(), settings, self._ways.all(), places, self._waiting.rows(), placed
+            self._clock.time(), settings, self._ways.all(), places, self._waiting.rows(), frozenset(placed)
         )
 
     def _ways_out(self, seen: TrafficSnapshot, request: messages.GetWaysOut, site: Site) -> messages.WaysOut:
