@@ -33,7 +33,8 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QEventLoop, QTimer
 
 from benchmarks.clock import Spread, megabytes, spread
-from benchmarks.desk_fleet import DrivingFleet
+from benchmarks.desk_fleet import SPEED, DrivingFleet
+from benchmarks.fleet_views import Fleet
 from benchmarks.trial import size
 from tests.support.processes import dying_with_this
 from tools.plugin_files import ROOT, register_plugin
@@ -47,6 +48,7 @@ FRAME_S, UPDATE_S = 0.05, 0.1
 """seconds between two updates of the memory layer, and between two positions of a robot."""
 UPDATES = size(40, 5)
 WARM_UP = size(15, 2)
+FEW = 10
 HOUR, SETTLED = size((3600, 300), (60, 20))
 """seconds of updates, and those after which memory is looked at first."""
 
@@ -142,6 +144,32 @@ def overlay(data: str, number: int) -> None:
             },
         }
     )
+
+
+def density(data: str, number: int) -> None:
+    """Print the window's thread's milliseconds of computing for an update of a density of so many robots."""
+    stage = Stage(data, FEW)
+    now = [1000.0]
+    desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
+    wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_states")
+    state = importlib.import_module("fleet_supervisor.plugin.gateway_client.fleet_state")
+    fleet = Fleet(number, max(stage.area[2:]), SPEED * UPDATE_S)
+    x, y, width, height = stage.area
+    watch = fleet.watch((x, y, x + width, y + height))
+    times = []
+    for _ in range(WARM_UP + UPDATES):
+        now[0] += UPDATE_S
+        fleet.move()
+        fleet.look_up()
+        frame = watch.next_frame()
+        began = time.thread_time()
+        desk.state.merge(state.StateUpdate(desk.state.link, robots=wire.table_from_frame(frame, now[0])))
+        view.show_now()
+        stage.canvas.viewport().repaint()
+        times.append((time.thread_time() - began) * 1e3)
+    shown = desk.state.robots.fleet.density
+    assert shown is not None, "a density is shown"
+    stage.end({"ms": spread(times[WARM_UP:]), "megabytes": megabytes()})
 
 
 def _repainting(stage: Stage) -> Spread:

@@ -27,6 +27,8 @@ SIDE = 10_000.0
 NEAR = 2200.0
 """metres of a view whose robots come one by one."""
 ROUNDS = size(7, 2)
+STEP = 0.5
+"""metres that a robot moves between two ticks."""
 NAMES = ("x", "y", "theta", "v", "battery", "status")
 
 TEXT = """\
@@ -44,29 +46,27 @@ A frame of all robots is {all_kb} kB, one of the {near} in view {near_kb} kB, a 
 class Fleet:
     """Robots that all move, and what desks are told of them."""
 
-    def __init__(self) -> None:
+    def __init__(self, number: int = ROBOTS, side: float = SIDE, step: float = 1e-3) -> None:
         self.robots, self.clock = Robots(), ManualClock(wall=100.0)
-        site = SimpleNamespace(report=SimpleNamespace(bounds=(0.0, 0.0, SIDE, SIDE)))
+        site = SimpleNamespace(report=SimpleNamespace(bounds=(0.0, 0.0, side, side)))
         self.views = FleetViews(self.robots, site, self.clock)  # type: ignore[arg-type]
         self.snapshots = Snapshots(self.robots, self.clock)
-        self._places = np.random.default_rng(1).uniform(0, SIDE - 1.0, (ROBOTS, 2)).tolist()
-        self._moves = 0
-        for number in range(ROBOTS):
-            self.robots.ready(f"robot-{number:06}", number, "websocket", 100.0)
+        self._places = np.random.default_rng(1).uniform(0, side - 1.0, (number, 2)).tolist()
+        self._moves, self._step = 0, step
+        for robot in range(number):
+            self.robots.ready(f"robot-{robot:06}", robot, "websocket", 100.0)
         self.move()
 
     def move(self) -> None:
         """Move all robots on."""
         self._moves += 1
         for number, (x, y) in enumerate(self._places):
-            pose = SendPos.of_checked(NAMES, (x + self._moves * 1e-3, y, 0.3, 1.0, 0.8, "driving"))
+            pose = SendPos.of_checked(NAMES, (x + self._moves * self._step, y, 0.3, 1.0, 0.8, "driving"))
             self.robots.observe(f"robot-{number:06}", pose, "websocket", 100.0)
 
-    def watch(self, side: float) -> ViewWatch:
-        """Return what a desk is told that sees so many metres."""
-        watch = ViewWatch(self.views, View((0.0, 0.0, side, side)), 5.0, PositionForm.COLUMNS)
-        watch.next_frame()
-        return watch
+    def watch(self, bounds: tuple[float, float, float, float]) -> ViewWatch:
+        """Return what a desk is told that sees so much."""
+        return ViewWatch(self.views, View(bounds), 5.0, PositionForm.COLUMNS)
 
     def look_up(self) -> None:
         """Look up where all robots are."""
@@ -80,8 +80,10 @@ class Fleet:
 
 def measure(data: Path) -> Part:
     """Measure on robots that are made up."""
-    fleet = Fleet()
-    one, other, whole = fleet.watch(NEAR), fleet.watch(NEAR), fleet.watch(SIDE)
+    fleet = Fleet(step=STEP)
+    one, other, whole = (fleet.watch((0.0, 0.0, side, side)) for side in (NEAR, NEAR, SIDE))
+    for watch in (one, other, whole):
+        watch.next_frame()
     times: dict[str, list[float]] = {}
     frames: dict[str, int] = {}
 

@@ -63,6 +63,7 @@ BENCH = [
     "full_disk",
     "cluster",
     "cluster_positions",
+    "cluster_views",
     "cluster_kills",
     "before",
     "endurance",
