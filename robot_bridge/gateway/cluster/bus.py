@@ -195,9 +195,15 @@ class NotifyBus:
 # --- NATS: for any number of gateways ---
 
 OLDEST_NATS = (2, 10, 26)
-CONNECT_S, PING_S, PINGS_OUT, FLUSH_S = 2.0, 1, 2, 2.0
+CONNECT_S, FLUSH_S = 2.0, 2.0
+QUIET_LOOKS, PONG_S = 10, 1.0
+"""Looks at a connection by which nothing came, after which it is asked whether it stands, and seconds for the
+answer: a stop of the network is known after three seconds. One by which messages come is not asked: with many
+robots on a busy computer the answer waits behind positions for longer than that."""
+PING_S = 30
+"""seconds between pings of the client itself, two of which may be without an answer."""
 PENDING_BYTES = 4 << 20
-"""bytes that wait for a slow server; a stop of the network is known after three seconds by pings."""
+"""bytes that wait for a slow server."""
 
 
 class NatsBus:
@@ -324,6 +330,8 @@ class NatsBus:
 
         async def hear(message: Any) -> None:
             receive(message.subject[cut:], message.data)
+            # The client hands over all that waits without a pause, and answers no pings meanwhile.
+            await asyncio.sleep(0)
 
         for subject in self._subjects:
             # Each has a queue of its own: no stop waits behind positions.
@@ -332,7 +340,7 @@ class NatsBus:
 
     async def _send_until_lost(self, client: Any, lost: asyncio.Event) -> None:
         sending = asyncio.create_task(self._send(client))
-        losing = asyncio.create_task(_disconnection(client, lost))
+        losing = asyncio.create_task(disconnection(client, lost))
         try:
             await asyncio.wait({sending, losing}, return_when=asyncio.FIRST_COMPLETED)
             if sending.done():
@@ -368,7 +376,7 @@ class NatsBus:
             reconnect_time_wait=0.1,
             max_reconnect_attempts=1,
             ping_interval=PING_S,
-            max_outstanding_pings=PINGS_OUT,
+            max_outstanding_pings=2,
             pending_size=PENDING_BYTES,
             no_echo=False,
             name="robot-bridge",
@@ -389,13 +397,25 @@ class NatsBus:
         self._said.add(reason)
 
 
-async def _disconnection(client: Any, lost: asyncio.Event) -> None:
-    """Wait until ``client`` has lost its server, which it says by ``lost``.
+async def disconnection(client: Any, lost: asyncio.Event) -> None:
+    """Wait until ``client`` has lost its server, which it says by ``lost``, or the server does not answer.
 
-    It may not: a task of its own that fails as it closes the connection ends without a word.
+    It may not say so: a task of its own that fails as it closes the connection ends without a word.
     """
+    heard, quiet = -1, 0
     while client.is_connected and not lost.is_set():
+        # Looks are counted, not seconds: what came while this computer was busy is read before the next one.
         await wait_at_most(lost, CONNECTED_LOOK_S)
+        before, heard = heard, client.stats["in_msgs"]
+        quiet = quiet + 1 if heard == before else 0
+        if quiet >= QUIET_LOOKS:
+            quiet = 0
+            try:
+                await client.flush(PONG_S)
+            except Exception:
+                # Whatever it is: it is not certain that others are heard.
+                if client.stats["in_msgs"] == heard:
+                    return
 
 
 def check_version(where: str, version: Any) -> None:

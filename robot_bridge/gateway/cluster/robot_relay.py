@@ -156,6 +156,8 @@ DETAIL_TICK_S = 1.0
 """seconds between two messages."""
 DETAIL_ALL_S = 30.0
 """seconds after which all is told again: a message may have been lost."""
+DETAIL_ALL_AGAIN_S = 5.0
+"""seconds between two times that all is told, whoever asks for it: gateways of a fleet start together."""
 DETAIL_OLD_S = 5.0
 """seconds after which a message is dropped: it has waited somewhere."""
 
@@ -194,7 +196,7 @@ class DetailRelay:
         self._exchange = exchange
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
         self._told: dict[str, _Told] = {}
-        self._revision, self._told_all_at = -1, -math.inf
+        self._revision, self._told_all_at, self._is_asked = -1, -math.inf, False
         self._newest = NewestBatches(DETAIL_OLD_S)
         exchange.subscribe(DetailBatch, self._take)
         exchange.subscribe(Wake, self._woken)
@@ -211,8 +213,8 @@ class DetailRelay:
         if not self._exchange.connected:
             self._told_all_at = -math.inf
             return
-        if now - self._told_all_at >= DETAIL_ALL_S:
-            self._told, self._revision, self._told_all_at = {}, -1, now
+        if now - self._told_all_at >= (DETAIL_ALL_AGAIN_S if self._is_asked else DETAIL_ALL_S):
+            self._told, self._revision, self._told_all_at, self._is_asked = {}, -1, now, False
         since, self._revision = self._revision, self._robots.revision
         robots = self._robots.own(since)
         for begin in range(0, len(robots), PIECE):
@@ -220,8 +222,7 @@ class DetailRelay:
             await asyncio.sleep(0)
 
     def _woken(self, wake: Wake) -> None:
-        if wake.what == "positions":
-            self._told_all_at = -math.inf
+        self._is_asked |= wake.what == "positions"
 
     def _send_changed(self, robots: Iterable[Robot], now: float) -> None:
         changed, told = [], self._told

@@ -16,7 +16,15 @@ from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
 from .position_checks import AcceptedArea, PoseOrder
-from .robots_elsewhere import RECEIVED_AT, PlacesElsewhere, RobotColumns, ToldElsewhere, liveness
+from .robots_elsewhere import (
+    DOUBTED,
+    ONLY_SEEN,
+    RECEIVED_AT,
+    PlacesElsewhere,
+    RobotColumns,
+    ToldElsewhere,
+    liveness,
+)
 
 # --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
 # Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the
@@ -109,6 +117,8 @@ class Robots:
         self._robots: dict[str, Robot] = {}
         self._elsewhere: dict[str, Robot] = {}
         """those of other gateways, each as it was when somebody asked for it last."""
+        self._told_of: dict[str, tuple[float | None, str | None]] = {}
+        """battery and status of those."""
         self._columns = RobotColumns()
         """what other gateways said of theirs last."""
         self._removed: dict[str, int] = {}
@@ -361,17 +371,13 @@ class Robots:
         robot = self._elsewhere.get(name)
         if robot is None or robot.gateway != gateway:
             return
-        if robot.pose is None:
-            self._renew([name])
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
         robot.magic = robot.magic if said.magic is None else said.magic
-        pose = robot.pose
-        if pose is not None and (pose.battery, pose.status) != (said.battery, said.status):
-            robot.pose = replace(pose, battery=said.battery, status=said.status)
+        self._told_of[name] = said.battery, said.status
         self.revision += 1
-        only_seen, battery = said.abilities == "", None if pose is None else said.battery
-        self._columns.describe(name, battery, said.doubt is not None, only_seen, self.revision)
+        flags = ONLY_SEEN * (said.abilities == "") | DOUBTED * (said.doubt is not None)
+        self._columns.describe(name, said.battery, flags, self.revision)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
         """Note that the robot is heard, and that the place that it says cannot be."""
@@ -381,8 +387,7 @@ class Robots:
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""
-        if self._robots.pop(name, None) or self._elsewhere.pop(name, None):
-            self._columns.remove(name)
+        if self._robots.pop(name, None) or self._forget_elsewhere(name):
             self.revision += 1
             self._removed[name] = self.revision
 
@@ -476,8 +481,7 @@ class Robots:
             robot.pose_at = seen.pose_at
             if seen.place is not None:
                 # What changes seldom comes by itself.
-                last = robot.pose
-                battery, status = (None, None) if last is None else (last.battery, last.status)
+                battery, status = self._told_of.get(robot.name, (None, None))
                 robot.pose = SendPos(*seen.place, battery=battery, status=status)
         return robots
 
@@ -485,13 +489,19 @@ class Robots:
         """Count a robot as its gateway's from now on."""
         self._removed.pop(robot.name, None)
         if robot.gateway is None:
-            self._elsewhere.pop(robot.name, None)
-            self._columns.remove(robot.name)
+            self._forget_elsewhere(robot.name)
             self._robots[robot.name] = robot
         else:
             self._robots.pop(robot.name, None)
             self._elsewhere[robot.name] = robot
+            if robot.pose is not None:
+                self._told_of[robot.name] = robot.pose.battery, robot.pose.status
         self._touch(robot)
+
+    def _forget_elsewhere(self, name: str) -> Robot | None:
+        self._told_of.pop(name, None)
+        self._columns.remove(name)
+        return self._elsewhere.pop(name, None)
 
     def _judge(self, robot: Robot, now: float) -> RobotState:
         return liveness(

@@ -184,14 +184,12 @@ class RobotColumns:
             self._revisions[row] = -1
             self._free.append(row)
 
-    def describe(
-        self, name: str, battery: float | None, doubted: bool, only_seen: bool, revision: int
-    ) -> None:
-        """Write what changes seldom of a robot that has a row."""
+    def describe(self, name: str, battery: float | None, flags: int, revision: int) -> None:
+        """Write what changes seldom of a robot that has a row; ``flags`` are whether it is only seen, and its
+        place not believed."""
         row = self._rows[name]
         self._numbers[BATTERY, row] = math.nan if battery is None else battery
-        told = int(self._flags[row]) & ~(ONLY_SEEN | DOUBTED)
-        self._flags[row] = told | ONLY_SEEN * only_seen | DOUBTED * doubted
+        self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED) | flags
         self._revisions[row] = revision
 
     def has_changed(self, robot: RobotElsewhere) -> bool:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from robot_bridge.core.errors import BridgeError
+from robot_bridge.gateway.cluster import bus
 from robot_bridge.gateway.cluster.bus import (
     EVERYBODY,
     LARGEST_NOTIFICATION,
@@ -313,3 +314,57 @@ def test_a_server_that_is_too_old_is_refused_with_the_reason():
     check_version("here", SimpleNamespace(major=2, minor=11, patch=0))
     with pytest.raises(BridgeError, match=r"NATS 2\.9\.10 lets one reader.*install 2\.10\.26 or newer"):
         check_version("here", SimpleNamespace(major=2, minor=9, patch=10))
+
+
+class Connection:
+    """A connection to NATS by which ``coming`` messages come between two looks, and which answers or not."""
+
+    def __init__(self, coming, *, answers):
+        self.is_connected, self.asked = True, 0
+        self._looks, self._coming, self._answers = 0, coming, answers
+
+    @property
+    def stats(self):
+        self._looks += 1
+        return {"in_msgs": self._looks * self._coming}
+
+    async def flush(self, _seconds):
+        self.asked += 1
+        if not self._answers:
+            raise TimeoutError
+
+
+@pytest.fixture
+def looks(monkeypatch):
+    monkeypatch.setattr(bus, "CONNECTED_LOOK_S", 0.001)
+
+
+async def test_a_connection_by_which_nothing_comes_is_asked_and_lost_when_it_does_not_answer(looks):
+    connection = Connection(0, answers=False)
+    async with asyncio.timeout(BUSY * 10):
+        await bus.disconnection(connection, asyncio.Event())
+    assert connection.asked == 1
+
+
+@pytest.mark.parametrize(("coming", "answers"), [(0, True), (1, False)])
+async def test_one_that_answers_or_by_which_messages_come_is_not_lost(looks, coming, answers):
+    connection, lost = Connection(coming, answers=answers), asyncio.Event()
+    waiting = asyncio.create_task(bus.disconnection(connection, lost))
+    await until(lambda: connection._looks > 10 * bus.QUIET_LOOKS)
+    assert not waiting.done() and (connection.asked > 0) is answers
+    lost.set()
+    await waiting
+
+
+async def test_a_server_that_stands_still_is_noticed(nats):
+    one = NatsBus([nats.url], "a", "fleet.f4")
+    task = asyncio.create_task(one.run(lambda *_: None))
+    await until(lambda: one.connected)
+    nats.freeze()
+    try:
+        await until(lambda: not one.connected)
+    finally:
+        nats.kill()
+        nats.start()
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)

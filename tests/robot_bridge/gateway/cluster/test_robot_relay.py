@@ -9,7 +9,7 @@ import pytest
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.cluster.bus import EVERYBODY
 from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
-from robot_bridge.gateway.cluster.robot_relay import DetailRelay, PositionRelay
+from robot_bridge.gateway.cluster.robot_relay import DETAIL_ALL_AGAIN_S, DetailRelay, PositionRelay
 from robot_bridge.gateway.model.robots import Robots
 
 CODEC = Codec(b"k" * 32)
@@ -33,7 +33,8 @@ class Place:
         self.bus, self.robots = Bus(), Robots()
         # The second one carries what is urgent alone.
         self.exchange = Exchange("b", b"k" * 32, [self.bus, Bus()])
-        membership = SimpleNamespace(database_time=lambda: 1000.0, clock_offset=0.0)
+        self.now = 1000.0
+        membership = SimpleNamespace(database_time=lambda: self.now, clock_offset=0.0)
         self.relay = PositionRelay(self.robots, membership, self.exchange)
         self.details = DetailRelay(self.robots, membership, self.exchange)
         self.robots.ready("r1", 1, "yard", 1000.0)
@@ -89,7 +90,14 @@ async def test_details_are_told_when_they_have_changed_and_when_somebody_asks(pl
     assert await place.detailed() == []
     place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0, battery=0.5), "yard", 1000.0)
     assert await place.detailed() == ["r1"]
-    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
+    place.now += DETAIL_ALL_AGAIN_S
+    for _ in range(2):
+        place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
+    assert await place.detailed() == ["r1"]
+    # Gateways that start together all ask: who asks a moment later is told a little later.
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("c", "positions")))
+    assert await place.detailed() == []
+    place.now += DETAIL_ALL_AGAIN_S
     assert await place.detailed() == ["r1"]
     assert await place.detailed() == []
     place.bus.connected = False
