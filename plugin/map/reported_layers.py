@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import compress
+from operator import ne
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,7 +19,6 @@ from qgis.core import (
     QgsMapLayerStyle,
     QgsMarkerSymbol,
     QgsPalLayerSettings,
-    QgsPointXY,
     QgsProject,
     QgsRendererCategory,
     QgsSingleSymbolRenderer,
@@ -40,7 +41,7 @@ from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import STATES, RobotStates
 from ..gateway_client.state_words import ROBOT_STATES
 from ..layers import live_layers
-from ..layers.site_transform import frame_of
+from ..layers.site_transform import frame_of, points_of
 from ..ui.glyphs import STATE_COLOURS
 from ..ui.language import date_and_time, time_of_day, tr
 
@@ -74,19 +75,21 @@ ALIASES = (
 """What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
 LABEL_OFFSET_MM = 6.5
 """How far below a robot a label is: the live map's arrow and name are above that."""
+_PLACES = range(len(FIELDS))
 NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
 
 
 class RobotFeature(NamedTuple):
     """A robot as the layer shows it: a value for each of :data:`FIELDS`; the place in the site's CRS."""
 
-    values: list[Any]
+    values: tuple[Any, ...]
     place: tuple[float, float] | None
 
     def since(self, before: RobotFeature) -> dict[int, Any]:
         """Return the values that are others than ``before``, by their fields' places."""
-        pairs = zip(self.values, before.values, strict=True)
-        return {at: value for at, (value, old) in enumerate(pairs) if value != old}
+        values = self.values
+        # In Python's own loops: this is done for every robot once a second.
+        return {at: values[at] for at in compress(_PLACES, map(ne, values, before.values))}
 
 
 def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
@@ -140,16 +143,19 @@ def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame)
     places = [
         tuple(place) if is_there else None for place, is_there in zip(on_map.tolist(), there, strict=True)
     ]
-    return [RobotFeature(values, place) for *values, place in zip(*columns, places, strict=True)]
+    return list(map(RobotFeature, zip(*columns, strict=True), places))
 
 
-def geometry_at(place: tuple[float, float] | None) -> QgsGeometry:
-    """Return a point, or an empty geometry for no place."""
-    return QgsGeometry() if place is None else QgsGeometry.fromPointXY(QgsPointXY(*place))
+def geometries_of(features: Sequence[RobotFeature]) -> Iterator[QgsGeometry]:
+    """Return the points of ``features``, an empty geometry for one without a place."""
+    places = [feature.place for feature in features if feature.place is not None]
+    points = iter(points_of(np.array(places).reshape(-1, 2)))
+    return (QgsGeometry() if feature.place is None else next(points) for feature in features)
 
 
 def _or_none(column: npt.NDArray[np.float64]) -> list[float | None]:
-    return [None if value != value else value for value in column.tolist()]
+    values = column.tolist()
+    return [None if value != value else value for value in values] if np.isnan(column).any() else values
 
 
 def _renderer() -> QgsCategorizedSymbolRenderer:
@@ -293,7 +299,7 @@ class RobotLayer(QObject):
 
     def _write(self, features: list[RobotFeature]) -> None:
         """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
-        attributes, geometries, new = {}, {}, []
+        attributes, moved, new = {}, {}, []
         for feature in features:
             name = feature.values[NAME_AT]
             before = self._written.get(name)
@@ -308,18 +314,19 @@ class RobotLayer(QObject):
             if changed:
                 attributes[self._ids[name]] = changed
             if has_moved:
-                geometries[self._ids[name]] = geometry_at(feature.place)
-        if attributes or geometries:
+                moved[self._ids[name]] = feature
+        if attributes or moved:
+            geometries = dict(zip(moved, geometries_of([*moved.values()]), strict=True))
             self._layer.dataProvider().changeFeatures(attributes, geometries)
         if new:
             self._add(new)
 
     def _add(self, features: list[RobotFeature]) -> None:
-        made = []
-        for feature in features:
-            made.append(QgsFeature(self._layer.fields()))
-            made[-1].setAttributes(feature.values)
-            made[-1].setGeometry(geometry_at(feature.place))
+        made, fields = [], self._layer.fields()
+        for feature, geometry in zip(features, geometries_of(features), strict=True):
+            made.append(QgsFeature(fields))
+            made[-1].setAttributes(list(feature.values))
+            made[-1].setGeometry(geometry)
         _, stored = self._layer.dataProvider().addFeatures(made)
         for feature, in_layer in zip(features, stored, strict=True):
             self._ids[feature.values[NAME_AT]] = in_layer.id()
