@@ -91,7 +91,7 @@ class LiveView(QObject):
         self._hovering.remove()
         self.layer.remove()
         if not sip.isdeleted(self.overlay):
-            self._desk.canvas.scene().removeItem(self.overlay)
+            self.overlay.remove()
 
     def show_now(self) -> None:
         """Paint what the desk knows at this moment."""

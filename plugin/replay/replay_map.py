@@ -83,7 +83,7 @@ class ReplayMap(QgsMapCanvas):
         self.setLayers([])
         self.unsetMapTool(self._pan)
         if not sip.isdeleted(self.overlay):
-            self.scene().removeItem(self.overlay)
+            self.overlay.remove()
 
     def begin(self, site: SiteReport) -> None:
         """Show what the live map shows; robots of ``site`` follow."""

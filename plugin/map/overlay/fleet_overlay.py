@@ -39,7 +39,7 @@ class ScenePainter:
         self._draft = PendingCommandPainter()
         self._density = DensityPainter(self._labels)
         self.robots = RobotsPainter()
-        self._names = NamesPainter(self._labels)
+        self._names = NamesPainter()
         self._borders = BorderHints(self._labels)
         self._circles: list = []
         self._viewed: tuple[MapScene, Screen, InView] | None = None
@@ -91,6 +91,7 @@ class ScenePainter:
         return self._viewed[2]
 
 
+_FILLED = Qt.WidgetAttribute.WA_OpaquePaintEvent
 NEAR = 18.0
 """Pixels within which a click means a robot."""
 
@@ -116,8 +117,16 @@ class FleetOverlay(QgsMapCanvasItem):
 
     def prepare(self) -> None:
         """Go on with what is not whole of the scene, and have it as the canvas shows it now."""
-        self._painter.prepare(self._placed, self.screen(self._canvas.viewport().devicePixelRatioF()))
+        viewport = self._canvas.viewport()
+        # Qt fills a viewport before the scene does so itself: a sixth of what painting the map takes.
+        viewport.setAttribute(_FILLED, self._canvas.backgroundBrush().isOpaque())
+        self._painter.prepare(self._placed, self.screen(viewport.devicePixelRatioF()))
         self.update()
+
+    def remove(self) -> None:
+        """Take it off the canvas, which is as it was before."""
+        self._canvas.viewport().setAttribute(_FILLED, False)
+        self._canvas.scene().removeItem(self)
 
     def boundingRect(self) -> QRectF:
         return QRectF(0, 0, self._canvas.width(), self._canvas.height())

@@ -18,7 +18,7 @@ from ...layers.site_transform import SiteToMapTransform
 from ...ui.glyphs import PAPER, SELECTED, STATE_COLOURS, draw_arrow
 from ...ui.language import tr_count
 from .labels import Labels
-from .robots_painter import FORMAT, Sprites, cell, in_a_column, turned
+from .robots_painter import FORMAT, Cells, Sprites, cell, turned
 from .scene import InView, MapScene, Screen
 
 Points = npt.NDArray[np.float64]
@@ -42,13 +42,11 @@ _URGENT = np.array([1, 2, 3, 0])
 _BY_RANK = np.argsort(_URGENT)
 
 
-def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> QPixmap:
+def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> Cells:
     """Return the arrow at the map's border to a robot in ``state``, turned as in :func:`robot_atlas`."""
     side = cell(pixel_ratio, ARROW_SIZE)
     rim = SELECTED if is_chosen else PAPER
-    return in_a_column(
-        turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS)
-    )
+    return turned(lambda painter: draw_arrow(painter, state, rim), side, pixel_ratio, ARROW_TURNS)
 
 
 @dataclass(frozen=True)
@@ -149,8 +147,7 @@ class BorderHints:
             self._atlases.clear()
             self._ratio = ratio
         if (state, to_chosen) not in self._atlases:
-            atlas = arrow_atlas(ratio, STATES[state], to_chosen)
-            self._atlases[state, to_chosen] = Sprites(atlas, cell(ratio, ARROW_SIZE), ratio)
+            self._atlases[state, to_chosen] = Sprites([arrow_atlas(ratio, STATES[state], to_chosen)], ratio)
         return self._atlases[state, to_chosen]
 
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from qgis.PyQt.QtCore import QPointF, Qt
+from qgis.PyQt.QtCore import QPointF, QRect, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
 from ....robot_bridge.core.messages.safety import RobotState
@@ -15,6 +17,7 @@ from ...gateway_client.robot_states import STATES, RobotArrays
 from ...gateway_client.state_words import ROBOT_STATES
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
+from .robots_painter import Fragments, pixels_of, trimmed
 from .scene import InView, MapScene, Screen
 
 INK = QColor("#101418")
@@ -38,10 +41,6 @@ class Labels:
 
     def __init__(self) -> None:
         self._pictures: dict[tuple[str, float], QPixmap] = {}
-
-    def known(self, text: str, ratio: float) -> bool:
-        """Tell whether the picture of ``text`` is there already."""
-        return (text, ratio) in self._pictures
 
     def picture(self, text: str, ratio: float) -> QPixmap:
         """Return ``text`` as a picture for ``ratio`` device pixels per logical pixel."""
@@ -96,6 +95,107 @@ def _drawn(text: str, ratio: float) -> QPixmap:
 
 
 Points = npt.NDArray[np.float64]
+SLOT = 96
+"""Logical pixels of a text that stand on one line of the picture below: longer ones go on on the next."""
+FEWEST_SLOTS = 64
+
+
+class WrittenText(NamedTuple):
+    """A text in a :class:`TextAtlas`: the logical pixels of its whole picture, and the parts of it on which
+    something is drawn: from the left and the top of the whole, and their left, top, width and height in the
+    atlas, all in device pixels."""
+
+    width: float
+    height: float
+    parts: tuple[tuple[float, float, float, float, float, float], ...]
+
+
+class TextAtlas:
+    """Short texts in one picture, out of which many are painted at once; ``ratio`` device pixels are a
+    logical one.
+
+    To paint each from a picture of its own takes four times as long.
+    """
+
+    def __init__(self, ratio: float) -> None:
+        self.ratio = ratio
+        self._texts: dict[str, WrittenText] = {}
+        self._width, self._height = round(SLOT * ratio), _drawn("", ratio).height()
+        self._used = 0
+        self._picture = self._empty(FEWEST_SLOTS)
+        self._fragments = Fragments(ratio)
+
+    def __contains__(self, text: str) -> bool:
+        return text in self._texts
+
+    def provide(self, texts: Iterable[str], shown: Iterable[Iterable[str]]) -> None:
+        """Draw those of ``texts`` that are not there. Where there is no room, of the others only those
+        ``shown`` stay, and all stand elsewhere from then on."""
+        for text in texts:
+            if text not in self._texts:
+                self._add(text, shown)
+
+    def written(self, text: str) -> WrittenText:
+        """Return a text that is there."""
+        return self._texts[text]
+
+    def paint(self, painter: QPainter, corner: Points, parts: Points) -> None:
+        """Paint ``parts``, (n, 6) as in :class:`WrittenText`, of texts whose pictures begin at each left upper
+        ``corner``, (n, 2) logical pixels."""
+        if len(parts) == 0:
+            return
+        table = self._fragments.table(len(parts))
+        table[:, 2:] = parts[:, 2:]
+        # Whole device pixels keep letters sharp.
+        at = np.floor(corner * self.ratio + 0.5) + parts[:, :2] + parts[:, 4:] / 2
+        table[:, :2] = at / self.ratio
+        self._fragments.paint(painter, self._picture)
+
+    def _add(self, text: str, shown: Iterable[Iterable[str]]) -> None:
+        picture = _drawn(text, self.ratio)
+        whole = picture.width() / self.ratio, picture.height() / self.ratio
+        # From here on all is in device pixels.
+        picture.setDevicePixelRatio(1.0)
+        cells = pixels_of(picture.toImage())
+        pieces = [cells[:, left : left + self._width] for left in range(0, cells.shape[1], self._width)]
+        if (self._used + len(pieces)) * self._height > self._picture.height():
+            self._make_room(len(pieces), shown)
+        parts = []
+        with painting(self._picture) as painter:
+            for k, piece in enumerate(pieces):
+                lines, columns = trimmed(piece)
+                left, top = k * self._width + columns.start, lines.start
+                width, height = columns.stop - columns.start, lines.stop - top
+                at = self._used * self._height
+                painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)
+                painter.drawPixmap(QRect(0, at, width, height), picture, QRect(left, top, width, height))
+                parts.append((left, top, 0, at, width, height))
+                self._used += 1
+        self._texts[text] = WrittenText(*whole, tuple(parts))
+
+    def _make_room(self, pieces: int, shown: Iterable[Iterable[str]]) -> None:
+        """Begin another picture with those that are ``shown`` and room for a few times as many."""
+        before, old = self._texts, self._picture
+        kept = {text: before[text] for text in chain.from_iterable(shown) if text in before}
+        count = sum(len(one.parts) for one in kept.values()) + pieces
+        self._texts, self._used, self._picture = {}, 0, self._empty(max(FEWEST_SLOTS, 4 * count))
+        with painting(self._picture) as painter:
+            painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)
+            for text, one in kept.items():
+                parts = []
+                for left, top, _, at, width, height in one.parts:
+                    to = self._used * self._height
+                    painter.drawPixmap(QRect(0, to, width, height), old, QRect(0, at, width, height))
+                    parts.append((left, top, 0, to, width, height))
+                    self._used += 1
+                self._texts[text] = WrittenText(one.width, one.height, tuple(parts))
+
+    def _empty(self, slots: int) -> QPixmap:
+        picture = QPixmap(self._width, slots * self._height)
+        picture.fill(QColor(0, 0, 0, 0))
+        return picture
+
+
 Widths = npt.NDArray[np.float64]
 Cells = npt.NDArray[np.intp]
 GRID = 6.0
@@ -200,14 +300,18 @@ one before it for those that had their texts shown already. Small numbers: numpy
 class NamesPainter:
     """Chooses which robots have their names shown, and paints them."""
 
-    def __init__(self, labels: Labels) -> None:
-        self._labels = labels
+    def __init__(self) -> None:
         self._named: Rows = np.empty(0, dtype=np.intp)
         self._written: list[list[str]] = []
         self._widths = np.empty(0)
-        self._pieces: list[tuple[int, float, float, QPixmap]] = []
-        """Of the k-th of the written: how far along and how far down which picture stands."""
+        self._atlas = TextAtlas(1.0)
+        self._shown: list[int] = []
         self._waiting: list[int] = []
+        """Of which of the written the pictures are there, and of which not yet."""
+        self._parts = np.empty((0, 6))
+        self._of = np.empty(0, dtype=np.intp)
+        self._beside = np.empty((0, 2))
+        """What of the atlas is painted, beside which of the written, and how far along and down."""
         self._chosen_at = -np.inf
         self._screen: Screen | None = None
         self._names: list[str] = []
@@ -234,36 +338,43 @@ class NamesPainter:
             self._written = [texts(robots, row) for row in self._named.tolist()]
             self._widths = np.array([_width(parts) for parts in self._written])
             self._wait_for_pictures(screen.ratio)
-        self._make_pictures(screen.ratio)
-        corners = _corners(view.pixels.take(self._named, axis=0), self._widths, screen).tolist()
-        for k, along, down, picture in self._pieces:
-            x, y = corners[k]
-            painter.drawPixmap(QPointF(x + along, y + down), picture)
+        if self._waiting:
+            self._make_pictures()
+        corners = _corners(view.pixels.take(self._named, axis=0), self._widths, screen)
+        self._atlas.paint(painter, corners.take(self._of, axis=0) + self._beside, self._parts)
 
     def _wait_for_pictures(self, ratio: float) -> None:
         """Have at once what is written wherever its pictures are there already."""
-        self._pieces, self._waiting = [], []
+        if ratio != self._atlas.ratio:
+            self._atlas = TextAtlas(ratio)
+        self._shown, self._waiting = [], []
         for k, parts in enumerate(self._written):
-            if all(self._labels.known(text, ratio) for text in parts):
-                self._put(k, ratio)
-            else:
-                self._waiting.append(k)
+            (self._shown if all(text in self._atlas for text in parts) else self._waiting).append(k)
+        self._arrange()
 
-    def _make_pictures(self, ratio: float) -> None:
+    def _make_pictures(self) -> None:
         """Make some of the pictures that are waited for; the others come with the next frames."""
         new = NEW_IN_A_FRAME
         while self._waiting and new > 0:
-            k = self._waiting.pop(0)
-            new -= sum(not self._labels.known(text, ratio) for text in self._written[k])
-            self._put(k, ratio)
+            self._shown.append(self._waiting.pop(0))
+            new -= sum(text not in self._atlas for text in self._written[self._shown[-1]])
+            self._atlas.provide(self._written[self._shown[-1]], shown=self._written)
+        self._arrange()
 
-    def _put(self, k: int, ratio: float) -> None:
-        """Have what is written beside the k-th robot painted, its parts one after the other."""
-        along = 0.0
-        for text in self._written[k]:
-            picture = self._labels.picture(text, ratio)
-            self._pieces.append((k, along, (HEIGHT - picture.height() / ratio) / 2, picture))
-            along += picture.width() / ratio - 2 * MARGIN + 4
+    def _arrange(self) -> None:
+        """Have what is shown painted beside its robots, its parts one after the other."""
+        parts, of, beside = [], [], []
+        for k in self._shown:
+            along = 0.0
+            for text in self._written[k]:
+                one = self._atlas.written(text)
+                parts += one.parts
+                of += [k] * len(one.parts)
+                beside += [(along, (HEIGHT - one.height) / 2)] * len(one.parts)
+                along += one.width - 2 * MARGIN + 4
+        self._parts = np.array(parts, dtype=np.float64).reshape(-1, 6)
+        self._of = np.array(of, dtype=np.intp)
+        self._beside = np.array(beside, dtype=np.float64).reshape(-1, 2)
 
     def _are_others(self, robots: RobotArrays) -> bool:
         """Tell whether another robot stands in the row of one that was chosen."""

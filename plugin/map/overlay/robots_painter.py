@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Sequence
+from itertools import accumulate
 
 import numpy as np
 import numpy.typing as npt
@@ -70,17 +70,31 @@ def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
         painter.scale(scale, scale)
         painter.rotate(degrees)
         draw(painter)
+    return pixels_of(image)
+
+
+def pixels_of(image: QImage) -> Cells:
+    """Return (height, width) pixels of an image with 32 bits for each."""
     bits = image.constBits()
     bits.setsize(image.sizeInBytes())
-    return np.frombuffer(bits, dtype=np.uint32).reshape(side, side).copy()
+    return np.frombuffer(bits, dtype=np.uint32).reshape(image.height(), image.width()).copy()
 
 
-def in_a_column(cells: Cells) -> QPixmap:
-    """Return (n, side, side) pixels as one picture, from the top down: each cell's are together in memory."""
-    count, side, _ = cells.shape
-    column = np.ascontiguousarray(cells)
+def in_a_column(cells: Sequence[Cells]) -> QPixmap:
+    """Return (height, width) pixels each as one picture, from the top down: a cell's are near in memory."""
+    width = max(cell.shape[1] for cell in cells)
+    column = np.zeros((sum(map(len, cells)), width), dtype=np.uint32)
+    for bottom, cell in zip(accumulate(map(len, cells)), cells, strict=True):
+        column[bottom - len(cell) : bottom, : cell.shape[1]] = cell
     # A picture of its own: the image only looks at the array.
-    return QPixmap.fromImage(QImage(column.data, side, count * side, side * 4, FORMAT).copy())
+    return QPixmap.fromImage(QImage(column.data, width, len(column), width * 4, FORMAT).copy())
+
+
+def trimmed(cell: Cells) -> tuple[slice, slice]:
+    """Return the lines and the columns of (side, side) pixels in which something is drawn, at least one."""
+    drawn_on = [np.flatnonzero(cell.any(axis=axis)) for axis in (1, 0)]
+    lines, columns = (slice(at[0], at[-1] + 1) if len(at) else slice(0, 1) for at in drawn_on)
+    return lines, columns
 
 
 HEADINGS = 88
@@ -97,8 +111,8 @@ def cell(pixel_ratio: float, size: float = 1.0) -> int:
     return round(CELL * size * pixel_ratio)
 
 
-def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> QPixmap:
-    """Return a robot in ``state`` in a column of cells of :func:`cell` device pixels.
+def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> Cells:
+    """Return a robot in ``state`` in cells of :func:`cell` device pixels.
 
     In cell k it points k / :data:`HEADINGS` of a turn clockwise from +x; in the last one its heading is not
     known. ``size`` 1 is the drawing as it is.
@@ -107,15 +121,15 @@ def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> QPixmap:
     scale = side / CELL
     pointing = turned(lambda painter: draw_robot(painter, state, True), side, scale, HEADINGS)
     unknown = drawn(lambda painter: draw_robot(painter, state, False), side, scale)
-    return in_a_column(np.concatenate([pointing, unknown[None]]))
+    return np.concatenate([pointing, unknown[None]])
 
 
-def mark_atlas(pixel_ratio: float, size: float = 1.0) -> QPixmap:
+def mark_atlas(pixel_ratio: float, size: float = 1.0) -> Cells:
     """Return the marks, a cell each: the ring of the selected robot that commands go to, that of others
     selected with it, a target, and a cone target, both with their spot in the middle."""
     side = cell(pixel_ratio, MARK_SIZE * size)
     scale = side / (CELL * MARK_SIZE)
-    return in_a_column(np.stack([drawn(_mark(mark), side, scale) for mark in range(len(_MARKS))]))
+    return np.stack([drawn(_mark(mark), side, scale) for mark in range(len(_MARKS))])
 
 
 def _mark(mark: int) -> Draw:
@@ -136,42 +150,26 @@ FIELDS = 10
 """x, y, source left, top, width, height, scale x, scale y, rotation, opacity: Qt's PixmapFragment."""
 
 
-class Sprites:
-    """A column of cells, ``side`` device pixels wide and high, ``ratio`` device pixels a logical one."""
+class Fragments:
+    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one."""
 
-    def __init__(self, atlas: QPixmap, side: int, ratio: float) -> None:
-        self._atlas = atlas
-        self._side = side
+    def __init__(self, ratio: float) -> None:
         self._ratio = ratio
         self._fragments = None
         self._table = np.empty((0, FIELDS))
         self._painted = 0
 
-    def paint(
-        self,
-        painter: QPainter,
-        centre: npt.NDArray[np.float64],
-        cell: npt.NDArray[np.intp] | int,
-    ) -> None:
-        """Paint ``cell`` around each ``centre``, (n, 2) logical pixels."""
-        count = len(centre)
-        if count == 0:
-            return
+    def table(self, count: int) -> npt.NDArray[np.float64]:
+        """Return the (``count``, 6) first :data:`FIELDS` of what is to be painted, to be filled."""
         self._provide(count)
-        table, side = self._table, self._side
-        # A whole device pixel keeps the drawing sharp.
-        at = centre * self._ratio
-        at -= side / 2
-        np.rint(at, out=at)
-        at += side / 2
-        at /= self._ratio
-        table[:count, 0:2] = at
-        table[:count, 3] = cell * side
         # What was painted before and is no more must not show: a size of nothing hides it.
-        table[count : self._painted, 4:6] = 0.0
-        table[self._painted : count, 4:6] = side
+        self._table[count : self._painted, 4:6] = 0.0
         self._painted = count
-        painter.drawPixmapFragments(self._fragments, self._atlas)
+        return self._table[:count, :6]
+
+    def paint(self, painter: QPainter, picture: QPixmap) -> None:
+        """Paint what was filled in out of ``picture``."""
+        painter.drawPixmapFragments(self._fragments, picture)
 
     def _provide(self, count: int) -> None:
         if count <= len(self._table) <= max(64, 4 * count):
@@ -184,6 +182,51 @@ class Sprites:
         self._table[:, 6:8] = 1.0 / self._ratio
         self._table[:, 9] = 1.0
         self._painted = 0
+
+
+class Sprites:
+    """Drawings out of one picture, ``ratio`` device pixels a logical one.
+
+    ``atlases`` are (n, side, side) device pixels each; cells are counted through all of them. Of each no more is
+    kept, and painted, than what is drawn on.
+    """
+
+    def __init__(self, atlases: Sequence[Cells], ratio: float) -> None:
+        cells = [cell for atlas in atlases for cell in atlas]
+        parts = [trimmed(cell) for cell in cells]
+        kept = [cell[part] for cell, part in zip(cells, parts, strict=True)]
+        self._atlas = in_a_column(kept)
+        self._ratio = ratio
+        self._fragments = Fragments(ratio)
+        height, width = np.array([cell.shape for cell in kept], dtype=np.float64).T
+        self._sources = np.column_stack([np.zeros(len(kept)), np.cumsum(height) - height, width, height])
+        self._half = np.array([len(cell) / 2 for cell in cells])
+        """From the left and the upper border of each cell to its middle, in device pixels."""
+        self._across = np.array([columns.start for _, columns in parts]) + width / 2
+        self._down = np.array([lines.start for lines, _ in parts]) + height / 2
+        """The same to the middle of what is drawn on it."""
+
+    def paint(
+        self,
+        painter: QPainter,
+        centre: npt.NDArray[np.float64],
+        cell: npt.NDArray[np.intp],
+    ) -> None:
+        """Paint ``cell``, (n,), around each ``centre``, (n, 2) logical pixels."""
+        if len(centre) == 0:
+            return
+        table = self._fragments.table(len(centre))
+        table[:, 2:6] = self._sources.take(cell, axis=0)
+        half = self._half.take(cell)
+        for axis, middle in enumerate((self._across, self._down)):
+            at = centre[:, axis] * self._ratio
+            at -= half
+            # A whole device pixel keeps the drawing sharp.
+            np.rint(at, out=at)
+            at += middle.take(cell)
+            at /= self._ratio
+            table[:, axis] = at
+        self._fragments.paint(painter, self._atlas)
 
 
 # --- The robots on one screen ---
@@ -220,7 +263,9 @@ class RobotsPainter:
     """Paints the robots on one screen at a time."""
 
     def __init__(self) -> None:
-        self._drawings: dict[tuple[float, int], Sprites] = {}
+        self._drawings: dict[tuple[float, int], Cells] = {}
+        """Of a size and a state; in the order in which they stand in :attr:`_sprites`."""
+        self._sprites: Sprites | None = None
         self._marks: dict[float, Sprites] = {}
         self._made_for = 0.0, 0.0
         """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
@@ -241,10 +286,11 @@ class RobotsPainter:
         """Return the marks of :func:`mark_atlas`."""
         if self._made_for != (ratio, self.magnification):
             self._drawings.clear()
+            self._sprites = None
             self._marks.clear()
             self._made_for = ratio, self.magnification
         if size not in self._marks:
-            self._marks[size] = Sprites(mark_atlas(ratio, size), cell(ratio, MARK_SIZE * size), ratio)
+            self._marks[size] = Sprites([mark_atlas(ratio, size)], ratio)
         return self._marks[size]
 
     def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
@@ -252,8 +298,8 @@ class RobotsPainter:
         self.marks(screen.ratio, self.magnification)
         size = _size(view)
         states = np.bincount(placed.scene.robots.state.take(view.rows))
-        for state in np.flatnonzero(states).tolist() if self.arrows else []:
-            self._sprites(_worth(state, size), state)
+        if self.arrows:
+            self._provide({(_worth(state, size), state) for state in np.flatnonzero(states).tolist()})
 
     def paint(
         self,
@@ -289,24 +335,27 @@ class RobotsPainter:
         layer: npt.NDArray[np.uint16],
         size: float,
     ) -> None:
-        """Paint one of the ``cells`` at each ``at``, layer upon layer."""
+        """Paint one of the ``cells`` of its drawing at each ``at``, layer upon layer."""
+        shown = {k: _drawing(k, size) for k in np.flatnonzero(np.bincount(layer)).tolist()}
+        if not shown:
+            return
+        self._provide({*shown.values()})
+        places = list(self._drawings)
+        first = np.zeros(2 * len(STATES), dtype=np.intp)
+        first[[*shown]] = [(HEADINGS + 1) * places.index(drawing) for drawing in shown.values()]
         order = _from_the_top(layer, at[:, 1])
-        at, cells = at.take(order, axis=0), cells.take(order)
-        ends = np.bincount(layer, minlength=2 * len(STATES)).cumsum().tolist()
-        for k, (begin, end) in enumerate(pairwise([0, *ends])):
-            if begin < end:
-                is_chosen, of_state = divmod(k, len(STATES))
-                worth = 1.0 if is_chosen else _worth(_UPWARDS[of_state], size)
-                self._sprites(worth, _UPWARDS[of_state]).paint(painter, at[begin:end], cells[begin:end])
+        cells = cells + first.take(layer)
+        self._sprites.paint(painter, at.take(order, axis=0), cells.take(order))
 
-    def _sprites(self, size: float, state: int) -> Sprites:
-        """Return the drawings of robots in a state, made when the first such robot is seen."""
-        if (size, state) not in self._drawings:
-            ratio, magnification = self._made_for
-            shown = size * magnification
-            atlas = robot_atlas(ratio, shown, STATES[state])
-            self._drawings[size, state] = Sprites(atlas, cell(ratio, shown), ratio)
-        return self._drawings[size, state]
+    def _provide(self, drawings: set[tuple[float, int]]) -> None:
+        """Have what robots of a size and a state look like, drawn when the first of them is seen."""
+        missing = drawings - self._drawings.keys()
+        if not missing:
+            return
+        ratio, magnification = self._made_for
+        for size, state in sorted(missing):
+            self._drawings[size, state] = robot_atlas(ratio, size * magnification, STATES[state])
+        self._sprites = Sprites([*self._drawings.values()], ratio)
 
 
 def _size(view: InView) -> float:
@@ -317,6 +366,13 @@ def _size(view: InView) -> float:
 def _worth(state: int, size: float) -> float:
     """Return the size of robots in a state where those that are as they should be are drawn in ``size``."""
     return size if state == _FRESH else max(size, NOTICEABLE)
+
+
+def _drawing(layer: int, size: float) -> tuple[float, int]:
+    """Return the size and the state of the robots in a layer where most are drawn in ``size``."""
+    is_chosen, place = divmod(layer, len(STATES))
+    state = _UPWARDS[place]
+    return (1.0 if is_chosen else _worth(state, size)), state
 
 
 def _directions(way: Points) -> Rows:

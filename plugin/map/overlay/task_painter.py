@@ -299,7 +299,7 @@ def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) 
         painter.drawPolyline(polygon(points))
         if marks is not None:
             seen = points[screen.seen(points, 30.0)]
-            marks(screen.ratio, SMALL).paint(painter, seen, CONE_TARGET)
+            marks(screen.ratio, SMALL).paint(painter, seen, np.full(len(seen), CONE_TARGET))
 
     return screen_image(screen, paint)
 

@@ -14,13 +14,13 @@ from tests.plugin.map.on_canvas import arrays, scene_of, show
 
 
 def test_the_names_of_a_crowd_do_not_cover_each_other_and_the_lost_are_named_first(canvas, site):
-    from fleet_supervisor.plugin.map.overlay.labels import BESIDE, HEIGHT, Labels, NamesPainter
+    from fleet_supervisor.plugin.map.overlay.labels import BESIDE, HEIGHT, NamesPainter
 
     spread = np.random.default_rng(3).uniform(5, 95, (200, 2)).tolist()
     crowd = [(x, y, 0.0, RobotState.FRESH) for x, y in spread]
     scene = scene_of(*crowd, (51, 51, 0.0, RobotState.LOST), age=75.0)
     overlay = show(canvas, site, scene)
-    names = NamesPainter(Labels())
+    names = NamesPainter()
     screen = overlay.screen()
     pixels = screen.pixels(overlay._placed.robots)
     chosen = names._chosen(overlay._placed, in_view(overlay._placed, screen), screen)
@@ -40,9 +40,9 @@ def test_the_age_of_the_last_message_is_written_beside_a_lost_robot(qgis_app):
 
 def written_after(canvas, site, first, second):
     """Return what is written beside robots, painted as ``first`` and then as ``second``."""
-    from fleet_supervisor.plugin.map.overlay.labels import Labels, NamesPainter
+    from fleet_supervisor.plugin.map.overlay.labels import NamesPainter
 
-    names = NamesPainter(Labels())
+    names = NamesPainter()
     image = QImage(canvas.size(), QImage.Format.Format_ARGB32_Premultiplied)
     for scene in (first, second):
         overlay = show(canvas, site, scene)

@@ -60,11 +60,11 @@ def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
 
 
 def test_states_differ_without_their_colours(qgis_app):
-    from fleet_supervisor.plugin.map.overlay.robots_painter import robot_atlas
+    from fleet_supervisor.plugin.map.overlay.robots_painter import in_a_column, robot_atlas
     from fleet_supervisor.plugin.ui.glyphs import CELL
 
     grey = QImage.Format.Format_Grayscale8
-    atlases = [robot_atlas(1.0, 1.0, state).toImage().convertToFormat(grey) for state in STATES]
+    atlases = [in_a_column(robot_atlas(1.0, 1.0, state)).toImage().convertToFormat(grey) for state in STATES]
     cells = [atlas.copy(0, 0, CELL, CELL) for atlas in atlases]
     tables = [np.frombuffer(as_bytes(cell), np.uint8) for cell in cells]
     for first in range(len(tables)):
