@@ -63,8 +63,8 @@ class ScenePainter:
             self._trails.forget()
             self._viewed = None
             return
-        self._trails.extend(placed.robots, screen, placed.placement, placed.scene.now)
         view = self._view(placed, screen)
+        self._trails.extend(placed.robots, screen, placed.placement, placed.scene.now, view.pixels)
         self._circles = circles(placed, view)
         self.robots.prepare(placed, view, screen)
         self._plans.prepare(placed, screen, self.robots.marks)

@@ -199,12 +199,15 @@ class Sprites:
         self._ratio = ratio
         self._fragments = Fragments(ratio)
         height, width = np.array([cell.shape for cell in kept], dtype=np.float64).T
-        self._sources = np.column_stack([np.zeros(len(kept)), np.cumsum(height) - height, width, height])
+        across = np.array([columns.start for _, columns in parts]) + width / 2
+        down = np.array([lines.start for lines, _ in parts]) + height / 2
+        bottom = np.cumsum(height)
+        places = across / ratio, down / ratio, np.zeros(len(kept)), bottom - height, width, height
+        self._cells = np.column_stack(places)
+        """Of each how far from its left and upper border the middle is of what is drawn, in logical pixels; and
+        where that is in the picture."""
         self._half = np.array([len(cell) / 2 for cell in cells])
-        """From the left and the upper border of each cell to its middle, in device pixels."""
-        self._across = np.array([columns.start for _, columns in parts]) + width / 2
-        self._down = np.array([lines.start for lines, _ in parts]) + height / 2
-        """The same to the middle of what is drawn on it."""
+        """Device pixels from the left and the upper border of each to its middle."""
 
     def paint(
         self,
@@ -215,17 +218,17 @@ class Sprites:
         """Paint ``cell``, (n,), around each ``centre``, (n, 2) logical pixels."""
         if len(centre) == 0:
             return
-        table = self._fragments.table(len(centre))
-        table[:, 2:6] = self._sources.take(cell, axis=0)
+        made = self._cells.take(cell, axis=0)
         half = self._half.take(cell)
-        for axis, middle in enumerate((self._across, self._down)):
+        for axis in range(2):
             at = centre[:, axis] * self._ratio
             at -= half
             # A whole device pixel keeps the drawing sharp.
             np.rint(at, out=at)
-            at += middle.take(cell)
             at /= self._ratio
-            table[:, axis] = at
+            made[:, axis] += at
+        # The table is large, and goes through memory once.
+        self._fragments.table(len(centre))[:] = made
         self._fragments.paint(painter, self._atlas)
 
 
@@ -255,7 +258,7 @@ _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
 STRIP = 16
 STRIPS = 4096
 """Pixels of a strip of the screen, and more strips than any screen has."""
-_TURNS = np.arange(HEADINGS)
+_TURNS = np.arange(HEADINGS + 1) % HEADINGS
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
 
@@ -324,7 +327,7 @@ class RobotsPainter:
             layer[chosen] += len(STATES)
         if not self.arrows:
             return
-        cells = np.where(known, _directions(view.metre), HEADINGS)
+        cells = np.where(known, _directions(view.heading), HEADINGS)
         self._paint_drawings(painter, view.there, cells, layer.take(view.rows), size)
 
     def _paint_drawings(
@@ -375,12 +378,11 @@ def _drawing(layer: int, size: float) -> tuple[float, int]:
     return (1.0 if is_chosen else _worth(state, size)), state
 
 
-def _directions(way: Points) -> Rows:
-    """Return which of the :data:`HEADINGS` (n, 2) ``way`` in pixels points in, clockwise from +x."""
-    # Floats of half the size are exact enough, and numpy is several times as fast with them.
-    x, y = way[:, 0].astype(np.float32), way[:, 1].astype(np.float32)
-    turns = np.rint(np.arctan2(y, x) * np.float32(HEADINGS / (2 * np.pi)))
-    # What is negative counts from the end.
+def _directions(heading: npt.NDArray[np.float32]) -> Rows:
+    """Return which of the :data:`HEADINGS` is each ``heading``, (n,) radians clockwise from +x."""
+    turns = np.rint(heading * np.float32(HEADINGS / (2 * np.pi)))
+    # numpy takes several times as long for %, and for whole numbers of 64 bits.
+    turns -= np.floor(turns * np.float32(1.0 / HEADINGS)) * np.float32(HEADINGS)
     return _TURNS.take(turns.astype(np.intp))
 
 
@@ -444,7 +446,8 @@ def _velocities(
     if len(long) == 0 or len(long) > MOST_VELOCITIES:
         return
     start = view.there[long]
-    end = start + view.metre[long] * (speed[long, None] * VELOCITY_SECONDS)
+    heading, pixels = view.heading[long], (speed * view.scale)[long] * VELOCITY_SECONDS
+    end = start + np.column_stack([np.cos(heading) * pixels, np.sin(heading) * pixels])
     if len(long) > FINE_VELOCITIES:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, False)
         painter.strokePath(segments(start, end), flat(pen(PAPER, 1.0)))

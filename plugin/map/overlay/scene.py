@@ -317,9 +317,10 @@ class SiteScene:
 @dataclass(frozen=True)
 class MapScene:
     """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the way to 1 m before each
-    robot, or along the site's x of one whose heading is not known.
+    robot, or along the site's x of one whose heading is not known. It is empty where the axes of
+    ``placement``, which places more, tell it.
 
-    Robots without a place have NaN. ``placement`` places more.
+    Robots without a place have NaN.
     """
 
     scene: SiteScene
@@ -357,11 +358,11 @@ class SceneTransformer:
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
         # To take rows with [] instead takes numpy ten times as long.
-        known_places, metre = robots.xy.take(there, axis=0), _forward(robots.theta.take(there))
-        axes = placement.axes
+        known_places = robots.xy if len(there) == len(robots.xy) else robots.xy.take(there, axis=0)
+        is_uneven = placement.axes is None
         parts = [
             known_places,
-            known_places + metre if axes is None else metre[:0],
+            known_places + _forward(robots.theta.take(there)) if is_uneven else _NOWHERE,
             _points(() if is_known else outline),
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
@@ -376,7 +377,7 @@ class SceneTransformer:
         return MapScene(
             scene,
             _spread(at, there, len(robots.xy)),
-            _spread(before - at if axes is None else metre @ axes, there, len(robots.xy)),
+            _spread(before - at, there, len(robots.xy)) if is_uneven else _NOWHERE,
             self._ways,
             self._draft,
             cursor,
@@ -423,20 +424,15 @@ class InView:
     """The robots of a scene on one screen, in logical pixels.
 
     ``pixels`` (n, 2) is where each robot is, NaN where not known; ``rows`` (m,) are those that are seen.
-    Of these ``there`` (m, 2) is the place and ``metre`` (m, 2) the way to 1 m before it.
+    Of these ``there`` (m, 2) is the place, ``heading`` (m,) radians clockwise from +x, and ``scale`` how many
+    pixels a metre has there, (m,) or the same for all. Where no heading is known it is that of the site's x.
     """
 
     pixels: Points
     rows: Rows
     there: Points
-    metre: Points
-
-    @cached_property
-    def scale(self) -> npt.NDArray[np.float64]:
-        """How many pixels a metre has where each that is seen stands, (m,)."""
-        # np.hypot, safe from overflow, takes five times as long.
-        x, y = self.metre[:, 0], self.metre[:, 1]
-        return np.sqrt(x * x + y * y)
+    heading: npt.NDArray[np.float32]
+    scale: npt.NDArray[np.float64] | float
 
 
 def in_view(placed: MapScene, screen: Screen) -> InView:
@@ -445,4 +441,18 @@ def in_view(placed: MapScene, screen: Screen) -> InView:
     rows = np.flatnonzero(screen.seen(pixels, BESIDE))
     # To take rows with [] instead takes numpy ten times as long.
     there = pixels.take(rows, axis=0)
-    return InView(pixels, rows, there, screen.ways(placed.metre.take(rows, axis=0)))
+    axes = placed.placement.axes
+    if axes is None:
+        x, y = screen.ways(placed.metre.take(rows, axis=0)).T
+        # Floats of half the size are exact enough, and numpy is several times as fast with them. np.hypot, safe
+        # from overflow, takes five times as long.
+        heading = np.arctan2(y.astype(np.float32), x.astype(np.float32))
+        return InView(pixels, rows, there, heading, np.sqrt(x * x + y * y))
+    # A canvas has one scale, and a site's axes are turned only: what holds for its x holds in each direction.
+    (x, y), (to_x, to_y) = screen.ways(axes).tolist()
+    turned = math.copysign(1.0, x * to_y - y * to_x)
+    theta = placed.scene.robots.theta.take(rows).astype(np.float32)
+    theta[np.isnan(theta)] = 0.0
+    return InView(
+        pixels, rows, there, np.float32(math.atan2(y, x)) + theta * np.float32(turned), math.hypot(x, y)
+    )

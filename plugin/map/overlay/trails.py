@@ -162,6 +162,8 @@ FILL_SECONDS = 0.003
 """What filling may take of one frame."""
 LONGEST_STEP = 4000
 """Pixels: a longer step between two samples is a robot that was put elsewhere; no trail leads there."""
+MANY_SEEN = 0.15
+"""The part of the pixels that have a trail from which on it is faster to colour all than to look for those."""
 NEVER = -1e9
 
 
@@ -190,10 +192,9 @@ class TrailSheet:
         self._later: tuple[Points, Points] | None = None
         self._taken = trails.taken
 
-    def extend(self, xy: Points, now: float) -> None:
-        """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known."""
-        here = self.screen.pixels(xy)
-        here *= self.screen.ratio
+    def extend(self, pixels: Points, now: float) -> None:
+        """Draw on to (n, 2) ``pixels`` of its screen, where the robots are now, NaN where not known."""
+        here = pixels * self.screen.ratio
         if self._here is None:
             self._later = here[: len(self._taken)], np.full(len(self._taken), now)
         else:
@@ -262,11 +263,15 @@ class TrailSheet:
             self._band = (self._band + 1) % BANDS
 
     def _colour_thin(self, top: int, bottom: int, now: float) -> None:
-        """Colour the pixels where robots were, which are few."""
+        """Colour the pixels where robots were."""
         times, band = self._times[top:bottom].reshape(-1), self._argb[top:bottom].reshape(-1)
-        seen = np.flatnonzero(times > np.float32(now - self._epoch - self._trails.length.seconds))
+        seen = times > np.float32(now - self._epoch - self._trails.length.seconds)
+        if np.count_nonzero(seen) > len(seen) * MANY_SEEN:
+            self._core.take(self._shade(times, now), out=band, mode="clip")
+            return
+        where = np.flatnonzero(seen)
         band[:] = 0
-        band[seen] = self._core.take(self._shade(times.take(seen), now))
+        band[where] = self._core.take(self._shade(times.take(where), now))
 
     def _colour_wide(self, top: int, bottom: int, now: float) -> None:
         """Colour also the pixels around them."""
@@ -378,10 +383,18 @@ class TrailImage:
         self._view: tuple = ()
         self._made_for: tuple = ()
 
-    def extend(self, xy: Points, screen: Screen, placement: SiteToMapTransform, now: float) -> None:
+    def extend(
+        self,
+        xy: Points,
+        screen: Screen,
+        placement: SiteToMapTransform,
+        now: float,
+        pixels: Points | None = None,
+    ) -> None:
         """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known.
 
-        ``now`` is on the clock of the trails' samples.
+        ``now`` is on the clock of the trails' samples. ``pixels`` is ``xy`` on the ``screen``, where that is
+        computed already.
         """
         view = (self._trails.generation, placement, screen)
         if view[:2] != self._made_for[:2]:
@@ -392,7 +405,9 @@ class TrailImage:
         if view != self._made_for and at_rest:
             self._newest = TrailSheet(self._trails, screen, placement, now)
             self._made_for = view
-        self._newest.extend(xy, now)
+        if pixels is None or screen != self._newest.screen:
+            pixels = self._newest.screen.pixels(xy)
+        self._newest.extend(pixels, now)
         if self._newest.filled or self._shown is None:
             self._shown = self._newest
 
