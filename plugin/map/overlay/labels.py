@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from qgis.PyQt.QtCore import QPointF, QRect, Qt
+from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
 
 from ....robot_bridge.core.messages.safety import RobotState
@@ -95,9 +95,12 @@ def _drawn(text: str, ratio: float) -> QPixmap:
 
 
 Points = npt.NDArray[np.float64]
-SLOT = 96
+LINE = 96
 """Logical pixels of a text that stand on one line of the picture below: longer ones go on on the next."""
-FEWEST_SLOTS = 64
+FEWEST_LINES = 64
+
+
+Part = tuple[int, int, int, int, int, int]
 
 
 class WrittenText(NamedTuple):
@@ -107,7 +110,7 @@ class WrittenText(NamedTuple):
 
     width: float
     height: float
-    parts: tuple[tuple[float, float, float, float, float, float], ...]
+    parts: tuple[Part, ...]
 
 
 class TextAtlas:
@@ -120,9 +123,10 @@ class TextAtlas:
     def __init__(self, ratio: float) -> None:
         self.ratio = ratio
         self._texts: dict[str, WrittenText] = {}
-        self._width, self._height = round(SLOT * ratio), _drawn("", ratio).height()
+        self._width = round(LINE * ratio)
         self._used = 0
-        self._picture = self._empty(FEWEST_SLOTS)
+        """Device pixels from above that have texts already."""
+        self._picture = self._empty(0)
         self._fragments = Fragments(ratio)
 
     def __contains__(self, text: str) -> bool:
@@ -140,8 +144,8 @@ class TextAtlas:
         return self._texts[text]
 
     def paint(self, painter: QPainter, corner: Points, parts: Points) -> None:
-        """Paint ``parts``, (n, 6) as in :class:`WrittenText`, of texts whose pictures begin at each left upper
-        ``corner``, (n, 2) logical pixels."""
+        """Paint ``parts``, (n, 6) as in :class:`WrittenText`, of texts whose pictures begin at each left
+        upper ``corner``, (n, 2) logical pixels."""
         if len(parts) == 0:
             return
         table = self._fragments.table(len(parts))
@@ -157,43 +161,44 @@ class TextAtlas:
         # From here on all is in device pixels.
         picture.setDevicePixelRatio(1.0)
         cells = pixels_of(picture.toImage())
-        pieces = [cells[:, left : left + self._width] for left in range(0, cells.shape[1], self._width)]
-        if (self._used + len(pieces)) * self._height > self._picture.height():
-            self._make_room(len(pieces), shown)
         parts = []
-        with painting(self._picture) as painter:
-            for k, piece in enumerate(pieces):
-                lines, columns = trimmed(piece)
-                left, top = k * self._width + columns.start, lines.start
-                width, height = columns.stop - columns.start, lines.stop - top
-                at = self._used * self._height
-                painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)
-                painter.drawPixmap(QRect(0, at, width, height), picture, QRect(left, top, width, height))
-                parts.append((left, top, 0, at, width, height))
-                self._used += 1
-        self._texts[text] = WrittenText(*whole, tuple(parts))
+        for begin in range(0, cells.shape[1], self._width):
+            lines, columns = trimmed(cells[:, begin : begin + self._width])
+            left, top = begin + columns.start, lines.start
+            parts.append((left, top, left, top, columns.stop - columns.start, lines.stop - top))
+        if self._used + _height(parts) > self._picture.height():
+            self._make_room(_height(parts), shown)
+        self._copy({text: WrittenText(*whole, tuple(parts))}, picture)
 
-    def _make_room(self, pieces: int, shown: Iterable[Iterable[str]]) -> None:
+    def _make_room(self, height: int, shown: Iterable[Iterable[str]]) -> None:
         """Begin another picture with those that are ``shown`` and room for a few times as many."""
-        before, old = self._texts, self._picture
+        before, picture = self._texts, self._picture
         kept = {text: before[text] for text in chain.from_iterable(shown) if text in before}
-        count = sum(len(one.parts) for one in kept.values()) + pieces
-        self._texts, self._used, self._picture = {}, 0, self._empty(max(FEWEST_SLOTS, 4 * count))
+        height += sum(_height(one.parts) for one in kept.values())
+        self._texts, self._used = {}, 0
+        self._picture = self._empty(max(round(FEWEST_LINES * HEIGHT * self.ratio), 3 * height))
+        self._copy(kept, picture)
+
+    def _copy(self, texts: dict[str, WrittenText], picture: QPixmap) -> None:
+        """Have ``texts``, whose parts are in ``picture``, in the atlas too."""
         with painting(self._picture) as painter:
             painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)
-            for text, one in kept.items():
+            for text, one in texts.items():
                 parts = []
-                for left, top, _, at, width, height in one.parts:
-                    to = self._used * self._height
-                    painter.drawPixmap(QRect(0, to, width, height), old, QRect(0, at, width, height))
-                    parts.append((left, top, 0, to, width, height))
-                    self._used += 1
-                self._texts[text] = WrittenText(one.width, one.height, tuple(parts))
+                for left, top, x, y, width, height in one.parts:
+                    painter.drawPixmap(0, self._used, picture, x, y, width, height)
+                    parts.append((left, top, 0, self._used, width, height))
+                    self._used += height
+                self._texts[text] = one._replace(parts=tuple(parts))
 
-    def _empty(self, slots: int) -> QPixmap:
-        picture = QPixmap(self._width, slots * self._height)
+    def _empty(self, height: int) -> QPixmap:
+        picture = QPixmap(self._width, height)
         picture.fill(QColor(0, 0, 0, 0))
         return picture
+
+
+def _height(parts: Iterable[Part]) -> int:
+    return sum(part[-1] for part in parts)
 
 
 Widths = npt.NDArray[np.float64]

@@ -187,8 +187,8 @@ class Fragments:
 class Sprites:
     """Drawings out of one picture, ``ratio`` device pixels a logical one.
 
-    ``atlases`` are (n, side, side) device pixels each; cells are counted through all of them. Of each no more is
-    kept, and painted, than what is drawn on.
+    ``atlases`` are (n, side, side) device pixels each; cells are counted through all of them. Of each no more
+    is kept, and painted, than what is drawn on.
     """
 
     def __init__(self, atlases: Sequence[Cells], ratio: float) -> None:
@@ -204,8 +204,8 @@ class Sprites:
         bottom = np.cumsum(height)
         places = across / ratio, down / ratio, np.zeros(len(kept)), bottom - height, width, height
         self._cells = np.column_stack(places)
-        """Of each how far from its left and upper border the middle is of what is drawn, in logical pixels; and
-        where that is in the picture."""
+        """Of each how far from its left and upper border the middle of what is drawn is, in logical pixels,
+        and where that is in the picture."""
         self._half = np.array([len(cell) / 2 for cell in cells])
         """Device pixels from the left and the upper border of each to its middle."""
 

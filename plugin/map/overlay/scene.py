@@ -444,8 +444,8 @@ def in_view(placed: MapScene, screen: Screen) -> InView:
     axes = placed.placement.axes
     if axes is None:
         x, y = screen.ways(placed.metre.take(rows, axis=0)).T
-        # Floats of half the size are exact enough, and numpy is several times as fast with them. np.hypot, safe
-        # from overflow, takes five times as long.
+        # Floats of half the size are exact enough, and numpy is several times as fast with them. To take
+        # np.hypot, safe from overflow, takes five times as long.
         heading = np.arctan2(y.astype(np.float32), x.astype(np.float32))
         return InView(pixels, rows, there, heading, np.sqrt(x * x + y * y))
     # A canvas has one scale, and a site's axes are turned only: what holds for its x holds in each direction.

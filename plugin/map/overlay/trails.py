@@ -163,7 +163,7 @@ FILL_SECONDS = 0.003
 LONGEST_STEP = 4000
 """Pixels: a longer step between two samples is a robot that was put elsewhere; no trail leads there."""
 MANY_SEEN = 0.15
-"""The part of the pixels that have a trail from which on it is faster to colour all than to look for those."""
+"""The part of the pixels with a trail from which on it is faster to colour all than to look for those."""
 NEVER = -1e9
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import dataclasses
 
 import numpy as np
+import pytest
+from fleet_supervisor.plugin.map.overlay.labels import FEWEST_LINES, Labels, TextAtlas
 from fleet_supervisor.plugin.map.overlay.scene import in_view
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
-from qgis.PyQt.QtCore import QRectF
-from qgis.PyQt.QtGui import QImage, QPainter
+from qgis.PyQt.QtCore import QPointF, QRectF
+from qgis.PyQt.QtGui import QColor, QImage, QPainter
 
 from tests.plugin.map.on_canvas import arrays, scene_of, show
 
@@ -72,3 +74,29 @@ def test_what_is_written_beside_a_robot_is_never_that_of_another(canvas, site):
     renamed = dataclasses.replace(two.robots, names=["a", "b"])
     written = written_after(canvas, site, two, dataclasses.replace(two, robots=renamed))
     assert sorted(written) == [["a"], ["b"]]
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0])
+def test_names_look_as_if_each_were_painted_by_itself_also_after_there_was_no_room(qgis_app, ratio):
+    atlas, labels = TextAtlas(ratio), Labels()
+    long = "a robot whose name is far longer than one line of the picture is wide"
+    shown = ["robot-1", "· lost 5 min", long]
+    for k in range(3 * FEWEST_LINES):
+        atlas.provide([*shown, f"others {k}"], [shown])
+    assert all(text in atlas for text in shown) and "others 0" not in atlas
+    images = [QImage(round(600 * ratio), round(120 * ratio), QImage.Format.Format_RGB32) for _ in range(2)]
+    for image in images:
+        image.setDevicePixelRatio(ratio)
+        image.fill(QColor("#88AA66"))
+    corners = np.array([[10.3, 5.0], [20.0, 30.6], [7.7, 60.2]])
+    painter = QPainter(images[0])
+    for corner, text in zip(corners.tolist(), shown, strict=True):
+        painter.drawPixmap(QPointF(*corner), labels.picture(text, ratio))
+    painter.end()
+    written = [atlas.written(text).parts for text in shown]
+    painter = QPainter(images[1])
+    of = np.repeat(np.arange(3), [len(parts) for parts in written])
+    atlas.paint(painter, corners[of], np.array([part for parts in written for part in parts], dtype=float))
+    painter.end()
+    assert len(written[2]) > 1
+    assert images[0] == images[1]

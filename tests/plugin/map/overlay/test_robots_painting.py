@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
+from fleet_supervisor.plugin.map.overlay.robots_painter import Sprites
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
@@ -193,3 +194,19 @@ def test_robots_that_the_layers_style_draws_keep_their_rings(canvas, site):
     overlay.update()
     assert len(spots(canvas, BLUE)) == 0
     assert len(spots(canvas, SELECTED)) > 20
+
+
+def test_only_what_is_drawn_of_a_cell_is_kept_and_painted_where_the_cell_would_be(qgis_app):
+    cells = np.zeros((2, 9, 9), dtype=np.uint32)
+    cells[0, 2:4, 5:8] = 0xFF336699
+    cells[1, 8, 0] = 0xFF993366
+    image = QImage(40, 30, QImage.Format.Format_RGB32)
+    image.fill(0)
+    painter = QPainter(image)
+    Sprites([np.zeros((1, 4, 4), dtype=np.uint32), cells], 1.0).paint(
+        painter, np.array([[10.4, 10.0], [20.0, 20.0]]), np.array([1, 2])
+    )
+    painter.end()
+    found = {(x, y): image.pixel(x, y) for x in range(40) for y in range(30) if image.pixel(x, y) & 0xFFFFFF}
+    expected = {(6 + x, 6 + y): 0xFF336699 for x in (5, 6, 7) for y in (2, 3)}
+    assert found == {**expected, (16, 24): 0xFF993366}
