@@ -9,6 +9,7 @@ from fleet_supervisor.plugin.map.overlay.trails import Trails
 from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS, TRAIL
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsPointXY
+from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QColor
 from qgis.PyQt.QtWidgets import QApplication
 
@@ -66,3 +67,19 @@ def test_the_robot_under_the_mouse_is_found(canvas, site):
     assert overlay.robot_at(*expected(canvas, site, 70, 50)) == "r2"
     x, y = expected(canvas, site, 70, 50)
     assert overlay.robot_at(x, y + 30) is None
+
+
+def test_the_viewport_is_not_filled_twice_where_the_scene_covers_it(canvas, site):
+    filled = Qt.WidgetAttribute.WA_OpaquePaintEvent
+    overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
+    assert canvas.viewport().testAttribute(filled)
+    # Through a background that is not whole one would see what was painted before.
+    canvas.setCanvasColor(QColor(255, 255, 255, 100))
+    overlay.prepare()
+    assert not canvas.viewport().testAttribute(filled)
+    canvas.setCanvasColor(QColor("white"))
+    overlay.prepare()
+    assert canvas.viewport().testAttribute(filled)
+    overlay.remove()
+    assert not canvas.viewport().testAttribute(filled)
+    assert overlay.scene() is None
