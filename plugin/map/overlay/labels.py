@@ -10,14 +10,14 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 from qgis.PyQt.QtCore import QPointF, Qt
-from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText
+from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText, QTransform
 
 from ....robot_bridge.core.messages.safety import RobotState
 from ...gateway_client.robot_states import STATES, RobotArrays
 from ...gateway_client.state_words import ROBOT_STATES
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
-from .robots_painter import Fragments, pixels_of, trimmed
+from .robots_painter import Fragments
 from .scene import InView, MapScene, Screen
 
 INK = QColor("#101418")
@@ -72,32 +72,49 @@ def age_in_words(seconds: float) -> str:
 
 
 def _drawn(text: str, ratio: float) -> QPixmap:
-    font = QFont()
-    font.setPixelSize(13)
-    font.setBold(True)
-    metrics = QFontMetricsF(font)
-    width = math.ceil(metrics.horizontalAdvance(text)) + 2 * MARGIN
-    height = math.ceil(metrics.height()) + 2 * MARGIN
+    width, height = _size(text, QFontMetricsF(_font()))
     pixmap = QPixmap(math.ceil(width * ratio), math.ceil(height * ratio))
     pixmap.setDevicePixelRatio(ratio)
     pixmap.fill(QColor(0, 0, 0, 0))
     with painting(pixmap) as painter:
-        painter.setFont(font)
-        painter.setPen(PAPER)
-        written = QStaticText(text)
-        written.setTextFormat(Qt.TextFormat.PlainText)
-        # To stroke the letters' outlines would take six times as long as to write them eight times.
-        for beside in _AROUND:
-            painter.drawStaticText(beside, written)
-        painter.setPen(INK)
-        painter.drawStaticText(_AT, written)
+        painter.setFont(_font())
+        _write(painter, text)
     return pixmap
+
+
+def _font() -> QFont:
+    font = QFont()
+    font.setPixelSize(13)
+    font.setBold(True)
+    return font
+
+
+def _size(text: str, metrics: QFontMetricsF) -> tuple[int, int]:
+    """Return the width and the height of a text's picture, in logical pixels."""
+    width = math.ceil(metrics.horizontalAdvance(text)) + 2 * MARGIN
+    return width, math.ceil(metrics.height()) + 2 * MARGIN
+
+
+def _write(painter: QPainter, text: str) -> None:
+    written = QStaticText(text)
+    written.setTextFormat(Qt.TextFormat.PlainText)
+    painter.setPen(PAPER)
+    # To stroke the letters' outlines would take six times as long as to write them eight times.
+    for beside in _AROUND:
+        painter.drawStaticText(beside, written)
+    painter.setPen(INK)
+    painter.drawStaticText(_AT, written)
 
 
 Points = npt.NDArray[np.float64]
 LINE = 96
 """Logical pixels of a text that stand on one line of the picture below: longer ones go on on the next."""
-FEWEST_LINES = 64
+FEWEST_LINES, MOST_LINES = 64, 1200
+"""Between which the picture has room for more texts as they come: about four times what fits on a screen."""
+AROUND_INK = CASING + 1.5
+"""Pixels about the letters in which their light, and what is smooth of it, is."""
+HIGHEST = 30_000
+"""Device pixels: Qt paints no farther than to 32767."""
 
 
 Part = tuple[int, int, int, int, int, int]
@@ -123,6 +140,8 @@ class TextAtlas:
     def __init__(self, ratio: float) -> None:
         self.ratio = ratio
         self._texts: dict[str, WrittenText] = {}
+        self._font = _font()
+        self._metrics = QFontMetricsF(self._font)
         self._width = round(LINE * ratio)
         self._used = 0
         """Device pixels from above that have texts already."""
@@ -156,28 +175,46 @@ class TextAtlas:
         self._fragments.paint(painter, self._picture)
 
     def _add(self, text: str, shown: Iterable[Iterable[str]]) -> None:
-        picture = _drawn(text, self.ratio)
-        whole = picture.width() / self.ratio, picture.height() / self.ratio
-        # From here on all is in device pixels.
-        picture.setDevicePixelRatio(1.0)
-        cells = pixels_of(picture.toImage())
+        metrics, ratio = self._metrics, self.ratio
+        width, height = _size(text, metrics)
+        ink = metrics.tightBoundingRect(text).translated(MARGIN, MARGIN + metrics.ascent())
+        ink.adjust(-AROUND_INK, -AROUND_INK, AROUND_INK, AROUND_INK)
+        left, top = max(0, math.floor(ink.left() * ratio)), max(0, math.floor(ink.top() * ratio))
+        right = min(math.ceil(width * ratio), math.ceil(ink.right() * ratio))
+        lines = min(math.ceil(height * ratio), math.ceil(ink.bottom() * ratio)) - top
+        begins = range(left, right, self._width)
+        if self._used + lines * len(begins) > self._picture.height():
+            self._make_room(lines * len(begins), shown)
         parts = []
-        for begin in range(0, cells.shape[1], self._width):
-            lines, columns = trimmed(cells[:, begin : begin + self._width])
-            left, top = begin + columns.start, lines.start
-            parts.append((left, top, left, top, columns.stop - columns.start, lines.stop - top))
-        if self._used + _height(parts) > self._picture.height():
-            self._make_room(_height(parts), shown)
-        self._copy({text: WrittenText(*whole, tuple(parts))}, picture)
+        with painting(self._picture) as painter:
+            painter.setFont(self._font)
+            for begin in begins:
+                across = min(right - begin, self._width)
+                painter.setClipRect(0, self._used, across, lines)
+                painter.setTransform(QTransform(ratio, 0.0, 0.0, ratio, -begin, self._used - top))
+                _write(painter, text)
+                painter.resetTransform()
+                parts.append((begin, top, 0, self._used, across, lines))
+                self._used += lines
+        whole = math.ceil(width * ratio) / ratio, math.ceil(height * ratio) / ratio
+        self._texts[text] = WrittenText(*whole, tuple(parts))
 
     def _make_room(self, height: int, shown: Iterable[Iterable[str]]) -> None:
-        """Begin another picture with those that are ``shown`` and room for a few times as many."""
+        """Begin another picture with room for ``height``: of all texts twice as large, or of at least half
+        that size for those that are ``shown``, and for the newest."""
         before, picture = self._texts, self._picture
+        fewest, most = (min(HIGHEST, round(n * HEIGHT * self.ratio)) for n in (FEWEST_LINES, MOST_LINES))
         kept = {text: before[text] for text in chain.from_iterable(shown) if text in before}
-        height += sum(_height(one.parts) for one in kept.values())
-        self._texts, self._used = {}, 0
-        self._picture = self._empty(max(round(FEWEST_LINES * HEIGHT * self.ratio), 3 * height))
-        self._copy(kept, picture)
+        needed = height + sum(_height(one.parts) for one in kept.values())
+        room = max(min(most, 2 * picture.height()), fewest, min(HIGHEST, 2 * needed))
+        for text, one in reversed(before.items()):
+            needed += 0 if text in kept else _height(one.parts)
+            if needed > (room if room > picture.height() else room / 2):
+                break
+            kept[text] = one
+        self._texts, self._used, self._picture = {}, 0, self._empty(room)
+        # The newest last again.
+        self._copy({text: before[text] for text in before if text in kept}, picture)
 
     def _copy(self, texts: dict[str, WrittenText], picture: QPixmap) -> None:
         """Have ``texts``, whose parts are in ``picture``, in the atlas too."""

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_states import STATES
-from fleet_supervisor.plugin.map.overlay.labels import FEWEST_LINES, MOST
+from fleet_supervisor.plugin.map.overlay.labels import HEIGHT, MOST, MOST_LINES
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsRectangle
@@ -52,8 +52,8 @@ def test_pictures_of_names_have_an_end_though_ten_thousand_robots_come_and_go(pa
         kept = painted(crowd(50 * number, 100.0 + number))
         made.append(len(kept._names._atlas._texts))
         heights.append(kept._names._atlas._picture.height())
-    assert max(made) <= 4 * FEWEST_LINES
-    assert max(heights[100:]) <= max(heights[:100])
+    assert max(made) <= 2 * MOST_LINES
+    assert max(heights) <= MOST_LINES * HEIGHT
     assert "robot 0" not in kept._names._atlas
     assert any(text.startswith("robot 99") for text in kept._names._atlas._texts), "the newest are there"
     assert len(kept._names._parts) < 200 and len(kept._names._waiting) <= 50
