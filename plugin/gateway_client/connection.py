@@ -18,6 +18,7 @@ from . import connection_status
 from .connection_status import ConnectionPhase, ConnectionStatus, OperatorCredentials
 from .fleet_state import OperatorRequest, StateUpdate, UpdateBuffer
 from .protocol import GatewayProtocol
+from .robot_states import table_from_frame
 
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
@@ -162,8 +163,7 @@ class GatewayClient:
         patience = self._addresses.patience
         try:
             while not self._protocol.ready:
-                text = await asyncio.wait_for(socket.recv(), patience)
-                self._send_all(self._protocol.receive(text))
+                self._receive(await asyncio.wait_for(socket.recv(), patience))
         except asyncio.TimeoutError as error:
             raise GatewayLinkError(
                 tr(
@@ -178,9 +178,22 @@ class GatewayClient:
         self._refusals.clear()
         who = {"operator": self._protocol.operator, "role": self._protocol.role}
         self._buffer.add(link=ConnectionStatus(ConnectionPhase.CONNECTED, **who, instead=instead))
-        async for text in socket:
+        async for frame in socket:
             self._check_awake()
-            self._send_all(self._protocol.receive(text))
+            self._receive(frame)
+
+    def _receive(self, frame: str | bytes) -> None:
+        """Take in where robots are, which is binary, or a text of the conversation.
+
+        :raises GatewayLinkError: when it is not what a gateway sends, or there can be no link.
+        """
+        if isinstance(frame, str):
+            self._send_all(self._protocol.receive(frame))
+            return
+        try:
+            self._buffer.add(robots=table_from_frame(frame, steady_time()))
+        except connection_status.MISREAD as error:
+            raise connection_status.misunderstood(self._url, frame, error) from error
 
     def _instead(self) -> str:
         """Return which gateway answers in place of the one that the operator gave; empty where that does."""

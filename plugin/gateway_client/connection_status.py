@@ -218,6 +218,26 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkEr
     return _network_failure(error, place, secure=urlsplit(url).scheme == "wss")
 
 
+MISREAD = (ValueError, KeyError, TypeError, AttributeError)
+"""What reading raises where something is not what a gateway sends."""
+
+
+def misunderstood(url: str, frame: str | bytes, error: Exception) -> GatewayLinkError:
+    """Return what it means that a ``frame`` could not be read, in the operator's words."""
+    shown = f"{len(frame)} bytes" if isinstance(frame, bytes) else frame
+    return GatewayLinkError(
+        tr(
+            "What answers at {url} sent something that is not the desk's protocol: {text} "
+            "({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this "
+            "version.",
+            url=url,
+            text=repr(shown if len(shown) <= 60 else f"{shown[:60]}…"),
+            kind=type(error).__name__,
+            error=error,
+        )
+    )
+
+
 def place_of(url: str) -> str:
     """Return host and port of a gateway's URL."""
     parts = urlsplit(url)

@@ -21,11 +21,10 @@ from ...robot_bridge.core.messages.roads import GetClosures
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in
-from .connection_status import DEFAULT_URL
+from .connection_status import DEFAULT_URL, MISREAD, misunderstood
 from .fleet_state import OperatorRequest, RequestResult, UpdateBuffer
 from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
 from .robot_rows import table_from_rows
-from .robot_states import table_from_frame
 
 UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
 """Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""
@@ -201,15 +200,12 @@ class GatewayProtocol:
                 )
             )
 
-    def receive(self, text: str | bytes) -> list[str]:
+    def receive(self, text: str) -> list[str]:
         """Take in one text from the gateway and return the texts to send in turn.
 
-        :raises LinkError: when the text is not what a gateway of this protocol sends.
+        :raises GatewayLinkError: when it is not what a gateway sends, or there can be no link.
         """
         try:
-            if isinstance(text, bytes):
-                self._buffer.add(robots=table_from_frame(text, self._clock.steady()))
-                return []
             # Numbers that are none are named by what reads them.
             check_bounds(text, DOCUMENT)
             message = json.loads(text)
@@ -219,20 +215,8 @@ class GatewayProtocol:
                 self._notified(message["method"], message.get("params") or {})
                 return []
             return self._answered(message)
-        except GatewayLinkError:
-            raise
-        except (ValueError, KeyError, TypeError, AttributeError) as error:
-            raise GatewayLinkError(
-                tr(
-                    "What answers at {url} sent something that is not the desk's protocol: {text} "
-                    "({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this "
-                    "version.",
-                    url=self._url,
-                    text=_start_of(text),
-                    kind=type(error).__name__,
-                    error=error,
-                )
-            ) from error
+        except MISREAD as error:
+            raise misunderstood(self._url, text, error) from error
 
     def _request(self, order: OperatorRequest) -> str:
         number = next(self._ids)
@@ -444,8 +428,3 @@ def _too_old(age: float) -> str:
         "not there.",
         age=age,
     )
-
-
-def _start_of(text: str | bytes) -> str:
-    shown = text if isinstance(text, str) else f"{len(text)} bytes"
-    return repr(shown if len(shown) <= 60 else f"{shown[:60]}…")

@@ -1849,6 +1849,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escriviu-la com {default_url}.</translation>
         </message>
@@ -1971,11 +1976,6 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>L'enllaç s'ha perdut abans que la passarel·la respongués, i {age:.0f} s després no s'ha repetit: un robot no ha d'arrencar per una ordre antiga. Mireu el registre d'ordres i torneu-la a enviar si no hi és.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/protocol.py" />
-            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
-            <translation>El que respon a {url} ha enviat una cosa que no és el protocol de la consola: {text} ({kind}: {error}). Comproveu que l'URL porta a una passarel·la de Fleet Supervisor d'aquesta versió.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

@@ -1849,6 +1849,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Escríbala como {default_url}.</translation>
         </message>
@@ -1971,11 +1976,6 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>El enlace se perdió antes de que la pasarela respondiera, y {age:.0f} s después no se repitió: un robot no debe arrancar por una orden antigua. Mire el registro de órdenes y vuelva a enviarla si no está.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/protocol.py" />
-            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
-            <translation>Lo que responde en {url} envió algo que no es el protocolo de la consola: {text} ({kind}: {error}). Compruebe que la URL lleva a una pasarela de Fleet Supervisor de esta versión.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

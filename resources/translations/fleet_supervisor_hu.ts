@@ -1841,6 +1841,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/connection_status.py" />
+            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
+            <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/connection_status.py" />
             <source>Write it like {default_url}.</source>
             <translation>Írja így: {default_url}.</translation>
         </message>
@@ -1963,11 +1968,6 @@
             <location filename="../../plugin/gateway_client/protocol.py" />
             <source>The link was lost before the gateway answered, and {age:.0f} s later it was not repeated: a robot shall not drive off on an old order. Look in the command log and send it again if it is not there.</source>
             <translation>A kapcsolat megszakadt, mielőtt az átjáró válaszolt volna, és {age:.0f} s múlva már nem lett megismételve: robot ne induljon el régi parancsra. Nézze meg a parancsnaplót, és küldje újra, ha nincs ott.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/gateway_client/protocol.py" />
-            <source>What answers at {url} sent something that is not the desk's protocol: {text} ({kind}: {error}). Check that the URL leads to a Fleet Supervisor gateway of this version.</source>
-            <translation>Ami a(z) {url} címen válaszol, olyasmit küldött, ami nem a kezelőpult protokollja: {text} ({kind}: {error}). Ellenőrizze, hogy az URL ugyanilyen verziójú Fleet Supervisor-átjáróra mutat-e.</translation>
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />

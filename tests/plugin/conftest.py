@@ -97,7 +97,7 @@ class SmallGateway:
         self.emergency = EmergencyReport()
         self.mute: set[str] = set()
         """Methods that are taken in and never answered."""
-        self.raw: str | None = None
+        self.raw: str | bytes | None = None
         """What is sent in place of every answer."""
         self.answers: dict[str, Callable[[dict], dict]] = {}
         """By method, what answers it in place of what is here: returns {"result": …} or {"error": …}."""

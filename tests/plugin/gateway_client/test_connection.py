@@ -151,9 +151,12 @@ def test_what_is_no_gateway_is_named_and_tried_again(connection, wait, answer, s
     assert str(babbler.port) in reason
 
 
-@pytest.mark.parametrize("text", ["garbage", "[1]", '{"id": 1, "result": {"protocol": 1}}', "[" * 2000])
-def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection, gateway, wait, text):
-    gateway.raw = text
+@pytest.mark.parametrize(
+    "frame",
+    ["garbage", "[1]", '{"id": 1, "result": {"protocol": 1}}', "[" * 2000, b"\xff" * 40, b"\2\0\0\0{}"],
+)
+def test_a_websocket_that_does_not_speak_the_desks_protocol_is_named(connection, gateway, wait, frame):
+    gateway.raw = frame
     connection.open(gateway.url, "anna")
     reason = reason_when(connection, wait, ConnectionPhase.RETRYING)
     assert "not the desk's protocol" in reason
