@@ -1,27 +1,19 @@
-"""Updates of operators: snapshots of the fleet, and observations, stored and announced."""
+"""Updates of operators: robots as reports and as tables of numbers, and snapshots of what has changed."""
 
 from __future__ import annotations
 
-import asyncio
-import base64
 import dataclasses
-import hashlib
-import json
-import logging
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from operator import attrgetter
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
 import numpy.typing as npt
 
 from ...core.clock import Clock
-from ...core.errors import RefusedError, UncertainError
-from ...core.images import check_size, media_type_of
-from ...core.messages.base import MessageError, to_json
 from ...core.messages.positions import (
     PLACE_COLUMNS,
     POSITION_ALWAYS,
@@ -31,234 +23,63 @@ from ...core.messages.positions import (
     Positions,
     RobotReport,
 )
-from ...core.messages.records import (
-    GetImage,
-    GetObservations,
-    Image,
-    ObservationReport,
-    Observations,
-    ObservationState,
-    ReviewObservation,
-)
-from ...core.messages.robots import Observed, SendImage, SetObject
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
-from ...core.sites.settings import SiteSettings
-from ..model.events import Encoded, EventBus, ObservationChanged, handles
+from ..model.events import Encoded, handles
 from ..model.robots import Robot, Robots
-from ..site.places import Ground, check_places
-from ..storage.database import Database
-from ..storage.repositories import records
-from ..storage.repositories.records import NewObservation
 
-# --- What robots saw: stored before it is acknowledged, reviewed by operators, and then on the map ---
+# --- Robots as reports, an object for each; no I/O ---
 
-log = logging.getLogger(__name__)
-
-PENDING, ACCEPTED, REJECTED = ObservationState
+Report = TypeVar("Report")
 
 
-class ObservedSite(Ground, Protocol):
-    """What is needed of a site to keep observations of it."""
-
-    @property
-    def settings(self) -> SiteSettings:
-        """The settings of the site."""
-
-    def show(self, objects: Sequence[ObservationReport]) -> None:
-        """Draw accepted objects, and no others, on the maps from now on; oldest first."""
+def reports_of(robots: Iterable[Robot], now: float, kind: Callable[..., Report]) -> list[Report]:
+    """Return ``robots`` as ``kind``, which takes the parameters of a RobotReport by name."""
+    return [_report(robot, now, kind) for robot in robots]
 
 
-class ObservationService:
-    """Every observation of the robots of one site; ObservationChanged is published after one was stored."""
-
-    def __init__(
-        self,
-        site: ObservedSite,
-        database: Database,
-        clock: Clock,
-        events: EventBus,
-    ) -> None:
-        self._site = site
-        self._database = database
-        self._clock = clock
-        self._events = events
-        self._lock = asyncio.Lock()
-        self._undrawn = False
-        """whether something may have been accepted, or rejected, that the maps do not show yet."""
-        self._unsure: set[tuple[str, str]] = set()
-        """robots and sources of what may have been stored, and nobody was told."""
-        self._untold: set[int] = set()
-        """what may have been reviewed, and nobody was told."""
-
-    async def restore(self) -> None:
-        """Draw on the maps what operators accepted before."""
-        self._site.show(await self._database.run(records.on_map))
-        self._undrawn = False
-
-    async def redraw(self) -> None:
-        """Draw on the maps what is accepted by now; raises StoreError."""
-        async with self._lock:
-            await self.restore()
-
-    async def catch_up(self) -> None:
-        """Draw and tell what could not be drawn or told when it was stored or reviewed; raises StoreError."""
-        if self._undrawn:
-            await self.redraw()
-        for robot, source in list(self._unsure):
-            found = await self._database.run(records.find_reported, robot, source)
-            self._unsure.discard((robot, source))
-            self._tell(found)
-        for id in list(self._untold):
-            found = await self._database.run(records.find, id)
-            self._untold.discard(id)
-            self._tell(found)
-
-    async def add(self, robot: Robot, link: str, observed: Observed, id: int | None) -> ObservationReport:
-        """Store what a robot told by its message ``id``; what it told before is there already.
-
-        :raises RefusedError: when an object is not on the site, an image too large, or too much waits;
-            MessageError when an image is none.
-        """
-        if isinstance(observed, SetObject):
-            check_places(self._site, [(observed.x, observed.y)])
-        else:
-            self.check_size(len(observed.image))
-        new = _new(robot.name, observed, _occasion(robot, link, observed, id), self._clock.time())
-        most_pending = self._site.settings.observations.most_pending
-        key = new.robot, new.source
-        try:
-            report, is_new = await self._database.run(records.add_observations, new, most_pending)
-        except UncertainError:
-            self._unsure.add(key)
-            raise
-        if is_new or key in self._unsure:
-            self._tell(report)
-        self._unsure.discard(key)
-        return report
-
-    def check_size(self, size: int) -> None:
-        """Raise RefusedError for an image of more bytes than the site takes."""
-        check_size(size, self._site.settings.observations.largest_image_bytes)
-
-    @handles(GetObservations)
-    async def newest(self, query: GetObservations) -> Observations:
-        """Return observations, newest first."""
-        return Observations(await self._database.run(records.newest_observations, query))
-
-    @handles(GetImage)
-    async def image(self, request: GetImage) -> Encoded[Image]:
-        """Return the image of an observation and its media type; raises RefusedError without one."""
-        found = await self._database.run(records.image, request.observation)
-        if found is None:
-            raise RefusedError(
-                f"observation {request.observation} has no image; get_observations lists those with "
-                "media_type"
-            )
-        image, media_type = found
-        return Encoded({"media_type": media_type, "image": base64.b64encode(image).decode("ascii")})
-
-    @handles(ReviewObservation)
-    async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
-        """Accept or reject an observation; returns when that is stored. The same again changes nothing.
-
-        :raises RefusedError: when there is no such observation, or it was reviewed otherwise before.
-        """
-        async with self._lock:
-            report = await self._database.run(records.find, review.observation)
-            if report is None:
-                raise RefusedError(f"there is no observation {review.observation}; see get_observations")
-            state = ACCEPTED if review.accept else REJECTED
-            if _says_the_same(report, review, state):
-                return report
-            _check_review(report, review)
-            values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
-            is_drawn = report.op == SetObject.__name__
-            self._undrawn |= is_drawn
-            self._untold.add(report.observation)
-            reviewed = await self._database.run(
-                records.review, report.observation, state, operator, self._clock.time(), values
-            )
-            if is_drawn and ACCEPTED in (report.state, reviewed.state):
-                await self.restore()
-        self._tell(reviewed)
-        self._untold.discard(reviewed.observation)
-        return reviewed
-
-    def _tell(self, report: ObservationReport | None) -> None:
-        if report is not None:
-            self._events.publish(ObservationChanged(report))
-
-
-def _new(robot: str, observed: Observed, occasion: str, now: float) -> NewObservation:
-    is_image = isinstance(observed, SendImage)
-    fields = () if is_image else ("label", "height", "radius", "doubts")
-    details = {name: getattr(observed, name) for name in fields}
-    return NewObservation(
-        robot=robot,
-        source=_source(observed, occasion),
-        kind=type(observed).__name__,
-        object=observed.object,
-        x=observed.x,
-        y=observed.y,
-        details={name: value for name, value in details.items() if value is not None},
-        seen_at=observed.t,
-        received_at=now,
-        image=observed.image if isinstance(observed, SendImage) else None,
-        media_type=media_type_of(observed.image, observed.media_type)
-        if isinstance(observed, SendImage)
-        else None,
+def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
+    pose, latency = robot.pose, robot.latency
+    if pose is None or robot.pose_at is None:
+        return kind(
+            robot=robot.name,
+            state=robot.state,
+            age=_thousandths(now - robot.received_at),
+            link=robot.link,
+            stopped=robot.ended_in_order,
+            status=robot.doubt,
+            command=robot.command,
+            latency=None if latency is None else round(latency, 4),
+            paths=robot.paths,
+            abilities=robot.abilities,
+        )
+    return kind(
+        robot=robot.name,
+        state=robot.state,
+        age=_thousandths(now - robot.received_at),
+        link=robot.link,
+        stopped=robot.ended_in_order,
+        x=pose.x,
+        y=pose.y,
+        theta=pose.theta,
+        accuracy=pose.accuracy,
+        altitude=pose.altitude,
+        theta_from=pose.theta_from,
+        v=pose.v,
+        device_time=pose.t,
+        fix_time=pose.fix_t,
+        pose_age=_thousandths(now - robot.pose_at),
+        battery=pose.battery,
+        status=pose.status if robot.doubt is None else robot.doubt,
+        command=robot.command,
+        latency=None if latency is None else round(latency, 4),
+        paths=robot.paths,
+        abilities=robot.abilities,
     )
 
 
-def _occasion(robot: Robot, link: str, observed: Observed, id: int | None) -> str:
-    """Return on what occasion a robot told something: its own source, else the message that it came with."""
-    if observed.source is None and link == "sql":
-        return f"row {id}"
-    # The ids of calls, and most sources, begin again with each run of a robot.
-    return f"run {robot.magic}" if observed.source is not None else f"run {robot.magic} call {id}"
-
-
-def _source(observed: Observed, occasion: str) -> str:
-    """Return what two tellings have in common only if they are one.
-
-    The content counts: a robot that uses a source or a call's id once more for something else loses nothing.
-    """
-    identity: dict[str, Any] = {"op": type(observed).__name__, "occasion": occasion, **to_json(observed)}
-    if observed.source is not None:
-        identity.pop("t", None)
-    content = hashlib.sha256(json.dumps(identity, sort_keys=True).encode())
-    content.update(observed.image if isinstance(observed, SendImage) else b"")
-    return content.hexdigest()
-
-
-def _says_the_same(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
-    if report.state is not state:
-        return False
-    values = {name: getattr(review, name) for name in ("semantics", "height", "radius")}
-    return all(value is None or value == getattr(report, name) for name, value in values.items())
-
-
-def _check_review(report: ObservationReport, review: ReviewObservation) -> None:
-    if report.state is not PENDING and not review.revise:
-        raise RefusedError(
-            f"observation {report.observation} was {report.state.value} by {report.reviewed_by} before; "
-            "give revise to change that"
-        )
-    what = "an image" if report.op == SendImage.__name__ else "of what is missing"
-    is_drawn = report.op == SetObject.__name__ and report.doubts is None
-    if (
-        not is_drawn
-        and (
-            review.semantics,
-            review.height,
-            review.radius,
-        )
-        != (None,) * 3
-    ):
-        raise MessageError(
-            f"review_observation: observation {report.observation} is {what}, which is not drawn on the "
-            "map; leave out semantics, height and radius"
-        )
+def _thousandths(seconds: float) -> float:
+    """Return ``seconds``, not below 0, in whole milliseconds; ``round`` takes three times as long."""
+    return int(seconds * 1000 + 0.5) / 1000 if seconds > 0 else 0.0
 
 
 # --- Robots as the table of numbers that :mod:`.messages.position_columns` describes; no I/O ---
@@ -442,7 +263,8 @@ class Snapshots:
     @handles(GetPositions)
     async def now(self) -> Encoded[Positions]:
         """Return where every robot is now."""
-        return Encoded(positions(self._robots.rows(self._clock.time(), -1, ReportRow), everything=True))
+        rows = reports_of(self._robots.changed(EVERYTHING), self._clock.time(), ReportRow)
+        return Encoded(positions(rows, everything=True))
 
     def _make(self, revision: int, form: PositionForm) -> Snapshot:
         return Snapshot(self._encoded(revision, form), self._robots.revision)
@@ -455,6 +277,6 @@ class Snapshots:
             return None
         if form is not PositionForm.ROWS:
             return table_frame(round(time.time(), 3), changed, now, removed, everything=everything, form=form)
-        rows = self._robots.rows(now, revision, ReportRow)
+        rows = reports_of(changed, now, ReportRow)
         params = positions(rows, removed, everything=everything)
         return msgspec.json.encode({"jsonrpc": "2.0", "method": "positions", "params": params})

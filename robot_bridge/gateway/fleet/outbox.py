@@ -1,26 +1,37 @@
-"""Outbox of every robot: answers into SA, requests out of RR, and what comes of both."""
+"""Outbox of every robot: answers into SA, requests out of RR, what comes of both, and maps on their way."""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from sqlalchemy import Connection
 
+from ...core.errors import RefusedError, StoreError
+from ...core.logs import log_unforeseen
+from ...core.messages.base import Done
+from ...core.messages.commands import SendMap
 from ...core.messages.robots import Answer, OpAck, SetMap, Start
+from ...core.messages.safety import RobotState
+from ...core.robotmap.model import Border, EncodedMap
 from ..commands.service import CommandService
+from ..model.events import handles
 from ..model.robots import Robots
+from ..site.places import ServedSite
 from ..storage.database import Database
+from ..storage.repositories import commands, trajectories
 from ..storage.repositories import requests as answers
-from ..storage.repositories import trajectories
 from ..storage.repositories.requests import AnswerRow, Outbox
 from ..storage.repositories.trajectories import PackedFix
 from ..storage.rows import BatchedWork
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_persistence import HELD_BACK
 from .emergency_stop import EmergencyStops
+
+log = logging.getLogger(__name__)
 
 # --- What comes of robots' requests, and how it is written: answers into SA, and requests out of RR ---
 
@@ -284,3 +295,137 @@ class RobotOutboxes:
             for id, robot in self._commands.undelivered().items()
             if robot in self._robots and self._robots.get(robot).link == link
         }
+
+
+# --- Maps on their way to robots: what there is at once, and what follows when more is known ---
+
+RETRY_AFTER = 1.0
+"""seconds after which a map that could not be stored is stored once more."""
+
+Place = tuple[float, float]
+
+
+class MapSender:
+    """Sends robots the map of the whole site, or that of a window around them where the whole is too large.
+
+    A robot never waits for a map to be made: it is sent a window, and the whole one when it is there.
+    """
+
+    def __init__(
+        self, site: ServedSite, robots: Robots, mailboxes: RobotOutboxes, database: Database
+    ) -> None:
+        self._site = site
+        self._robots = robots
+        self._mailboxes = mailboxes
+        self._database = database
+        self._parts: dict[str, Border] = {}
+        """what the newest map of a robot covers that was not sent the whole one."""
+        self._making = asyncio.Lock()
+        self._unplaced: set[str] = set()
+        """robots that have such a map, and are still to say where they are."""
+
+    async def first(self, robot: str) -> EncodedMap:
+        """Return the map that ``robot`` is sent behind the acknowledgement of its Ready.
+
+        Of a part :meth:`.Mailboxes.finish` is to be told, so that more can follow. Raises StoreError.
+        """
+        offer = await self._offer(robot)
+        self._unplaced.discard(robot)
+        self._parts[robot] = offer.border
+        return offer
+
+    def located(self, robots: Iterable[str]) -> None:
+        """Note that ``robots`` have said where they are."""
+        for robot in self._unplaced.intersection(robots):
+            self._unplaced.discard(robot)
+            self._mailboxes.parts.put_nowait(robot)
+
+    @handles(SendMap)
+    async def send_requested(self, request: SendMap) -> Done:
+        """Return when the map for a robot is stored; it replaces one that still waits for it.
+
+        :raises RefusedError: for a robot that is not known, or is not there.
+        """
+        self._robots.check_known(request.robot)
+        robot = self._robots.get(request.robot)
+        if robot.state is RobotState.OFFLINE:
+            raise RefusedError(
+                f"robot {request.robot!r} is offline; it is sent the map by itself when it connects"
+            )
+        if not robot.can("map"):
+            raise RefusedError(f"robot {request.robot!r} takes no maps, as it said when it connected")
+        await self.send(request.robot)
+        return Done()
+
+    async def send(self, robot: str) -> None:
+        """Send ``robot`` the map of the whole site, or of what is around it; raises StoreError."""
+        content = await asyncio.to_thread(self._site.whole_map)
+        if content is None:
+            await self._store(robot, SetMap((await self._offer(robot)).content))
+        else:
+            await self._store_whole(robot, content)
+
+    async def whole_or_around(self, robot: str) -> bytes:
+        """Return the map of the whole site, or of what is around ``robot``; raises StoreError."""
+        # While it is made again all robots may wait for it, but in one thread: others have work for the rest.
+        async with self._making:
+            content = await asyncio.to_thread(self._site.whole_map)
+        return (await self._offer(robot)).content if content is None else content
+
+    async def send_all(self) -> None:
+        """Send the robots of this gateway their map; those that are offline get it with their next Ready."""
+        for name in self._robots.names():
+            if name not in self._robots:
+                continue
+            robot = self._robots.get(name)
+            if robot.gateway is None and robot.state is not RobotState.OFFLINE and robot.can("map"):
+                await self.send(name)
+
+    async def run(self) -> None:
+        """Send what follows the parts that robots were sent, until cancelled."""
+        await asyncio.to_thread(self._site.whole_map)
+        while True:
+            robot = await self._mailboxes.parts.get()
+            try:
+                await self._follow(robot)
+            except StoreError as error:
+                log.error("the map for robot %r: %s; trying again in %g s", robot, error, RETRY_AFTER)
+                self._mailboxes.parts.put_nowait(robot)
+                await asyncio.sleep(RETRY_AFTER)
+            except Exception:
+                # The maps of all other robots go out; again and again it would end the gateway.
+                log_unforeseen(log, f"the map for robot {robot!r}")
+
+    async def _follow(self, robot: str) -> None:
+        content = await asyncio.to_thread(self._site.whole_map)
+        if robot not in self._robots:
+            return
+        known = self._robots.get(robot)
+        if content is not None:
+            await self._store_whole(robot, content)
+        elif known.pose is None or not known.located:
+            self._unplaced.add(robot)
+        elif not self._parts[robot].holds(known.pose.x, known.pose.y):
+            await self.send(robot)
+
+    async def _offer(self, robot: str) -> EncodedMap:
+        place = await self._place(robot)
+        return await asyncio.to_thread(self._site.map_at_once, place)
+
+    async def _place(self, robot: str) -> Place | None:
+        """Return where the robot was last, else where it was told that it stands."""
+        pose = self._robots.get(robot).pose if robot in self._robots else None
+        if pose is not None:
+            return pose.x, pose.y
+        given = await self._database.read(commands.last_given_track, robot, ("SetPosIni",))
+        if given is None:
+            return None
+        x, y = given.params.get("x"), given.params.get("y")
+        return (float(x), float(y)) if isinstance(x, (int, float)) and isinstance(y, (int, float)) else None
+
+    async def _store_whole(self, robot: str, content: bytes) -> None:
+        reads_itself = self._robots.get(robot).link == "sql"
+        await self._store(robot, SetMap(content) if reads_itself else WHOLE_SITE)
+
+    async def _store(self, robot: str, message: SetMap) -> None:
+        await self._mailboxes.finish([RequestOutcome(robot, answer=message)], [], acks=False)

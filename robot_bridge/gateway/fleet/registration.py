@@ -28,8 +28,7 @@ from ..storage.repositories import robots as stored_robots
 from ..traffic.yielding import YieldManager
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_stop import EmergencyStops
-from .outbox import RequestOutcome, RobotOutboxes
-from .robot_answers import MapSender
+from .outbox import MapSender, RequestOutcome, RobotOutboxes
 
 log = logging.getLogger(__name__)
 

@@ -58,10 +58,10 @@ from .emergency_stop import EmergencyStops
 from .geofence import AuditNote, GeofenceWatch
 from .link_supervision import AccountSuspensions, LinkWatch
 from .nearness import NearnessWatch
-from .operator_updates import ObservationService, Snapshots
-from .outbox import RequestOutcome, RobotOutboxes
+from .operator_updates import Snapshots, reports_of
+from .outbox import MapSender, RequestOutcome, RobotOutboxes
 from .registration import Decommissioning, Registration, Takeover
-from .robot_answers import MapSender, RobotAnswers
+from .robot_requests import ObservationService, RobotAnswers
 from .views import FleetViews
 
 log = logging.getLogger(__name__)
@@ -367,7 +367,7 @@ class Fleet:
 
     def reports(self, since: int = -1) -> list[RobotReport]:
         """Return the robots that changed after revision ``since`` of :attr:`robots`."""
-        return self.robots.reports(self._clock.time(), since)
+        return reports_of(self.robots.changed(since), self._clock.time(), RobotReport)
 
     def open_commands(self) -> Counter[CommandState]:
         """Return how many commands with a step to come are in each state."""

@@ -35,10 +35,10 @@ from ...core.messages.positions import (
     View,
 )
 from ..model.events import Encoded, handles
-from ..model.robots import Robot, Robots, reports_of
+from ..model.robots import Robot, Robots
 from ..model.robots_elsewhere import DOUBTED, LOST, STATES
 from ..site.places import Ground
-from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions
+from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
 
 PLACES_EVERY_S = 0.5
 """How old it may be where everybody is: who comes into a view is told of that much later."""

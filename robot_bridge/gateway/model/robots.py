@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
 from ...core.messages.base import check_robot_name
-from ...core.messages.positions import RobotReport, link_elsewhere
+from ...core.messages.positions import link_elsewhere
 from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
@@ -31,7 +31,6 @@ from .robots_elsewhere import (
 # gateway's, by
 # which alone a robot is fresh, stale or lost.
 
-Report = TypeVar("Report")
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
@@ -433,14 +432,6 @@ class Robots:
                 self._touch(robot)
         self.revision = self._columns.age(now, self._stale_after, self._lost_after, self.revision)
 
-    def reports(self, now: float, since: int = -1) -> list[RobotReport]:
-        """Return the robots that changed after revision ``since``, as operators are told."""
-        return self.rows(now, since, RobotReport)
-
-    def rows(self, now: float, since: int, kind: Callable[..., Report]) -> list[Report]:
-        """Return them as ``kind``, which takes the parameters of a RobotReport by name."""
-        return reports_of(self.changed(since), now, kind)
-
     def changed(self, since: int) -> list[Robot]:
         """Return the robots that changed after revision ``since``, those of this gateway first."""
         return self.own(since) + self._renew(self._columns.changed(since))
@@ -516,53 +507,3 @@ class Robots:
         robot.revision = self.revision
         if robot.gateway is not None:
             self._columns.write(robot)
-
-
-def reports_of(robots: Iterable[Robot], now: float, kind: Callable[..., Report]) -> list[Report]:
-    """Return ``robots`` as ``kind``, which takes the parameters of a RobotReport by name."""
-    return [_report(robot, now, kind) for robot in robots]
-
-
-def _report(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
-    pose, latency = robot.pose, robot.latency
-    if pose is None or robot.pose_at is None:
-        return kind(
-            robot=robot.name,
-            state=robot.state,
-            age=_thousandths(now - robot.received_at),
-            link=robot.link,
-            stopped=robot.ended_in_order,
-            status=robot.doubt,
-            command=robot.command,
-            latency=None if latency is None else round(latency, 4),
-            paths=robot.paths,
-            abilities=robot.abilities,
-        )
-    return kind(
-        robot=robot.name,
-        state=robot.state,
-        age=_thousandths(now - robot.received_at),
-        link=robot.link,
-        stopped=robot.ended_in_order,
-        x=pose.x,
-        y=pose.y,
-        theta=pose.theta,
-        accuracy=pose.accuracy,
-        altitude=pose.altitude,
-        theta_from=pose.theta_from,
-        v=pose.v,
-        device_time=pose.t,
-        fix_time=pose.fix_t,
-        pose_age=_thousandths(now - robot.pose_at),
-        battery=pose.battery,
-        status=pose.status if robot.doubt is None else robot.doubt,
-        command=robot.command,
-        latency=None if latency is None else round(latency, 4),
-        paths=robot.paths,
-        abilities=robot.abilities,
-    )
-
-
-def _thousandths(seconds: float) -> float:
-    """Return ``seconds``, not below 0, in whole milliseconds; ``round`` takes three times as long."""
-    return int(seconds * 1000 + 0.5) / 1000 if seconds > 0 else 0.0

@@ -19,7 +19,7 @@ from robot_bridge.core.messages.positions import (
     RobotReport,
 )
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.gateway.fleet.operator_updates import table_frame
+from robot_bridge.gateway.fleet.operator_updates import reports_of, table_frame
 from robot_bridge.gateway.model.robots import Robots
 
 places = st.floats(-1e5, 1e5)
@@ -74,7 +74,7 @@ def fleet_of(poses):
 def test_it_says_of_each_robot_what_the_rows_say(poses, now):
     robots = fleet_of(poses)
     _, found = unpacked(table_frame(1.0, robots.changed(-1), now))
-    for report in robots.reports(now):
+    for report in reports_of(robots.changed(-1), now, RobotReport):
         told = {k: v for k, v in dataclasses.asdict(report).items() if v is not None and k != "robot"}
         told["state"] = told["state"].value
         assert found[report.robot].keys() == told.keys()

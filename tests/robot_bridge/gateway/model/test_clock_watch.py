@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.clock import ClockStep, ClockWatch, ManualClock
+from robot_bridge.core.messages.positions import RobotReport
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
+from robot_bridge.gateway.fleet.operator_updates import reports_of
 from robot_bridge.gateway.model.robots import Robots
 
 DAY = 86400.0
@@ -61,7 +63,7 @@ def test_the_times_since_robots_were_heard_stay(clock, by):
     clock.advance(0.1)
     robots.clock_was_set(watch.measure_step())
     robots.age(clock.wall)
-    told = {report.robot: report for report in robots.reports(clock.wall)}
+    told = {report.robot: report for report in reports_of(robots.changed(-1), clock.wall, RobotReport)}
     assert (told["silent"].state, told["heard"].state) == (RobotState.STALE, RobotState.FRESH)
     assert told["silent"].age == told["silent"].pose_age == pytest.approx(5.2)
     assert told["heard"].age == told["heard"].pose_age == pytest.approx(0.1)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import pytest
 
 from robot_bridge.core.errors import NotReadyError
+from robot_bridge.core.messages.positions import RobotReport
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
+from robot_bridge.gateway.fleet.operator_updates import reports_of
 from robot_bridge.gateway.model.robots import Robot, Robots
 
 
@@ -21,8 +23,12 @@ def robots() -> Robots:
     return robots
 
 
+def reports(robots: Robots, now: float, since: int = -1) -> list[RobotReport]:
+    return reports_of(robots.changed(since), now, RobotReport)
+
+
 def only(robots: Robots, now: float):
-    (report,) = robots.reports(now)
+    (report,) = reports(robots, now)
     return report
 
 
@@ -72,10 +78,10 @@ def test_a_robot_that_started_anew_may_count_its_time_from_nought(robots):
 def test_only_what_changed_has_a_newer_revision(robots):
     robots.ready("r2", 9, "sql", 100.0)
     seen = robots.revision
-    assert robots.reports(101.0, since=seen) == []
+    assert reports(robots, 101.0, since=seen) == []
     robots.observe("r2", pose(1.0), "sql", 101.0)
-    assert [report.robot for report in robots.reports(101.0, since=seen)] == ["r2"]
-    assert [report.robot for report in robots.reports(101.0)] == ["r1", "r2"]
+    assert [report.robot for report in reports(robots, 101.0, since=seen)] == ["r2"]
+    assert [report.robot for report in reports(robots, 101.0)] == ["r1", "r2"]
 
 
 def test_ageing_touches_a_robot_once_for_each_state(robots):
@@ -83,7 +89,7 @@ def test_ageing_touches_a_robot_once_for_each_state(robots):
     for now in (101.0, 102.9, 103.0, 105.0, 109.9, 110.0, 500.0):
         seen = robots.revision
         robots.age(now)
-        changes += [(now, report.state.value) for report in robots.reports(now, since=seen)]
+        changes += [(now, report.state.value) for report in reports(robots, now, since=seen)]
     assert changes == [(103.0, "stale"), (110.0, "lost")]
 
 
@@ -114,7 +120,7 @@ def test_standing_positions_leave_a_stopped_robot_stopped_and_driving_ones_do_no
 def test_the_task_of_a_robot_is_a_change_once(robots):
     seen = robots.revision
     robots.assign("r1", "c-1")
-    assert [report.command for report in robots.reports(101.0, since=seen)] == ["c-1"]
+    assert [report.command for report in reports(robots, 101.0, since=seen)] == ["c-1"]
     seen = robots.revision
     robots.assign("r1", "c-1")
     robots.assign("unknown", "c-1")
@@ -125,7 +131,7 @@ def test_a_robot_of_an_earlier_gateway_is_as_old_as_its_last_message():
     robots = Robots()
     robots.restore(Robot("r1", 7, "sql", received_at=100.0, pose=pose(1.0), pose_at=100.0), now=105.0)
     robots.restore(Robot("r2", 7, "sql", received_at=100.0, ended_in_order=True), now=105.0)
-    assert [(r.robot, r.state.value, r.age) for r in robots.reports(105.0)] == [
+    assert [(r.robot, r.state.value, r.age) for r in reports(robots, 105.0)] == [
         ("r1", "stale", 5.0),
         ("r2", "offline", 5.0),
     ]
@@ -141,7 +147,7 @@ def test_the_latency_is_told_with_the_next_change(robots):
     seen = robots.revision
     robots.measured("r1", 0.01234)
     robots.measured("nobody", 1.0)
-    assert robots.reports(101.0, since=seen) == []
+    assert reports(robots, 101.0, since=seen) == []
     robots.observe("r1", pose(1.0), "websocket", 102.0)
     assert only(robots, 102.0).latency == 0.0123
 
