@@ -179,7 +179,8 @@ class CommandService(CommandReader):
 
     def with_open_commands(self, poses: Iterable[RobotPose]) -> list[RobotPose]:
         """Return the poses of robots that have open commands."""
-        return [pose for pose in poses if pose[0] in self._open.robots]
+        busy = self._open.robots
+        return [pose for pose in poses if pose[0] in busy]
 
     def await_again(self, robot: str, sa_id: int) -> None:
         """Judge the command with this message only by positions that come after its acknowledgement.
@@ -402,9 +403,8 @@ class CommandService(CommandReader):
             anew = active_command.restart_commands(
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
-            again = anew.again, anew.ended
             for command in await self._held.run(
-                [robot], persistence.write_again, robot, welcome, *again, note_run
+                [robot], persistence.write_again, robot, welcome, *anew, note_run
             ):
                 self._apply(command)
             self._events.publish(OutboxChanged(robot))

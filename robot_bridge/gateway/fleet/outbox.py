@@ -19,7 +19,7 @@ from ...core.messages.safety import RobotState
 from ...core.robotmap.model import Border, EncodedMap
 from ..commands.service import CommandService
 from ..model.events import handles
-from ..model.robots import Robots
+from ..model.robots import RobotPose, Robots
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import commands, trajectories
@@ -334,11 +334,12 @@ class MapSender:
         self._parts[robot] = offer.border
         return offer
 
-    def located(self, robots: Iterable[str]) -> None:
-        """Note that ``robots`` have said where they are."""
-        for robot in self._unplaced.intersection(robots):
-            self._unplaced.discard(robot)
-            self._mailboxes.parts.put_nowait(robot)
+    def located(self, poses: Sequence[RobotPose]) -> None:
+        """Note that robots have said where they are."""
+        if self._unplaced:
+            for robot in self._unplaced.intersection([robot for robot, _ in poses]):
+                self._unplaced.discard(robot)
+                self._mailboxes.parts.put_nowait(robot)
 
     @handles(SendMap)
     async def send_requested(self, request: SendMap) -> Done:

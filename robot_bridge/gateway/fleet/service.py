@@ -320,28 +320,35 @@ class Fleet:
 
         That is the storing of a command that the robot has carried out, nearly always None.
         """
-        self.tally.requests[link, "SendPos"] += 1
         now = self._clock.time()
-        self.robots.check_run(robot, pose.magic, link)
-        self._check_place(robot, link, (pose.x, pose.y), now)
-        return self._take_pose(robot, link, pose, now)
+        self.tally.requests[link, "SendPos"] += 1
+        moved = self.robots.follow(robot, pose, link, now, self._places.near())
+        if moved is None:
+            return self._consider_pose(robot, link, pose, now)
+        return self._moved(robot, pose, now) if moved else None
 
     def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
         """Deal with positions of many robots, each named once, as :meth:`take_pose` does with that of one.
 
         Return what is left for some: what is to be awaited, or what is wrong with a position.
         """
-        now = self._clock.time()
-        moved, others = self.robots.follow(poses, link, now, self._places.near())
-        self.tally.requests[link, "SendPos"] += len(poses) - len(others)
+        now, near, follow = self._clock.time(), self._places.near(), self.robots.follow
+        self.tally.requests[link, "SendPos"] += len(poses)
+        moved, others = [], []
+        for one in poses:
+            has_moved = follow(*one, link, now, near)
+            if has_moved:
+                moved.append(one)
+            elif has_moved is None:
+                others.append(one)
         self._saving.observe(now, moved)
-        self.maps.located([robot for robot, _ in moved])
+        self.maps.located(moved)
         rests = [
             *(
                 (robot, _attempt(self._book.observe, robot, pose))
                 for robot, pose in self._book.with_open_commands(moved)
             ),
-            *((robot, _attempt(self.take_pose, robot, link, pose)) for robot, pose in others),
+            *((robot, _attempt(self._consider_pose, robot, link, pose, now)) for robot, pose in others),
         ]
         return [(robot, rest) for robot, rest in rests if rest is not None]
 
@@ -482,6 +489,11 @@ class Fleet:
             self.robots.disbelieve(robot, link, now, fault, waited=waited)
             raise RefusedError(f"robot {robot!r} cannot be where it says: {fault}")
 
+    def _consider_pose(self, robot: str, link: str, pose: SendPos, now: float) -> Awaitable[None] | None:
+        self.robots.check_run(robot, pose.magic, link)
+        self._check_place(robot, link, (pose.x, pose.y), now)
+        return self._take_pose(robot, link, pose, now)
+
     def _take_pose(
         self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
     ) -> Awaitable[None] | None:
@@ -490,8 +502,11 @@ class Fleet:
             return None
         if unseen:
             self._book.lose_sight(robot)
+        return self._moved(robot, pose, now)
+
+    def _moved(self, robot: str, pose: SendPos, now: float) -> Awaitable[None] | None:
         self._saving.observe(now, [(robot, pose)])
-        self.maps.located([robot])
+        self.maps.located([(robot, pose)])
         return self._book.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:

@@ -1,4 +1,4 @@
-"""Reported positions: which are believed and which are newer, and the course where none is reported."""
+"""Reported positions: which are believed, what late ones tell, and the course where none is reported."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, Protocol
 from ...core.messages.base import SPEED
 from ...core.messages.robots import SendGPS, SendPos
 from ...core.sites.frame import SiteBounds
-from ...core.sites.settings import SettingsSource
+from ...core.sites.settings import SettingsSource, SiteSettings
 
 # --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was
 
@@ -60,6 +60,8 @@ class PlaceChecks:
     def __init__(self, site: SettingsSource) -> None:
         self._site = site
         self._leaps: dict[str, Leap] = {}
+        self._near_by: SiteSettings | None = None
+        self._near = AcceptedArea(math.inf, math.inf, -math.inf, -math.inf, 0.0)
 
     def fault(self, robot: PlacedRobot, place: Place, now: float) -> str | None:
         """Return why the robot is not at ``place``, metres in the site frame, None where it may be there."""
@@ -84,15 +86,18 @@ class PlaceChecks:
     def near(self) -> AcceptedArea:
         """Return where the place of a robot that is believed needs no second look."""
         settings = self._site.settings
-        bounds, limits = settings.bounds, settings.limits
-        within = limits.place_within_m
-        return AcceptedArea(
-            bounds.x_min - within,
-            bounds.y_min - within,
-            bounds.x_max + within,
-            bounds.y_max + within,
-            limits.leap_m / math.sqrt(2),
-        )
+        if settings is not self._near_by:
+            bounds, limits = settings.bounds, settings.limits
+            within = limits.place_within_m
+            self._near_by = settings
+            self._near = AcceptedArea(
+                bounds.x_min - within,
+                bounds.y_min - within,
+                bounds.x_max + within,
+                bounds.y_max + within,
+                limits.leap_m / math.sqrt(2),
+            )
+        return self._near
 
     def _leap(self, robot: PlacedRobot, here: Place, place: Place, now: float, leap_m: float) -> str | None:
         leap = self._leaps.get(robot.name)
@@ -119,7 +124,7 @@ def _reach(leap_m: float, since: float, now: float) -> float:
     return leap_m + SPEED[1] * max(now - since, 0.0)
 
 
-# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+# --- Late poses of a robot: whether they tell that its clock was set back ---
 
 CLOCK_SET_BACK_AFTER = 3.0
 """seconds of nothing but late poses, on the link of the newest one and at the pace of a clock, after which
@@ -133,64 +138,27 @@ back and is now sent in one go comes faster."""
 
 
 @dataclass
-class _LateRun:
+class LatePoses:
     """Late poses since the last one that counted; ``paced_*`` is where their pace is measured from."""
 
     since: float
     paced_since: float
     paced_stamp: float
 
+    def show_set_back(self, stamp: float, now: float, *, same_link: bool) -> bool:
+        """Tell whether poses have been late for so long that it must be the robot's clock.
 
-@dataclass
-class PoseOrder:
-    """The stamps of a robot's newest pose, by its own clocks, and the link that it came on."""
-
-    fix_t: float | None = None
-    t: float | None = None
-    link: str = ""
-    _late: _LateRun | None = None
-
-    def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
-        """Tell whether a pose with these stamps counts, and take it for the newest if so.
-
-        ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
-        or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
-        without any stamp counts as it comes.
+        ``stamp`` is that of one more, by the robot's clock; ``same_link`` whether it came on the link of the
+        newest pose. ``now`` is the gateway's clock, seconds.
         """
-        if fix_t is not None or t is None or (self.t is not None and t < self.t):
-            stamp = self._late_by(fix_t, t)
-            if stamp is not None and not self._set_back(stamp, link, now):
-                return False
-        self.fix_t = self.fix_t if fix_t is None else fix_t
-        self.t = self.t if t is None else t
-        self.link = link
-        self._late = None
-        return True
-
-    def restarted(self) -> None:
-        """Forget the robot's own clock: a robot that started again may count from nought."""
-        self.t = self._late = None
-
-    def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
-        """Return the stamp by which a pose is late, or None for one that is not."""
-        if fix_t is not None and self.fix_t is not None and fix_t != self.fix_t:
-            return fix_t if fix_t < self.fix_t else None
-        return t if t is not None and self.t is not None and t < self.t else None
-
-    def _set_back(self, stamp: float, link: str, now: float) -> bool:
-        """Tell whether poses have been late for so long that it must be the robot's clock."""
-        run = self._late
-        if run is None or now < run.since:
-            self._late = _LateRun(now, now, stamp)
-            return False
-        if now - run.since >= LONGEST_DELAY:
+        if now - self.since >= LONGEST_DELAY:
             return True
-        elapsed = now - run.paced_since
+        elapsed = now - self.paced_since
         if elapsed < CLOCK_SET_BACK_AFTER:
             return False
-        if PACE[0] * elapsed <= stamp - run.paced_stamp <= PACE[1] * elapsed:
-            return link == self.link
-        run.paced_since, run.paced_stamp = now, stamp
+        if PACE[0] * elapsed <= stamp - self.paced_stamp <= PACE[1] * elapsed:
+            return same_link
+        self.paced_since, self.paced_stamp = now, stamp
         return False
 
 

@@ -15,7 +15,7 @@ from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
-from .position_checks import AcceptedArea, PoseOrder
+from .position_checks import AcceptedArea, LatePoses
 from .robots_elsewhere import (
     DOUBTED,
     ONLY_SEEN,
@@ -26,10 +26,55 @@ from .robots_elsewhere import (
     liveness,
 )
 
+# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+
+
+@dataclass
+class PoseOrder:
+    """The stamps of a robot's newest pose, by its own clocks, and the link that it came on."""
+
+    fix_t: float | None = None
+    t: float | None = None
+    link: str = ""
+    _late: LatePoses | None = None
+
+    def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
+        """Tell whether a pose with these stamps counts, and take it for the newest if so.
+
+        ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
+        or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
+        without any stamp counts as it comes, and a late one where the robot's clock must have been set back.
+        """
+        if fix_t is not None or (t is not None and self.t is not None and t < self.t):
+            stamp = self._late_by(fix_t, t)
+            if stamp is not None and not self._set_back(stamp, link, now):
+                return False
+        self.fix_t = self.fix_t if fix_t is None else fix_t
+        self.t = self.t if t is None else t
+        self.link = link
+        self._late = None
+        return True
+
+    def restarted(self) -> None:
+        """Forget the robot's own clock: a robot that started again may count from nought."""
+        self.t = self._late = None
+
+    def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
+        """Return the stamp by which a pose is late, or None for one that is not."""
+        if fix_t is not None and self.fix_t is not None and fix_t != self.fix_t:
+            return fix_t if fix_t < self.fix_t else None
+        return t if t is not None and self.t is not None and t < self.t else None
+
+    def _set_back(self, stamp: float, link: str, now: float) -> bool:
+        if self._late is None or now < self._late.since:
+            self._late = LatePoses(now, now, stamp)
+            return False
+        return self._late.show_set_back(stamp, now, same_link=link == self.link)
+
+
 # --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
-# Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the
-# gateway's, by
-# which alone a robot is fresh, stale or lost.
+# Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the gateway's,
+# by which alone a robot is fresh, stale or lost.
 
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
@@ -306,45 +351,36 @@ class Robots:
             robot.pose_at, robot.located = now, True
         return True
 
-    def follow(
-        self, poses: Iterable[RobotPose], link: str, now: float, near: AcceptedArea
-    ) -> tuple[list[RobotPose], list[RobotPose]]:
-        """Take in, as :meth:`observe`, the poses that only go on from where their robots were a moment ago.
+    def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
+        """Take in, as :meth:`observe`, a pose that only goes on from where its robot was a moment ago.
 
-        Return those that moved a robot, and those that there is something to consider about, with which
-        nothing was done.
+        Return false for a late one, as that does; None where there is something to consider about the pose:
+        then nothing was done.
         """
-        moved, others = [], []
-        revision, stale_after = self.revision, self._stale_after
+        robot = self._robots.get(name)
         x_min, y_min, x_max, y_max, step = near
-        for report in poses:
-            name, pose = report
-            robot = self._robots.get(name)
-            if (
-                robot is None
-                or (last := robot.pose) is None
-                or robot.pose_at is None
-                or not -step <= pose.x - last.x <= step
-                or not -step <= pose.y - last.y <= step
-                or not (x_min <= pose.x <= x_max and y_min <= pose.y <= y_max)
-                or not now - robot.pose_at < stale_after
-                or robot.state is not RobotState.FRESH
-                or not robot.located
-                or robot.doubt is not None
-                or robot.ended_in_order
-                or pose.magic is not None
-                or robot.link != link
-            ):
-                others.append(report)
-                continue
-            robot.received_at = now
-            revision += 1
-            robot.revision = revision
-            if robot.order.admit(pose.fix_t, pose.t, link, now):
-                robot.pose, robot.pose_at = pose, now
-                moved.append(report)
-        self.revision = revision
-        return moved, others
+        if (
+            robot is None
+            or (last := robot.pose) is None
+            or robot.pose_at is None
+            or not -step <= pose.x - last.x <= step
+            or not -step <= pose.y - last.y <= step
+            or not (x_min <= pose.x <= x_max and y_min <= pose.y <= y_max)
+            or not now - robot.pose_at < self._stale_after
+            or robot.state is not RobotState.FRESH
+            or not robot.located
+            or robot.doubt is not None
+            or robot.ended_in_order
+            or pose.magic is not None
+            or robot.link != link
+        ):
+            return None
+        robot.received_at = now
+        robot.revision = self.revision = self.revision + 1
+        if not robot.order.admit(pose.fix_t, pose.t, link, now):
+            return False
+        robot.pose, robot.pose_at = pose, now
+        return True
 
     def let_go(self, name: str, gateway: str) -> None:
         """Note that another gateway has a robot."""

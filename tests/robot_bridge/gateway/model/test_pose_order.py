@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY, PoseOrder
+from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY
+from robot_bridge.gateway.model.robots import PoseOrder
 
 
 @pytest.fixture

@@ -1,11 +1,14 @@
-"""A batch of poses leaves the robots as the same poses do one by one, whatever is odd about some of them."""
+"""Poses that are followed leave robots as those that are considered, whatever is odd about some of them."""
 
 from __future__ import annotations
 
+import math
 import random
 from dataclasses import asdict, replace
 from types import SimpleNamespace
 from typing import ClassVar
+
+import pytest
 
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.core.messages.robots import SendPos
@@ -24,16 +27,16 @@ LINK, ROUNDS, STEP = "yard", 250, 0.1
 
 
 class Side:
-    """Robots that take poses one by one, or in batches first."""
+    """Robots whose poses are considered one by one, or followed where there is nothing to consider."""
 
     ODD: ClassVar = (
         *("late", "outside", "leap", "standing", "fix", "magic"),
         *("silent", "stopped", "other link", "anew"),
     )
 
-    def __init__(self, names, *, batches):
+    def __init__(self, names, *, follows):
         events = EventBus()
-        self.robots, self.batches = Robots(events=events), batches
+        self.robots, self.follows = Robots(events=events), follows
         self.checks = PlaceChecks(SimpleNamespace(settings=SITE))
         self.followed = 0
         self.back, self.unseen = [], []
@@ -42,12 +45,11 @@ class Side:
             self.robots.ready(name, number + 1, LINK, 0.0)
 
     def receive(self, poses, now):
-        moved = []
-        if self.batches:
-            moved, poses = self.robots.follow(poses, LINK, now, self.checks.near())
-            self.followed += len(moved)
         for name, pose in poses:
-            self._receive_one(name, pose, now)
+            moved = self.robots.follow(name, pose, LINK, now, self.checks.near()) if self.follows else None
+            self.followed += bool(moved)
+            if moved is None:
+                self._receive_one(name, pose, now)
 
     def _receive_one(self, name, pose, now):
         try:
@@ -92,10 +94,10 @@ def odd_pose(pose, odd, chance):
     return replace(pose, fix_t=pose.t - chance.uniform(0, 1)) if odd == "fix" else pose
 
 
-def test_a_batch_leaves_robots_as_their_poses_do_one_by_one():
+def test_poses_that_are_followed_leave_robots_as_those_that_are_considered():
     chance = random.Random(3)
     names = [f"r{n}" for n in range(8)]
-    one_by_one, together = Side(names, batches=False), Side(names, batches=True)
+    considered, followed = Side(names, follows=False), Side(names, follows=True)
     now = 1000.0
     for number in range(ROUNDS):
         now += STEP
@@ -104,19 +106,19 @@ def test_a_batch_leaves_robots_as_their_poses_do_one_by_one():
             odd = chance.choice(Side.ODD) if chance.random() < 0.08 else None
             if odd == "silent":
                 now += chance.choice((0.0, 3.1, 11.0))
-            for side in (one_by_one, together):
+            for side in (considered, followed):
                 side.happen(odd, name, now) if name != "ghost" else None
             if odd != "silent":
                 poses.append((name, odd_pose(SendPos(number * STEP, n + 0.5, 0.0, 1.0, t=now), odd, chance)))
-        one_by_one.receive(poses, now)
-        together.receive(poses, now)
-        assert together.state() == one_by_one.state(), (number, now)
+        considered.receive(poses, now)
+        followed.receive(poses, now)
+        assert followed.state() == considered.state(), (number, now)
     # Nearly all poses of a fleet that drives need no second look.
-    assert together.followed > ROUNDS * len(names) / 3
+    assert followed.followed > ROUNDS * len(names) / 3
 
 
-def test_every_change_of_a_batch_has_a_revision_of_its_own():
-    side = Side(["a", "b"], batches=True)
+def test_every_pose_that_is_followed_has_a_revision_of_its_own():
+    side = Side(["a", "b"], follows=True)
     for now in (1.0, 1.1):
         since = side.robots.revision
         side.receive([(name, SendPos(1.0, 1.0, 0.0, 1.0)) for name in "ab"], now)
@@ -125,10 +127,18 @@ def test_every_change_of_a_batch_has_a_revision_of_its_own():
 
 
 def test_a_robot_that_was_lost_by_shorter_limits_is_back():
-    side = Side(["a"], batches=True)
+    side = Side(["a"], follows=True)
     side.receive([("a", SendPos(1.0, 1.0, 0.0, 1.0))], 1.0)
     side.robots.limit(1.0, 2.0)
     side.robots.age(4.0)
     side.robots.limit(30.0, 60.0)
     side.receive([("a", SendPos(1.0, 1.0, 0.0, 1.0))], 4.0)
     assert (side.back, side.robots.get("a").state) == ([("a", 3.0)], RobotState.FRESH)
+
+
+def test_where_poses_need_no_second_look_is_as_the_settings_are_now():
+    site = SimpleNamespace(settings=SITE)
+    checks = PlaceChecks(site)
+    assert checks.near()[:4] == (-60.0, -60.0, 160.0, 160.0)
+    site.settings = replace(SITE, limits=replace(LIMITS, place_within_m=10.0, leap_m=7.0))
+    assert checks.near() == pytest.approx((-10.0, -10.0, 110.0, 110.0, 7.0 / math.sqrt(2)))
