@@ -354,8 +354,7 @@ class Robots:
     def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
         """Take in, as :meth:`observe`, a pose that only goes on from where its robot was a moment ago.
 
-        Return false for a late one, as that does; None where there is something to consider about the pose:
-        then nothing was done.
+        Return false for a late one; None, with nothing done, where there is something to consider about it.
         """
         robot = self._robots.get(name)
         x_min, y_min, x_max, y_max, step = near
@@ -363,16 +362,12 @@ class Robots:
             robot is None
             or (last := robot.pose) is None
             or robot.pose_at is None
-            or not -step <= pose.x - last.x <= step
-            or not -step <= pose.y - last.y <= step
+            or not (-step <= pose.x - last.x <= step and -step <= pose.y - last.y <= step)
             or not (x_min <= pose.x <= x_max and y_min <= pose.y <= y_max)
             or not now - robot.pose_at < self._stale_after
             or robot.state is not RobotState.FRESH
-            or not robot.located
-            or robot.doubt is not None
-            or robot.ended_in_order
-            or pose.magic is not None
-            or robot.link != link
+            or not (robot.located and robot.doubt is None and not robot.ended_in_order)
+            or not (pose.magic is None and robot.link == link)
         ):
             return None
         robot.received_at = now
