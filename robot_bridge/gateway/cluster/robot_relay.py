@@ -16,8 +16,15 @@ import numpy as np
 import numpy.typing as npt
 
 from ...core.messages.base import LONGEST_STATUS, one_line
-from ..model.robots import DescribedElsewhere, Robot, Robots
-from ..model.robots_elsewhere import ENDED, LOCATED, ONLY_SEEN, TOLD_NUMBERS, ToldElsewhere
+from ..model.robots import Robot, Robots
+from ..model.robots_elsewhere import (
+    ENDED,
+    LOCATED,
+    ONLY_SEEN,
+    TOLD_NUMBERS,
+    DescribedElsewhere,
+    ToldElsewhere,
+)
 from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership

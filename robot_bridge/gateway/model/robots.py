@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
-from typing import NamedTuple
 
 from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
@@ -20,6 +19,7 @@ from .robots_elsewhere import (
     DOUBTED,
     ONLY_SEEN,
     RECEIVED_AT,
+    DescribedElsewhere,
     PlacesElsewhere,
     RobotColumns,
     ToldElsewhere,
@@ -79,18 +79,6 @@ class PoseOrder:
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
-
-
-class DescribedElsewhere(NamedTuple):
-    """What another gateway says of a robot when it has changed, as a :class:`Robot` and its pose have it."""
-
-    battery: float | None
-    status: str | None
-    doubt: str | None
-    latency: float | None
-    paths: PathDeclaration | None
-    abilities: str | None
-    magic: int | None = None
 
 
 @dataclass

@@ -15,7 +15,7 @@ import numpy.typing as npt
 from ...core.clock import ClockStep
 from ...core.messages.base import COORDINATE, SPEED, THETA
 from ...core.messages.robots import SendPos
-from ...core.messages.safety import RobotState
+from ...core.messages.safety import PathDeclaration, RobotState
 
 ENDED, LOCATED, ONLY_SEEN, DOUBTED = 1, 2, 4, 8
 """Flags of a robot: it ended in good order, has said where it is since its Ready, is only seen, and the place
@@ -80,6 +80,18 @@ class ToldElsewhere(NamedTuple):
         """Return what is said of some robots."""
         names = [self.names[row] for row in rows]
         return ToldElsewhere(self.gateway, names, self.table[rows], self.flags[rows], self.wall)
+
+
+class DescribedElsewhere(NamedTuple):
+    """What another gateway says of a robot when it has changed, as a :class:`Robot` and its pose have it."""
+
+    battery: float | None
+    status: str | None
+    doubt: str | None
+    latency: float | None
+    paths: PathDeclaration | None
+    abilities: str | None
+    magic: int | None = None
 
 
 class PlacesElsewhere(NamedTuple):

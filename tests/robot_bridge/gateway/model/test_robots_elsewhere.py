@@ -13,12 +13,13 @@ from robot_bridge.core.clock import ClockStep
 from robot_bridge.core.messages.positions import link_elsewhere
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.gateway.model.robots import DescribedElsewhere, Robot, Robots
+from robot_bridge.gateway.model.robots import Robot, Robots
 from robot_bridge.gateway.model.robots_elsewhere import (
     ENDED,
     LOCATED,
     ONLY_SEEN,
     STATES,
+    DescribedElsewhere,
     ToldElsewhere,
     liveness,
     state_codes,
