@@ -102,7 +102,9 @@ class Gateway:
             now = time.monotonic() - began
             due = round(now * self._plan.robots)
             self.late = max(self.late, (due - told) / self._plan.robots - TURN_S)
-            self.robots.follow(self._due(told, due), LINK, time.time(), area)
+            at = time.time()
+            for robot, pose in self._due(told, due):
+                self.robots.follow(robot, pose, LINK, at, area)
             told = due
 
     async def _age(self) -> None:
@@ -130,7 +132,9 @@ async def run(plan: Plan) -> None:
     print("ready", flush=True)
     while line := await loop.run_in_executor(None, sys.stdin.readline):
         cpu, gateway.late, gateway.frames, gateway.bytes = time.process_time(), 0.0, 0, 0
-        await asyncio.sleep(json.loads(line)["seconds"])
+        await asyncio.wait({running}, timeout=json.loads(line)["seconds"])
+        if running.done():
+            running.result()
         found = {
             "cpu": time.process_time() - cpu,
             "late": gateway.late,
