@@ -33,7 +33,7 @@ from tests.support.nats_server import NatsServer
 from tests.support.processes import Processes
 
 GATEWAYS = 4
-ROBOTS, RATE = size(5000, 50), 1.0
+ROBOTS, RATE = size(2500, 50), 1.0
 """robots of a gateway, and how often each says where it is in a second."""
 NEAR, DESK_RATE = size(500, 20), 10.0
 """robots in a view that shows them one by one, and frames a second."""

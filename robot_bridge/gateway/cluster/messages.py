@@ -43,8 +43,10 @@ FRAME = 128
 """bytes of a message at most beside the robots in it."""
 MOST_ROBOTS = 8192
 """in one message."""
-PLACE_BYTES = 4 * TOLD_NUMBERS + 1 + 2
-"""bytes that a robot takes in a message of positions, beside its name."""
+PLACE_BYTES, NAME_BYTES = 4 * TOLD_NUMBERS + 4 + 1, 2
+"""bytes that a robot takes in a message of positions, and its name beside its letters."""
+MOST_IDS = 1_000_000
+"""numbers that a run of a gateway has for robots."""
 
 MOST_NAMED = 50
 """robots that are named one by one in a message."""
@@ -123,19 +125,26 @@ class AbortCall(BusMessage, frozen=True, tag="abort"):
 class PositionBatch(BusMessage, frozen=True, tag="positions"):
     """Where robots of the gateway are, at the database's time ``t``, in seconds.
 
-    ``numbers`` are float32, robot by robot, NaN where there is none: x, y (m, site frame), theta (rad), v
-    (m/s), seconds since its pose, and since its last message. ``flags`` are a byte of each robot: see
-    :data:`~..model.robots_elsewhere.TOLD_FLAGS`.
+    ``ids`` are uint32, by which run ``run`` of the gateway knows its robots; ``names`` those of the first of
+    them, the others were named before. ``numbers`` are float32, robot by robot, NaN where there is none: x, y
+    (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its last message. ``flags`` are a
+    byte of each robot: see :data:`~..model.robots_elsewhere.TOLD_FLAGS`.
     """
 
     t: float
+    run: Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
+    ids: Annotated[bytes, Meta(max_length=4 * MOST_ROBOTS)]
     names: Annotated[list[Robot], Meta(max_length=MOST_ROBOTS)]
     numbers: Annotated[bytes, Meta(max_length=4 * TOLD_NUMBERS * MOST_ROBOTS)]
     flags: Annotated[bytes, Meta(max_length=MOST_ROBOTS)]
 
     def table(self) -> npt.NDArray[np.float32]:
         """Return the numbers, a row for each robot."""
-        return np.frombuffer(self.numbers, dtype="<f4").reshape(len(self.names), TOLD_NUMBERS)
+        return np.frombuffer(self.numbers, dtype="<f4").reshape(-1, TOLD_NUMBERS)
+
+    def robots(self) -> npt.NDArray[np.uint32]:
+        """Return the ids."""
+        return np.frombuffer(self.ids, dtype="<u4")
 
 
 class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
@@ -232,19 +241,23 @@ class Codec:
         return hashlib.blake2b(content, digest_size=SIGNATURE, key=self._key).digest()
 
 
-def position_batches(
-    gateway: str, now: float, names: list[str], table: npt.NDArray[np.float32], flags: bytes, largest: int
-) -> Iterator[PositionBatch]:
-    """Yield where robots are, in messages of at most ``largest`` bytes."""
-    room, begin = largest - FRAME, 0
+def position_batches(whole: PositionBatch, largest: int) -> Iterator[PositionBatch]:
+    """Yield what ``whole`` says in messages of at most ``largest`` bytes, which all are small enough."""
+    sizes = np.full(len(whole.flags), PLACE_BYTES)
     # Names are ASCII.
-    ends = np.cumsum(list(map(len, names))) + PLACE_BYTES * np.arange(1, len(names) + 1)
-    while begin < len(names):
-        before = int(ends[begin - 1]) if begin else 0
-        fitting = int(np.searchsorted(ends, before + room, side="right")) - begin
-        end = begin + min(max(fitting, 1), MOST_ROBOTS)
-        numbers = table[begin:end].tobytes()
-        yield PositionBatch(gateway, now, names[begin:end], numbers, flags[begin:end])
+    letters = np.array([len(name) for name in whole.names], dtype=np.intp)
+    sizes[: len(letters)] += NAME_BYTES + letters
+    ends, begin = np.cumsum(sizes), 0
+    while begin < len(sizes):
+        room = largest - FRAME + (int(ends[begin - 1]) if begin else 0)
+        end = min(max(int(np.searchsorted(ends, room, side="right")), begin + 1), begin + MOST_ROBOTS)
+        yield msgspec.structs.replace(
+            whole,
+            ids=whole.ids[4 * begin : 4 * end],
+            names=whole.names[begin:end],
+            numbers=whole.numbers[4 * TOLD_NUMBERS * begin : 4 * TOLD_NUMBERS * end],
+            flags=whole.flags[begin:end],
+        )
         begin = end
 
 
@@ -264,9 +277,15 @@ def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[lis
 
 
 def _check_lengths(batch: PositionBatch) -> None:
-    count = len(batch.names)
-    if len(batch.numbers) != 4 * TOLD_NUMBERS * count or len(batch.flags) != count:
+    count = len(batch.flags)
+    if (
+        len(batch.numbers) != 4 * TOLD_NUMBERS * count
+        or len(batch.ids) != 4 * count
+        or len(batch.names) > count
+    ):
         raise BusMessageError(f"positions of {count} robots with numbers of others")
+    if count and int(batch.robots().max()) >= MOST_IDS:
+        raise BusMessageError(f"positions of a robot with a number of {MOST_IDS} or more")
 
 
 # --- Exchange: messages out onto the buses, and those that come in to whoever subscribed ---

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import asyncio
 import math
+import secrets
 from collections.abc import Iterable, Sequence
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -30,6 +31,7 @@ from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership
 from .messages import (
     LARGEST,
+    MOST_IDS,
     DetailBatch,
     Exchange,
     PositionBatch,
@@ -61,7 +63,9 @@ POSITION_TICK_S = 0.2
 """seconds between two messages: of each robot only the newest position of a tick goes out."""
 POSITION_OLD_S = 1.0
 """seconds after which a message is dropped: it has waited somewhere, and newer ones follow it."""
-POSITION_ALL_S = 5.0
+NAMES_AGAIN_S = 1.0
+"""seconds between two times that a gateway is asked to name its robots."""
+POSITION_ALL_S = 10.0
 """seconds after which robots that say nothing new are told again: a message may have been lost. A gateway
 that comes, or learns that another one has a robot now, asks for all."""
 
@@ -92,7 +96,9 @@ class PositionRelay:
         self._revision = -1
         self._told_all_at, self._was_cut_off = -math.inf, True
         self._newest = NewestBatches(POSITION_OLD_S)
-        self._asked = asyncio.Event()
+        self._asked, self._asked_at = asyncio.Event(), -math.inf
+        self._run, self._ids = secrets.randbits(62), dict[str, int]()
+        """the numbers by which other gateways are told of robots: their names take longer than all else."""
         exchange.subscribe(PositionBatch, self._take)
         exchange.subscribe(Wake, self._woken)
 
@@ -119,11 +125,32 @@ class PositionRelay:
         if everything:
             self._told_all_at = now
         mine = self._robots.own(since)
-        if not mine:
-            return
-        names, table = [robot.name for robot in mine], _table(mine, now - self._membership.clock_offset)
-        for batch in position_batches(self._exchange.gateway, now, names, table, _flags(mine), self._largest):
-            self._exchange.send(POSITIONS, batch)
+        if mine:
+            for batch in position_batches(self._batch(mine, now, name_all=everything), self._largest):
+                self._exchange.send(POSITIONS, batch)
+
+    def _batch(self, robots: list[Robot], now: float, *, name_all: bool) -> PositionBatch:
+        """Return where robots are; those that are new are named, with ``name_all`` all."""
+        if len(self._ids) + len(robots) > MOST_IDS:
+            # Of those that were here before most have gone.
+            self._run, self._ids, name_all = self._run + 1, {}, True
+        known, ids = len(self._ids), self._ids
+        numbers = np.array([ids.setdefault(robot.name, len(ids)) for robot in robots], dtype="<u4")
+        if not name_all and len(ids) > known:
+            # What is named comes first.
+            order = np.argsort(numbers < known, kind="stable")
+            robots, numbers = [robots[row] for row in order.tolist()], numbers[order]
+        named = len(robots) if name_all else len(ids) - known
+        table = _table(robots, now - self._membership.clock_offset)
+        return PositionBatch(
+            self._exchange.gateway,
+            now,
+            self._run,
+            numbers.tobytes(),
+            [robot.name for robot in robots[:named]],
+            table.tobytes(),
+            _flags(robots),
+        )
 
     def _woken(self, wake: Wake) -> None:
         if wake.what == "positions":
@@ -135,7 +162,11 @@ class PositionRelay:
             return
         wall = batch.t - self._membership.clock_offset
         flags = np.frombuffer(batch.flags, dtype=np.uint8)
-        self._robots.observe_elsewhere(ToldElsewhere(batch.gw, batch.names, batch.table(), flags, wall))
+        told = ToldElsewhere(batch.gw, batch.run, batch.robots(), batch.names, batch.table(), flags, wall)
+        if not self._robots.observe_elsewhere(told) and batch.t - self._asked_at >= NAMES_AGAIN_S:
+            # A message was lost, or came before this gateway knew that the other one has the robot.
+            self._asked_at = batch.t
+            self._exchange.wake("positions", batch.gw)
 
 
 def _table(robots: Sequence[Robot], wall: float) -> npt.NDArray[np.float32]:

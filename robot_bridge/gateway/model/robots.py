@@ -372,17 +372,21 @@ class Robots:
             robot.gateway, robot.link = gateway, link_elsewhere(gateway)
             self._add(robot)
 
-    def observe_elsewhere(self, told: ToldElsewhere) -> None:
-        """Take in what another gateway says of robots that it has; of others nothing is taken in."""
-        self.revision, missing = self._columns.observe(told, self.revision)
+    def observe_elsewhere(self, told: ToldElsewhere) -> bool:
+        """Take in what another gateway says of robots that it has; of others nothing is taken in.
+
+        Returns whether all of them are known by their numbers: else it had better name them again.
+        """
+        self.revision, missing, all_named = self._columns.observe(told, self.revision)
         new = [row for row in missing if told.names[row] not in self._robots]
         if not new:
-            return
+            return all_named
         link = link_elsewhere(told.gateway)
         for row in new:
             received_at = told.wall - float(told.table[row, RECEIVED_AT])
             self._add(Robot(told.names[row], 0, link, received_at, gateway=told.gateway))
-        self.revision, _ = self._columns.observe(told.only(new), self.revision)
+        self.revision = self._columns.observe(told.only(new), self.revision).revision
+        return all_named
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
         """Take in the details that another gateway tells of a robot that it has."""

@@ -38,6 +38,7 @@ _SPARE = 256
 Numbers = npt.NDArray[np.float64]
 Flags = npt.NDArray[np.uint8]
 Rows = npt.NDArray[np.intp]
+Counts = npt.NDArray[np.int64]
 
 
 def liveness(
@@ -66,20 +67,23 @@ def state_codes(
 class ToldElsewhere(NamedTuple):
     """What another gateway says of n of its robots.
 
-    ``table`` is (n, :data:`TOLD_NUMBERS`), NaN where there is nothing; ``wall`` the time by this computer's
-    clock since which its ages count, and ``flags`` (n,).
+    ``ids`` (n,) are the numbers by which run ``run`` of that gateway knows them; ``names`` are those of the
+    first of them, the others were named before. ``table`` is (n, :data:`TOLD_NUMBERS`), NaN where there is
+    nothing; ``wall`` the time by this computer's clock since which its ages count, and ``flags`` (n,).
     """
 
     gateway: str
+    run: int
+    ids: npt.NDArray[np.uint32]
     names: Sequence[str]
     table: npt.NDArray[np.float32]
     flags: Flags
     wall: float
 
     def only(self, rows: Sequence[int]) -> ToldElsewhere:
-        """Return what is said of some robots."""
-        names = [self.names[row] for row in rows]
-        return ToldElsewhere(self.gateway, names, self.table[rows], self.flags[rows], self.wall)
+        """Return what is said of some of the robots that are named."""
+        names, ids = [self.names[row] for row in rows], self.ids[rows]
+        return self._replace(ids=ids, names=names, table=self.table[rows], flags=self.flags[rows])
 
 
 class DescribedElsewhere(NamedTuple):
@@ -125,6 +129,39 @@ class RobotElsewhere(Protocol):
 Known = TypeVar("Known", bound=RobotElsewhere)
 
 
+class Numbering:
+    """In which row the robot is that a run of a gateway knows by a number."""
+
+    def __init__(self, run: int) -> None:
+        self.run = run
+        self._rows = np.empty(0, dtype=np.intp)
+        self._lives = np.empty(0, dtype=np.int64)
+        """-1 of a number that was not named."""
+
+    def name(self, ids: Rows, rows: Rows, lives: Counts) -> None:
+        """Note the rows of robots, below 0 where they have none, and which use of each row it is."""
+        missing = int(ids.max(initial=-1)) + 1 - len(self._rows)
+        if missing > 0:
+            self._rows = np.concatenate([self._rows, np.empty(missing + _SPARE, np.intp)])
+            self._lives = np.concatenate([self._lives, np.full(missing + _SPARE, -1)])
+        self._rows[ids], self._lives[ids] = rows, lives
+
+    def rows(self, ids: Rows, lives: Counts) -> tuple[Rows, bool]:
+        """Return the rows of robots, below 0 where they have none, and whether each number was named.
+
+        ``lives`` counts by row how often it has been used.
+        """
+        known = ids < len(self._rows)
+        rows = np.full(len(ids), -1, dtype=np.intp)
+        rows[known] = self._rows[ids[known]]
+        then = np.full(len(ids), -1)
+        then[known] = self._lives[ids[known]]
+        # A row that has another robot since is not its any more.
+        stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, 0)
+        rows[stale] = -1
+        return rows, not stale.any()
+
+
 class RowReading(NamedTuple):
     """What a row says of its robot; times by this computer's clock, ``place`` is x, y, theta and v."""
 
@@ -138,6 +175,15 @@ class RowReading(NamedTuple):
     revision: int
 
 
+class Observed(NamedTuple):
+    """What came of observing: the newest revision, those of the named robots that have no row, and whether
+    all others were named before."""
+
+    revision: int
+    missing: list[int]
+    all_named: bool
+
+
 class RobotColumns:
     """Robots of other gateways by row; a row whose robot is gone is used again."""
 
@@ -146,12 +192,15 @@ class RobotColumns:
         self._names: list[str] = []
         self._free: list[int] = []
         self._gateways: dict[str, int] = {}
+        self._numberings: dict[str, Numbering] = {}
         self._numbers = np.empty((BATTERY + 1, 0))
         self._flags = np.empty(0, dtype=np.uint8)
         self._states = np.empty(0, dtype=np.uint8)
         self._owners = np.empty(0, dtype=np.int32)
         self._revisions = np.empty(0, dtype=np.int64)
         """-1 of a row that is free."""
+        self._lives = np.empty(0, dtype=np.int64)
+        """how often each row has been free."""
 
     def __contains__(self, name: str) -> bool:
         return name in self._rows
@@ -194,6 +243,7 @@ class RobotColumns:
         row = self._rows.pop(name, None)
         if row is not None:
             self._revisions[row] = -1
+            self._lives[row] += 1
             self._free.append(row)
 
     def describe(self, name: str, battery: float | None, flags: int, revision: int) -> None:
@@ -210,20 +260,18 @@ class RobotColumns:
 
     # --- Many ---
 
-    def observe(self, told: ToldElsewhere, revision: int) -> tuple[int, list[int]]:
-        """Take in what a gateway says of the robots that are known as its own.
-
-        Returns the newest revision, each robot having got one after ``revision``, and which of those that
-        were told of have no row.
-        """
-        rows = np.array([self._rows.get(name, -1) for name in told.names], dtype=np.intp)
+    def observe(self, told: ToldElsewhere, revision: int) -> Observed:
+        """Take in what a gateway says of the robots that are known as its own; each gets a revision after
+        ``revision``."""
+        rows, all_named = self._rows_of(told)
         table = told.table.astype(np.float64)
         with np.errstate(invalid="ignore"):
             heard = np.isfinite(table[:, RECEIVED_AT])
             placed = (
                 (np.abs(table[:, :POSE_AT]) <= _LARGEST).all(axis=1) & np.isfinite(table[:, POSE_AT]) & heard
             )
-        missing = np.flatnonzero((rows < 0) & heard).tolist()
+        named = len(told.names)
+        missing = np.flatnonzero((rows[:named] < 0) & heard[:named]).tolist()
         counts = (rows >= 0) & heard
         counts[counts] = self._owners[rows[counts]] == self._owner(told.gateway)
         placed &= counts
@@ -233,7 +281,18 @@ class RobotColumns:
         rows = rows[counts]
         self._numbers[RECEIVED_AT, rows] = told.wall - table[counts, RECEIVED_AT]
         self._flags[rows] = (self._flags[rows] & DOUBTED) | (told.flags[counts] & TOLD_FLAGS)
-        return self._changed(rows, revision), missing
+        return Observed(self._changed(rows, revision), missing, all_named)
+
+    def _rows_of(self, told: ToldElsewhere) -> tuple[Rows, bool]:
+        numbering = self._numberings.get(told.gateway)
+        if numbering is None or numbering.run != told.run:
+            numbering = self._numberings[told.gateway] = Numbering(told.run)
+        ids, named = told.ids.astype(np.intp), len(told.names)
+        rows = np.array([self._rows.get(name, -1) for name in told.names], dtype=np.intp)
+        lives = np.where(rows >= 0, self._lives[rows] if len(self._lives) else 0, 0)
+        numbering.name(ids[:named], rows, lives)
+        others, all_named = numbering.rows(ids[named:], self._lives)
+        return np.concatenate([rows, others]), all_named
 
     def read_changed(self, robots: Sequence[Known]) -> Iterator[tuple[Known, RowReading]]:
         """Yield those of ``robots`` with rows that are not as their rows say, with what those say."""
@@ -318,3 +377,4 @@ class RobotColumns:
         self._states = np.concatenate([self._states, np.zeros(more, np.uint8)])
         self._owners = np.concatenate([self._owners, np.zeros(more, np.int32)])
         self._revisions = np.concatenate([self._revisions, np.full(more, -1, np.int64)])
+        self._lives = np.concatenate([self._lives, np.zeros(more, np.int64)])

@@ -24,6 +24,8 @@ from robot_bridge.gateway.cluster.bus import (
 )
 from robot_bridge.gateway.cluster.messages import (
     LARGEST,
+    MOST_ROBOTS,
+    NAME_BYTES,
     PLACE_BYTES,
     Beat,
     BusMessageError,
@@ -52,6 +54,11 @@ async def until(condition, seconds=10.0):
             await asyncio.sleep(0.005)
 
 
+def positions(**other):
+    whole = {"ids": b"\0\0\0\0", "names": ["r1"], "numbers": 24 * b"\0", "flags": b"\0"}
+    return PositionBatch("a", 1.0, 1, **{**whole, **other})
+
+
 # --- messages ---------------------------------------------------------------------------------------------
 
 
@@ -60,7 +67,8 @@ def test_a_message_comes_out_as_it_went_in():
     for message in (CALL, Beat("a"), Wake("a", "steps"), StopSeen("a", "stop-1", 5, 3, 2, ["r1"], [])):
         assert codec.decode(codec.encode(message)) == message
     numbers = np.arange(12, dtype="<f4")
-    batch = PositionBatch("a", 1000.0, ["r1", "r2"], numbers.tobytes(), b"\0\1")
+    ids = np.array([7, 8], dtype="<u4").tobytes()
+    batch = PositionBatch("a", 1000.0, 1, ids, ["r1", "r2"], numbers.tobytes(), b"\0\1")
     assert codec.decode(codec.encode(batch)).table().tolist() == numbers.reshape(2, 6).tolist()
 
 
@@ -75,7 +83,10 @@ def test_a_message_comes_out_as_it_went_in():
         (lambda data: signed(b"\x01garbage"), "cannot be read"),
         (lambda data: Codec(KEY).encode(Wake("a", "nonsense")), "cannot be read"),
         (lambda data: Codec(KEY).encode(Beat("a" * 33)), "cannot be read"),
-        (lambda data: Codec(KEY).encode(PositionBatch("a", 1.0, ["r1"], b"", b"\0")), "numbers of others"),
+        (lambda data: Codec(KEY).encode(positions(numbers=b"")), "numbers of others"),
+        (lambda data: Codec(KEY).encode(positions(ids=b"\0")), "numbers of others"),
+        (lambda data: Codec(KEY).encode(positions(names=["r1", "r2"])), "numbers of others"),
+        (lambda data: Codec(KEY).encode(positions(ids=b"\0\0\0\1")), "a number of 1000000 or more"),
         (lambda data: details(RobotDetails("r1", battery=1.5)), "cannot be read"),
         (lambda data: details(RobotDetails("r1", status=257 * "a")), "cannot be read"),
         (lambda data: details(RobotDetails("r1", paths="by air")), "cannot be read"),
@@ -103,16 +114,20 @@ def test_details_of_many_robots_fit_into_messages():
 @pytest.mark.parametrize("largest", [LARGEST, LARGEST_NOTIFICATION])
 @pytest.mark.parametrize("letters", [1, 63])
 def test_positions_of_any_number_of_robots_fit_into_messages(largest, letters):
+    ids = np.arange(24_000, dtype="<u4")
     names = [str(number).rjust(letters, "r") for number in range(12_000)]
-    table = np.arange(6 * len(names), dtype="<f4").reshape(-1, 6)
-    flags = bytes(number % 8 for number in range(len(names)))
+    table = np.arange(6 * len(ids), dtype="<f4").reshape(-1, 6)
+    flags = bytes(number % 8 for number in range(len(ids)))
     codec = Codec(KEY)
-    sent = [codec.encode(one) for one in position_batches("a", 1e9 + 0.1, names, table, flags, largest)]
+    whole = PositionBatch("a", 1e9 + 0.1, (1 << 62) + 1, ids.tobytes(), names, table.tobytes(), flags)
+    sent = [codec.encode(one) for one in position_batches(whole, largest)]
     assert all(len(one) <= largest for one in sent)
-    # None is much smaller than it may be.
-    assert len(sent) <= 1.1 * (sum(map(len, names)) + PLACE_BYTES * len(names)) / largest + 1
+    # None is much smaller than it may be, or has more robots.
+    needed = sum(map(len, names)) + NAME_BYTES * len(names) + PLACE_BYTES * len(ids)
+    assert len(sent) <= 1.1 * needed / largest + len(ids) / MOST_ROBOTS + 1
     heard = [codec.decode(one) for one in sent]
     assert [name for one in heard for name in one.names] == names
+    assert np.array_equal(np.concatenate([one.robots() for one in heard]), ids)
     assert np.array_equal(np.concatenate([one.table() for one in heard]), table)
     assert b"".join(one.flags for one in heard) == flags
 
@@ -148,7 +163,7 @@ def test_stops_and_wakes_go_over_every_bus_and_positions_over_the_first():
     exchange = Exchange("a", KEY, [first, second])
     assert exchange.send(STOP, CALL)
     exchange.wake("owners", "b")
-    exchange.send(POSITIONS, PositionBatch("a", 1.0, [], b"", b""))
+    exchange.send(POSITIONS, PositionBatch("a", 1.0, 1, b"", [], b"", b""))
     assert [subject for subject, _ in first.sent] == [STOP, "wake.b", POSITIONS]
     assert [subject for subject, _ in second.sent] == [STOP, "wake.b"]
     assert not Exchange("a", KEY, [Recorder(connected=False)]).send(STOP, CALL)

@@ -7,9 +7,15 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.gateway.cluster import robot_relay
 from robot_bridge.gateway.cluster.bus import EVERYBODY
 from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
-from robot_bridge.gateway.cluster.robot_relay import DETAIL_ALL_AGAIN_S, DetailRelay, PositionRelay
+from robot_bridge.gateway.cluster.robot_relay import (
+    DETAIL_ALL_AGAIN_S,
+    NAMES_AGAIN_S,
+    DetailRelay,
+    PositionRelay,
+)
 from robot_bridge.gateway.model.robots import Robots
 
 CODEC = Codec(b"k" * 32)
@@ -27,12 +33,12 @@ class Bus:
 
 
 class Place:
-    """Gateway b with a robot, at a time that stands still."""
+    """A gateway with a robot, at a time that stands still."""
 
-    def __init__(self):
-        self.bus, self.robots = Bus(), Robots()
+    def __init__(self, name="b"):
+        self.bus, self.robots, self.names = Bus(), Robots(), {}
         # The second one carries what is urgent alone.
-        self.exchange = Exchange("b", b"k" * 32, [self.bus, Bus()])
+        self.exchange = Exchange(name, b"k" * 32, [self.bus, Bus()])
         self.now = 1000.0
         membership = SimpleNamespace(database_time=lambda: self.now, clock_offset=0.0)
         self.relay = PositionRelay(self.robots, membership, self.exchange)
@@ -44,8 +50,12 @@ class Place:
         """Return what goes out by the next tick: names of robots, and what others are asked for."""
         self.bus.sent.clear()
         self.relay.send_changes()
-        named = [name for one in self.bus.sent if isinstance(one, PositionBatch) for name in one.names]
-        return named, [one.what for one in self.bus.sent if isinstance(one, Wake)]
+        told = []
+        for batch in [one for one in self.bus.sent if isinstance(one, PositionBatch)]:
+            ids = batch.robots().tolist()
+            self.names.update(zip(ids, batch.names, strict=False))
+            told += [self.names[id] for id in ids]
+        return told, [one.what for one in self.bus.sent if isinstance(one, Wake)]
 
     async def detailed(self):
         """Return the names of the robots whose details go out next."""
@@ -128,3 +138,63 @@ def test_a_robot_of_another_gateway_is_told_by_that_alone(place):
     place.robots.let_go("r1", "a")
     place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
     assert place.tick() == ([], [])
+
+
+def test_robots_are_named_once_and_all_of_them_to_who_asks(place):
+    def named():
+        return [name for one in place.bus.sent if isinstance(one, PositionBatch) for name in one.names]
+
+    place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    place.robots.ready("r2", 1, "yard", 1000.0)
+    place.robots.ready("r0", 1, "yard", 1000.0)
+    assert place.tick() == (["r2", "r0", "r1"], []) and named() == ["r2", "r0"]
+    place.robots.observe("r2", SendPos(1.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    assert place.tick() == (["r2"], []) and named() == []
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
+    assert place.tick() == (["r1", "r2", "r0"], []) and named() == ["r1", "r2", "r0"]
+
+
+def test_a_gateway_that_runs_out_of_numbers_begins_anew(place, monkeypatch):
+    monkeypatch.setattr(robot_relay, "MOST_IDS", 2)
+    run = place.relay._run
+    for name in ("r2", "r3"):
+        place.robots.ready(name, 1, "yard", 1000.0)
+        place.robots.remove("r1")
+    place.tick()
+    batches = [one for one in place.bus.sent if isinstance(one, PositionBatch)]
+    assert [one.run for one in batches] == [run + 1]
+    assert batches[0].names == ["r2", "r3"] and batches[0].robots().tolist() == [0, 1]
+
+
+@pytest.fixture
+def here():
+    """Gateway c, and what it asks others for."""
+    here = Place("c")
+    here.tick()
+    here.bus.sent.clear()
+    return here
+
+
+def hand_over(place, here):
+    for one in place.bus.sent:
+        if isinstance(one, PositionBatch):
+            here.exchange.receive("positions", CODEC.encode(one))
+    return [one.what for one in here.bus.sent if isinstance(one, Wake)]
+
+
+def test_who_did_not_hear_the_names_asks_for_them_once_in_a_while(place, here):
+    place.robots.observe("r1", SendPos(1.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    place.tick()
+    for _ in range(3):
+        assert hand_over(place, here) == ["positions"]
+    assert here.robots.names() == ["r1"] and here.robots.gateway_of("r1") is None
+    here.robots.remove("r1")
+    place.now = here.now = 1000.0 + NAMES_AGAIN_S
+    place.exchange.receive(EVERYBODY, CODEC.encode(Wake("c", "positions")))
+    place.tick()
+    hand_over(place, here)
+    assert here.robots.gateway_of("r1") == "b" and here.robots.pose("r1").x == 1.5
+    place.robots.observe("r1", SendPos(2.5, 2.0, 0.0, 0.0), "yard", 1000.0)
+    place.tick()
+    hand_over(place, here)
+    assert here.robots.pose("r1").x == 2.5

@@ -62,7 +62,9 @@ async def test_a_robot_of_another_gateway_is_told_of_and_left_to_that(guarded):
     def told(place, *, wall, located=True):
         table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
         flags = np.array([LOCATED * located], dtype=np.uint8)
-        guarded.fleet.robots.observe_elsewhere(ToldElsewhere("south", ["far"], table, flags, wall))
+        guarded.fleet.robots.observe_elsewhere(
+            ToldElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, wall)
+        )
 
     told(IN_THE_BASIN, wall=guarded.now, located=False)
     report = await look(guarded)

@@ -116,7 +116,15 @@ def test_robots_of_other_gateways_count_as_those_of_this_one():
     desk = shared.desk()
     desk.listen()
     shared.robots.observe_elsewhere(
-        ToldElsewhere("south", ["b"], there, np.array([LOCATED], dtype=np.uint8), shared.clock.time())
+        ToldElsewhere(
+            "south",
+            1,
+            np.array([0], dtype=np.uint32),
+            ["b"],
+            there,
+            np.array([LOCATED], dtype=np.uint8),
+            shared.clock.time(),
+        )
     )
     desk.listen()
     assert (desk.told, desk.at["b"]) == (["b"], 2.0)

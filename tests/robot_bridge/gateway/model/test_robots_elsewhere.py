@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import zlib
 
 import numpy as np
 import pytest
@@ -31,8 +32,23 @@ HERE = (1.0, 2.0, 0.5, 0.25)
 
 def told(names, places=None, *, by="south", pose_age=0.0, age=0.0, flags=LOCATED, wall=NOW):
     places = [HERE] * len(names) if places is None else places
+    return numbered(
+        [zlib.crc32(name.encode()) % 1000 for name in names],
+        names,
+        places,
+        by=by,
+        pose_age=pose_age,
+        age=age,
+        flags=flags,
+        wall=wall,
+    )
+
+
+def numbered(ids, names, places=None, *, by="south", run=1, pose_age=0.0, age=0.0, flags=LOCATED, wall=NOW):
+    places = [HERE] * len(ids) if places is None else places
     table = np.array([(*place, pose_age, age) for place in places], dtype="<f4").reshape(-1, 6)
-    return ToldElsewhere(by, names, table, np.full(len(names), flags, dtype=np.uint8), wall)
+    ids, flags = np.array(ids, dtype=np.uint32), np.full(len(ids), flags, dtype=np.uint8)
+    return ToldElsewhere(by, run, ids, names, table, flags, wall)
 
 
 @pytest.fixture
@@ -218,3 +234,45 @@ def test_a_batch_says_what_its_robots_say_one_by_one(batches):
     for name in together.names():
         mine, other = together.get(name), one_by_one.get(name)
         assert (mine.pose, mine.gateway, mine.state) == (other.pose, other.gateway, other.state)
+
+
+def at(x):
+    return (x, 0.0, 0.0, 0.0)
+
+
+def test_a_robot_that_was_named_is_known_by_its_number(robots):
+    assert robots.observe_elsewhere(numbered([4, 9], ["a", "b"], [at(1), at(2)]))
+    assert robots.observe_elsewhere(numbered([9, 4], [], [at(3), at(4)]))
+    assert (robots.pose("a").x, robots.pose("b").x) == (4.0, 3.0)
+    assert robots.observe_elsewhere(numbered([2, 9], ["c"], [at(5), at(6)]))
+    assert (robots.pose("c").x, robots.pose("b").x) == (5.0, 6.0)
+
+
+def test_numbers_that_were_not_named_move_nobody_and_are_asked_for(robots):
+    robots.observe_elsewhere(numbered([4], ["a"], [at(1)]))
+    seen = robots.revision
+    for told in (
+        numbered([5], [], [at(2)]),
+        numbered([900_000], [], [at(2)]),
+        numbered([4], [], [at(2)], run=2),
+        numbered([4], [], [at(2)], by="west"),
+    ):
+        assert not robots.observe_elsewhere(told)
+        assert robots.changed(seen) == []
+
+
+def test_a_number_means_no_robot_that_came_into_its_row_later(robots):
+    robots.observe_elsewhere(numbered([4], ["a"], [at(1)]))
+    robots.remove("a")
+    robots.observe_elsewhere(numbered([1], ["b"], [at(2)]))
+    assert not robots.observe_elsewhere(numbered([4], [], [at(9)]))
+    assert robots.pose("b").x == 2.0 and "a" not in robots
+    assert robots.observe_elsewhere(numbered([4], ["a"], [at(3)]))
+    assert robots.observe_elsewhere(numbered([4, 1], [], [at(4), at(5)]))
+    assert (robots.pose("a").x, robots.pose("b").x) == (4.0, 5.0)
+
+
+def test_what_is_said_of_a_robot_of_this_gateway_is_left_and_not_asked_for(robots):
+    assert robots.observe_elsewhere(numbered([3], ["mine"], [at(1)]))
+    assert robots.observe_elsewhere(numbered([3], [], [at(2)]))
+    assert robots.pose("mine") is None and robots.gateway_of("mine") is None
