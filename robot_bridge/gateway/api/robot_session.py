@@ -343,6 +343,10 @@ class RobotChannel:
         """Send a frame."""
         await send_frame(self._connection, frame)
 
+    def send_at_once(self, frame: str) -> bool:
+        """Write a frame now; false where another one is on its way."""
+        return self._connection.write_at_once(frame)
+
     async def answers(self) -> bool:
         """Tell whether the robot answers a ping within a second."""
         return await is_answering(self._connection)

@@ -171,6 +171,10 @@ class LinkConnection:
         """Write a message."""
         await send_frame(self._connection, frame)
 
+    def send_at_once(self, frame: str) -> bool:
+        """Write a message now; false where another one is on its way."""
+        return self._connection.write_at_once(frame)
+
     async def answers(self) -> bool:
         """Tell whether the link answers a ping within a second."""
         return await is_answering(self._connection)

@@ -49,6 +49,9 @@ class SharedConnection(Protocol):
     async def send(self, frame: str) -> None:
         """Write a frame."""
 
+    def send_at_once(self, frame: str) -> bool:
+        """Write a frame now; false where that cannot be."""
+
     async def answers(self) -> bool:
         """Tell whether the link is there."""
 
@@ -116,6 +119,10 @@ class LinkedRobotChannel:
     async def send(self, frame: str) -> None:
         """Write a frame."""
         await self._shared.send(frame)
+
+    def send_at_once(self, frame: str) -> bool:
+        """Write a frame now; false where that cannot be."""
+        return self._shared.send_at_once(frame)
 
     async def answers(self) -> bool:
         """Tell whether the link is there: whether the robot behind it is, only the link can know."""

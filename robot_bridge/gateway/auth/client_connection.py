@@ -285,6 +285,18 @@ class ClientConnection(ServerConnection):
         """Give messages to ``handler`` as their bytes come in; one of which it returns false is queued."""
         self.short_cut.set_handler(handler)
 
+    def write_at_once(self, text: str) -> bool:
+        """Write a short message without a turn of the loop.
+
+        Returns false, with nothing done, where another message is being sent in pieces, or the connection is
+        not open.
+        """
+        if self.protocol.state is not OPEN or self.send_in_progress is not None:
+            return False
+        self.protocol.send_text(text.encode())
+        self.send_data()
+        return True
+
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, whether the client agrees or not; what still comes in is passed over."""
         self._expelled = True

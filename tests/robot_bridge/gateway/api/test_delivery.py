@@ -81,7 +81,13 @@ class Connection:
 
     def __init__(self):
         self.frames = []
-        self.is_shut = False
+        self.is_shut = self.is_sending = False
+
+    def write_at_once(self, frame):
+        if self.is_shut or self.is_sending:
+            return False
+        self.frames.append(json.loads(frame))
+        return True
 
     async def send(self, frame):
         if self.is_shut:
@@ -280,6 +286,7 @@ async def test_a_stop_over_a_connection_that_is_closed_is_no_trouble(line, caplo
 
 
 async def test_a_stop_that_is_on_its_way_is_kept_until_it_is_sent(line):
+    line.connection.is_sending = True
     line.delivery.stop_now("emergency-stop-0001")
     assert len(line.delivery._stopping) == 1
     await rest()
@@ -358,3 +365,24 @@ async def test_ended_it_sends_nothing_more(line):
     line.delivery.end()
     await line.put(row(1))
     assert line.connection.sent == []
+
+
+async def test_a_stop_is_written_before_the_loop_has_another_turn():
+    line = Line()
+    line.delivery.stop_now("emergency-stop-0001")
+    assert line.connection.sent == [("emergency-stop-0001", "Abort")]
+    await rest()
+    assert len(line.connection.sent) == 1
+
+
+@pytest.mark.parametrize("how", ["a message is being sent", "it fails"])
+async def test_a_stop_that_cannot_be_written_at_once_is_sent_as_soon_as_can_be(how, monkeypatch, caplog):
+    line = Line()
+    line.connection.is_sending = how == "a message is being sent"
+    if how == "it fails":
+        monkeypatch.setattr(line.connection, "write_at_once", lambda _frame: 1 / 0)
+    line.delivery.stop_now("emergency-stop-0001")
+    assert line.connection.sent == []
+    await rest()
+    assert line.connection.sent == [("emergency-stop-0001", "Abort")]
+    assert ("stopping robot 'r1' at once failed" in caplog.text) is (how == "it fails")

@@ -36,6 +36,9 @@ class Connection:
     def __init__(self):
         self.sent = []
 
+    def write_at_once(self, _frame):
+        return False
+
     async def send(self, frame):
         self.sent.append(json.loads(frame))
 

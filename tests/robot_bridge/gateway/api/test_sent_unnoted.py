@@ -30,6 +30,9 @@ class Wire:
         self.is_cut = asyncio.Event()
         self._yard = yard
 
+    def write_at_once(self, _frame):
+        return False
+
     async def send(self, frame):
         method = json.loads(frame)["method"]
         self.sent.append(
