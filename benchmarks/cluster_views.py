@@ -16,6 +16,7 @@ from benchmarks.page import Part, goal
 from benchmarks.simulated_gateway import Plan
 from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
 from benchmarks.trial import size
+from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
 from tests.support.errors import StageError
 from tests.support.nats_server import NatsServer
 
@@ -43,8 +44,8 @@ the product's own, and NATS is a real server. Each row is of {seconds:g} s.
 {rows}
 
 The bus costs what gateways with it and without desks take more than without it, and its server: {bus:.1f} %
-of a core for {share} positions a second, each of which goes to three other gateways, five times a second at
-most ({bus_goal}).
+of a core for {share} positions a second, each of which goes to {others} other gateways within {tick:.0f} ms
+({bus_goal}).
 
 The window of a desk in QGIS that shows the whole site, with {count} robots as a density over an orthophoto
 and roads, takes {desk} ms of its thread for an update that comes {rate:g} times a second: frame taken in,
@@ -145,6 +146,7 @@ def report(alone: Run, shared: Run, watched: Run, desk: dict[str, object]) -> Pa
     text = TEXT.format(
         **{"robots": GATEWAYS * ROBOTS, "gateways": GATEWAYS, "side": round(SIDE), "desks": DESKS},
         **{"rate": RATE, "near": round(NEAR), "seconds": SECONDS, "rows": rows, "bus": bus, "share": SHARE},
+        **{"others": GATEWAYS - 1, "tick": POSITION_TICK_S * 1000},
         seen=GATEWAYS * ROBOTS * (NEAR / SIDE) ** 2,
         bus_goal=goal(f"at most {BUS_PERCENT:g} %", bus <= BUS_PERCENT),
         **{"count": GATEWAYS * ROBOTS, "desk": f"{update:.1f}", "megabytes": megabytes},

@@ -142,7 +142,7 @@ class Numbering:
         """Note the rows of robots, below 0 where they have none, and which use of each row it is."""
         missing = int(ids.max(initial=-1)) + 1 - len(self._rows)
         if missing > 0:
-            self._rows = np.concatenate([self._rows, np.empty(missing + _SPARE, np.intp)])
+            self._rows = np.concatenate([self._rows, np.full(missing + _SPARE, -1, np.intp)])
             self._lives = np.concatenate([self._lives, np.full(missing + _SPARE, -1)])
         self._rows[ids], self._lives[ids] = rows, lives
 
