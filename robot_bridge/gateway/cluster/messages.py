@@ -27,7 +27,7 @@ from ...core.logs import RepeatedLines
 from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import PathDeclaration
 from ..model.events import EventBus
-from ..model.robots_elsewhere import TOLD_NUMBERS
+from ..model.robots_elsewhere import REPORTED_NUMBERS
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
 
@@ -43,7 +43,7 @@ FRAME = 128
 """bytes of a message at most beside the robots in it."""
 MOST_ROBOTS = 8192
 """in one message."""
-PLACE_BYTES, NAME_BYTES = 4 * TOLD_NUMBERS + 4 + 1, 2
+PLACE_BYTES, NAME_BYTES = 4 * REPORTED_NUMBERS + 4 + 1, 2
 """bytes that a robot takes in a message of positions, and its name beside its letters."""
 MOST_IDS = 1_000_000
 """numbers that a run of a gateway has for robots."""
@@ -128,19 +128,19 @@ class PositionBatch(BusMessage, frozen=True, tag="positions"):
     ``ids`` are uint32, by which run ``run`` of the gateway knows its robots; ``names`` those of the first of
     them, the others were named before. ``numbers`` are float32, robot by robot, NaN where there is none: x, y
     (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its last message. ``flags`` are a
-    byte of each robot: see :data:`~..model.robots_elsewhere.TOLD_FLAGS`.
+    byte of each robot: see :data:`~..model.robots_elsewhere.REPORTED_FLAGS`.
     """
 
     t: float
     run: Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
     ids: Annotated[bytes, Meta(max_length=4 * MOST_ROBOTS)]
     names: Annotated[list[Robot], Meta(max_length=MOST_ROBOTS)]
-    numbers: Annotated[bytes, Meta(max_length=4 * TOLD_NUMBERS * MOST_ROBOTS)]
+    numbers: Annotated[bytes, Meta(max_length=4 * REPORTED_NUMBERS * MOST_ROBOTS)]
     flags: Annotated[bytes, Meta(max_length=MOST_ROBOTS)]
 
     def table(self) -> npt.NDArray[np.float32]:
         """Return the numbers, a row for each robot."""
-        return np.frombuffer(self.numbers, dtype="<f4").reshape(-1, TOLD_NUMBERS)
+        return np.frombuffer(self.numbers, dtype="<f4").reshape(-1, REPORTED_NUMBERS)
 
     def robots(self) -> npt.NDArray[np.uint32]:
         """Return the ids."""
@@ -255,7 +255,7 @@ def position_batches(whole: PositionBatch, largest: int) -> Iterator[PositionBat
             whole,
             ids=whole.ids[4 * begin : 4 * end],
             names=whole.names[begin:end],
-            numbers=whole.numbers[4 * TOLD_NUMBERS * begin : 4 * TOLD_NUMBERS * end],
+            numbers=whole.numbers[4 * REPORTED_NUMBERS * begin : 4 * REPORTED_NUMBERS * end],
             flags=whole.flags[begin:end],
         )
         begin = end
@@ -279,7 +279,7 @@ def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[lis
 def _check_lengths(batch: PositionBatch) -> None:
     count = len(batch.flags)
     if (
-        len(batch.numbers) != 4 * TOLD_NUMBERS * count
+        len(batch.numbers) != 4 * REPORTED_NUMBERS * count
         or len(batch.ids) != 4 * count
         or len(batch.names) > count
     ):

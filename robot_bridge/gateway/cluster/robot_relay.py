@@ -21,10 +21,11 @@ from ..model.robots import Robot, Robots
 from ..model.robots_elsewhere import (
     ENDED,
     LOCATED,
+    NO_POSE,
     ONLY_SEEN,
-    TOLD_NUMBERS,
+    REPORTED_NUMBERS,
     DescribedElsewhere,
-    ToldElsewhere,
+    ReportedElsewhere,
 )
 from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS
@@ -70,18 +71,6 @@ POSITION_ALL_S = 10.0
 that comes, or learns that another one has a robot now, asks for all."""
 
 
-class _Nowhere(NamedTuple):
-    """In place of the pose of a robot that has not said where it is."""
-
-    x: float = math.nan
-    y: float = math.nan
-    theta: float = math.nan
-    v: float = math.nan
-
-
-NOWHERE = _Nowhere()
-
-
 class PositionRelay:
     """Tells other gateways where the robots of this one are, and takes in where theirs are."""
 
@@ -94,11 +83,11 @@ class PositionRelay:
         self._exchange = exchange
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
         self._revision = -1
-        self._told_all_at, self._was_cut_off = -math.inf, True
+        self._sent_all_at, self._was_cut_off = -math.inf, True
         self._newest = NewestBatches(POSITION_OLD_S)
         self._asked, self._asked_at = asyncio.Event(), -math.inf
         self._run, self._ids = secrets.randbits(62), dict[str, int]()
-        """the numbers by which other gateways are told of robots: their names take longer than all else."""
+        """numbers that stand for the robots' names, which take longer to send and to read than all else."""
         exchange.subscribe(PositionBatch, self._take)
         exchange.subscribe(Wake, self._woken)
 
@@ -113,17 +102,17 @@ class PositionRelay:
         """Tell what changed since the last time, and everything once in a while."""
         if not self._exchange.connected:
             # Nobody heard of what was told last: once the bus is back, all is told at once.
-            self._told_all_at, self._was_cut_off = -math.inf, True
+            self._sent_all_at, self._was_cut_off = -math.inf, True
             return
         if self._was_cut_off:
             # Others that were back earlier told theirs before this one could hear it.
             self._was_cut_off = False
             self._exchange.wake("positions")
         now = self._membership.database_time()
-        everything = now - self._told_all_at >= POSITION_ALL_S
+        everything = now - self._sent_all_at >= POSITION_ALL_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
-            self._told_all_at = now
+            self._sent_all_at = now
         mine = self._robots.own(since)
         if mine:
             for batch in position_batches(self._batch(mine, now, name_all=everything), self._largest):
@@ -154,7 +143,7 @@ class PositionRelay:
 
     def _woken(self, wake: Wake) -> None:
         if wake.what == "positions":
-            self._told_all_at = -math.inf
+            self._sent_all_at = -math.inf
             self._asked.set()
 
     def _take(self, batch: PositionBatch) -> None:
@@ -162,18 +151,20 @@ class PositionRelay:
             return
         wall = batch.t - self._membership.clock_offset
         flags = np.frombuffer(batch.flags, dtype=np.uint8)
-        told = ToldElsewhere(batch.gw, batch.run, batch.robots(), batch.names, batch.table(), flags, wall)
-        if not self._robots.observe_elsewhere(told) and batch.t - self._asked_at >= NAMES_AGAIN_S:
+        report = ReportedElsewhere(
+            batch.gw, batch.run, batch.robots(), batch.names, batch.table(), flags, wall
+        )
+        if not self._robots.observe_elsewhere(report) and batch.t - self._asked_at >= NAMES_AGAIN_S:
             # A message was lost, or came before this gateway knew that the other one has the robot.
             self._asked_at = batch.t
             self._exchange.wake("positions", batch.gw)
 
 
 def _table(robots: Sequence[Robot], wall: float) -> npt.NDArray[np.float32]:
-    """Return what is told of robots: (n, :data:`TOLD_NUMBERS`)."""
-    table = np.empty((len(robots), TOLD_NUMBERS))
+    """Return the numbers of robots: (n, :data:`REPORTED_NUMBERS`)."""
+    table = np.empty((len(robots), REPORTED_NUMBERS))
     # Column by column: rows of tuples would take twice as long.
-    poses = [robot.pose or NOWHERE for robot in robots]
+    poses = [robot.pose or NO_POSE for robot in robots]
     table[:, 0], table[:, 1] = [at.x for at in poses], [at.y for at in poses]
     table[:, 2], table[:, 3] = [at.theta for at in poses], [at.v for at in poses]
     table[:, 4], table[:, 5] = [robot.pose_at for robot in robots], [robot.received_at for robot in robots]
@@ -195,12 +186,12 @@ DETAIL_TICK_S = 1.0
 DETAIL_ALL_S = 30.0
 """seconds after which all is told again: a message may have been lost."""
 DETAIL_ALL_AGAIN_S = 5.0
-"""seconds between two times that all is told, whoever asks for it: gateways of a fleet start together."""
+"""seconds between two times that all is sent, whoever asks for it: gateways of a fleet start together."""
 DETAIL_OLD_S = 5.0
 """seconds after which a message is dropped: it has waited somewhere."""
 
 LATENCY_S, LATENCY_PART = 0.005, 0.25
-"""A latency that differs from the one told last by no more seconds, and no more of that, is not told: each
+"""A latency that differs from the one sent last by no more seconds, and no more of that, is not sent: each
 robot's is measured every few seconds, and is never twice the same."""
 PIECE = 500
 """robots that are looked at before others have their turn: less than a millisecond."""
@@ -211,8 +202,8 @@ _UNKNOWN = (None, None)
 _Facts = tuple[Any, ...]
 
 
-class _Told(NamedTuple):
-    """What was told of a robot last, and the values that it was made of: most often those are the same."""
+class _Sent(NamedTuple):
+    """What was sent of a robot last, and the values that it was made of: most often those are the same."""
 
     of_robot: _Facts
     of_pose: _Facts
@@ -233,8 +224,8 @@ class DetailRelay:
         self._membership = membership
         self._exchange = exchange
         self._largest = LARGEST_NOTIFICATION if small else LARGEST
-        self._told: dict[str, _Told] = {}
-        self._revision, self._told_all_at, self._is_asked = -1, -math.inf, False
+        self._sent: dict[str, _Sent] = {}
+        self._revision, self._sent_all_at, self._is_asked = -1, -math.inf, False
         self._newest = NewestBatches(DETAIL_OLD_S)
         exchange.subscribe(DetailBatch, self._take)
         exchange.subscribe(Wake, self._woken)
@@ -249,10 +240,10 @@ class DetailRelay:
         """Tell what changed since the last time, everything once in a while; others have turns meanwhile."""
         now = self._membership.database_time()
         if not self._exchange.connected:
-            self._told_all_at = -math.inf
+            self._sent_all_at = -math.inf
             return
-        if now - self._told_all_at >= (DETAIL_ALL_AGAIN_S if self._is_asked else DETAIL_ALL_S):
-            self._told, self._revision, self._told_all_at, self._is_asked = {}, -1, now, False
+        if now - self._sent_all_at >= (DETAIL_ALL_AGAIN_S if self._is_asked else DETAIL_ALL_S):
+            self._sent, self._revision, self._sent_all_at, self._is_asked = {}, -1, now, False
         since, self._revision = self._revision, self._robots.revision
         robots = self._robots.own(since)
         for begin in range(0, len(robots), PIECE):
@@ -263,14 +254,14 @@ class DetailRelay:
         self._is_asked |= wake.what == "positions"
 
     def _send_changed(self, robots: Iterable[Robot], now: float) -> None:
-        changed, told = [], self._told
+        changed, sent = [], self._sent
         for robot in robots:
-            name, last = robot.name, told.get(robot.name)
+            name, last = robot.name, sent.get(robot.name)
             of_robot, of_pose = _OF_ROBOT(robot), _OF_POSE(robot.pose) if robot.pose else _UNKNOWN
             if last is not None and last.of_robot == of_robot and last.of_pose == of_pose:
                 continue
             facts = _facts(of_robot, of_pose, None if last is None else last.facts)
-            told[name] = _Told(of_robot, of_pose, facts)
+            sent[name] = _Sent(of_robot, of_pose, facts)
             if last is None or last.facts != facts:
                 changed.append(_details(name, facts))
         for some in detail_batches(changed, self._largest):
@@ -286,20 +277,20 @@ class DetailRelay:
             self._robots.describe_elsewhere(one.name, batch.gw, described)
 
 
-def _facts(of_robot: _Facts, of_pose: _Facts, told: _Facts | None) -> _Facts:
-    """Return what is told of a robot, in the order of its :class:`RobotDetails`, after what was ``told``."""
+def _facts(of_robot: _Facts, of_pose: _Facts, sent: _Facts | None) -> _Facts:
+    """Return what is sent of a robot, in the order of its :class:`RobotDetails`, after what was ``sent``."""
     doubt, latency, *declared = of_robot
     battery, status = of_pose
-    # Not told again for less than an operator sees, or minds.
+    # Not sent again for less than an operator sees, or minds.
     battery = None if battery is None else round(battery, 2)
-    return battery, status, doubt, _latency(latency, None if told is None else told[3]), *declared
+    return battery, status, doubt, _latency(latency, None if sent is None else sent[3]), *declared
 
 
-def _latency(now: float | None, told: float | None) -> float | None:
+def _latency(now: float | None, sent: float | None) -> float | None:
     if now is None:
         return None
-    is_same = told is not None and abs(now - told) <= max(LATENCY_S, LATENCY_PART * told)
-    return told if is_same else round(now, 3)
+    is_same = sent is not None and abs(now - sent) <= max(LATENCY_S, LATENCY_PART * sent)
+    return sent if is_same else round(now, 3)
 
 
 def _details(name: str, facts: _Facts) -> RobotDetails:

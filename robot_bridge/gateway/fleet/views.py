@@ -36,7 +36,7 @@ from ...core.messages.positions import (
 )
 from ..model.events import Encoded, handles
 from ..model.robots import Robot, Robots
-from ..model.robots_elsewhere import DOUBTED, LOST, STATES
+from ..model.robots_elsewhere import DOUBTED, LOST, NO_POSE, STATES
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
 
@@ -59,18 +59,6 @@ _GROUPS = np.array([{"fresh": 0, "offline": 2}.get(state, 1) for state in _STATE
 """Of each state whether it counts as fresh, silent or offline."""
 
 
-class _Nowhere(NamedTuple):
-    """In place of the pose of a robot that has not said where it is."""
-
-    x: float = math.nan
-    y: float = math.nan
-    battery: float | None = None
-    accuracy: float | None = None
-
-
-_NOWHERE = _Nowhere()
-
-
 class FleetPlaces:
     """All robots at one moment; what is asked of it is worked out once. ``bounds`` are the site's."""
 
@@ -83,7 +71,7 @@ class FleetPlaces:
         disbelieved = np.array([robot.doubt is not None for robot in own], dtype=np.bool_)
         self._disbelieved = np.concatenate([disbelieved, (others.flags & DOUBTED) > 0])
         # Column by column: 100 000 rows in tuples would take twice as long.
-        poses = [robot.pose or _NOWHERE for robot in own]
+        poses = [robot.pose or NO_POSE for robot in own]
         self._x = np.concatenate([[at.x for at in poses], others.x])
         self._y = np.concatenate([[at.y for at in poses], others.y])
         battery = np.array([at.battery for at in poses], dtype=np.float64)

@@ -21,8 +21,8 @@ from .robots_elsewhere import (
     RECEIVED_AT,
     DescribedElsewhere,
     PlacesElsewhere,
+    ReportedElsewhere,
     RobotColumns,
-    ToldElsewhere,
     liveness,
 )
 
@@ -149,7 +149,7 @@ class Robots:
         self._robots: dict[str, Robot] = {}
         self._elsewhere: dict[str, Robot] = {}
         """those of other gateways, each as it was when somebody asked for it last."""
-        self._told_of: dict[str, tuple[float | None, str | None]] = {}
+        self._details: dict[str, tuple[float | None, str | None]] = {}
         """battery and status of those."""
         self._columns = RobotColumns()
         """what other gateways said of theirs last."""
@@ -372,20 +372,20 @@ class Robots:
             robot.gateway, robot.link = gateway, link_elsewhere(gateway)
             self._add(robot)
 
-    def observe_elsewhere(self, told: ToldElsewhere) -> bool:
+    def observe_elsewhere(self, report: ReportedElsewhere) -> bool:
         """Take in what another gateway says of robots that it has; of others nothing is taken in.
 
         Returns whether all of them are known by their numbers: else it had better name them again.
         """
-        self.revision, missing, all_named = self._columns.observe(told, self.revision)
-        new = [row for row in missing if told.names[row] not in self._robots]
+        self.revision, missing, all_named = self._columns.observe(report, self.revision)
+        new = [row for row in missing if report.names[row] not in self._robots]
         if not new:
             return all_named
-        link = link_elsewhere(told.gateway)
+        link = link_elsewhere(report.gateway)
         for row in new:
-            received_at = told.wall - float(told.table[row, RECEIVED_AT])
-            self._add(Robot(told.names[row], 0, link, received_at, gateway=told.gateway))
-        self.revision = self._columns.observe(told.only(new), self.revision).revision
+            received_at = report.wall - float(report.table[row, RECEIVED_AT])
+            self._add(Robot(report.names[row], 0, link, received_at, gateway=report.gateway))
+        self.revision = self._columns.observe(report.only(new), self.revision).revision
         return all_named
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
@@ -396,7 +396,7 @@ class Robots:
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
         robot.magic = robot.magic if said.magic is None else said.magic
-        self._told_of[name] = said.battery, said.status
+        self._details[name] = said.battery, said.status
         self.revision += 1
         flags = ONLY_SEEN * (said.abilities == "") | DOUBTED * (said.doubt is not None)
         self._columns.describe(name, said.battery, flags, self.revision)
@@ -495,7 +495,7 @@ class Robots:
             robot.pose_at = seen.pose_at
             if seen.place is not None:
                 # What changes seldom comes by itself.
-                battery, status = self._told_of.get(robot.name, (None, None))
+                battery, status = self._details.get(robot.name, (None, None))
                 robot.pose = SendPos(*seen.place, battery=battery, status=status)
         return robots
 
@@ -509,11 +509,11 @@ class Robots:
             self._robots.pop(robot.name, None)
             self._elsewhere[robot.name] = robot
             if robot.pose is not None:
-                self._told_of[robot.name] = robot.pose.battery, robot.pose.status
+                self._details[robot.name] = robot.pose.battery, robot.pose.status
         self._touch(robot)
 
     def _forget_elsewhere(self, name: str) -> Robot | None:
-        self._told_of.pop(name, None)
+        self._details.pop(name, None)
         self._columns.remove(name)
         return self._elsewhere.pop(name, None)
 

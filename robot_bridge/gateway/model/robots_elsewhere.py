@@ -19,12 +19,12 @@ from ...core.messages.safety import PathDeclaration, RobotState
 
 ENDED, LOCATED, ONLY_SEEN, DOUBTED = 1, 2, 4, 8
 """Flags of a robot: it ended in good order, has said where it is since its Ready, is only seen, and the place
-that it said last is not believed. The last is told with its details."""
-TOLD_FLAGS = ENDED | LOCATED | ONLY_SEEN
+that it said last is not believed. The last comes with its details."""
+REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN
 X, Y, POSE_AT, RECEIVED_AT, BATTERY = 0, 1, 4, 5, 6
 """Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, and
 0 to 1."""
-TOLD_NUMBERS = 6
+REPORTED_NUMBERS = 6
 """numbers of a robot in a message, the first of those; in place of times there are seconds since."""
 STATES = tuple(RobotState)
 """States by their codes."""
@@ -64,12 +64,26 @@ def state_codes(
     return np.where(ages < stale_after, FRESH, silent).astype(np.uint8)
 
 
-class ToldElsewhere(NamedTuple):
+class NoPose(NamedTuple):
+    """In place of the pose of a robot that has not said where it is, where many become columns."""
+
+    x: float = math.nan
+    y: float = math.nan
+    theta: float = math.nan
+    v: float = math.nan
+    battery: float | None = None
+    accuracy: float | None = None
+
+
+NO_POSE = NoPose()
+
+
+class ReportedElsewhere(NamedTuple):
     """What another gateway says of n of its robots.
 
     ``ids`` (n,) are the numbers by which run ``run`` of that gateway knows them; ``names`` are those of the
-    first of them, the others were named before. ``table`` is (n, :data:`TOLD_NUMBERS`), NaN where there is
-    nothing; ``wall`` the time by this computer's clock since which its ages count, and ``flags`` (n,).
+    first of them, the others were named before. ``table`` is (n, :data:`REPORTED_NUMBERS`), NaN where there
+    is nothing; ``wall`` the time by this computer's clock since which its ages count, and ``flags`` (n,).
     """
 
     gateway: str
@@ -80,7 +94,7 @@ class ToldElsewhere(NamedTuple):
     flags: Flags
     wall: float
 
-    def only(self, rows: Sequence[int]) -> ToldElsewhere:
+    def only(self, rows: Sequence[int]) -> ReportedElsewhere:
         """Return what is said of some of the robots that are named."""
         names, ids = [self.names[row] for row in rows], self.ids[rows]
         return self._replace(ids=ids, names=names, table=self.table[rows], flags=self.flags[rows])
@@ -260,35 +274,35 @@ class RobotColumns:
 
     # --- Many ---
 
-    def observe(self, told: ToldElsewhere, revision: int) -> Observed:
+    def observe(self, report: ReportedElsewhere, revision: int) -> Observed:
         """Take in what a gateway says of the robots that are known as its own; each gets a revision after
         ``revision``."""
-        rows, all_named = self._rows_of(told)
-        table = told.table.astype(np.float64)
+        rows, all_named = self._rows_of(report)
+        table = report.table.astype(np.float64)
         with np.errstate(invalid="ignore"):
             heard = np.isfinite(table[:, RECEIVED_AT])
             placed = (
                 (np.abs(table[:, :POSE_AT]) <= _LARGEST).all(axis=1) & np.isfinite(table[:, POSE_AT]) & heard
             )
-        named = len(told.names)
+        named = len(report.names)
         missing = np.flatnonzero((rows[:named] < 0) & heard[:named]).tolist()
         counts = (rows >= 0) & heard
-        counts[counts] = self._owners[rows[counts]] == self._owner(told.gateway)
+        counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
         placed &= counts
         at = rows[placed]
         self._numbers[:POSE_AT, at] = table[placed, :POSE_AT].T
-        self._numbers[POSE_AT, at] = told.wall - table[placed, POSE_AT]
+        self._numbers[POSE_AT, at] = report.wall - table[placed, POSE_AT]
         rows = rows[counts]
-        self._numbers[RECEIVED_AT, rows] = told.wall - table[counts, RECEIVED_AT]
-        self._flags[rows] = (self._flags[rows] & DOUBTED) | (told.flags[counts] & TOLD_FLAGS)
+        self._numbers[RECEIVED_AT, rows] = report.wall - table[counts, RECEIVED_AT]
+        self._flags[rows] = (self._flags[rows] & DOUBTED) | (report.flags[counts] & REPORTED_FLAGS)
         return Observed(self._changed(rows, revision), missing, all_named)
 
-    def _rows_of(self, told: ToldElsewhere) -> tuple[Rows, bool]:
-        numbering = self._numberings.get(told.gateway)
-        if numbering is None or numbering.run != told.run:
-            numbering = self._numberings[told.gateway] = Numbering(told.run)
-        ids, named = told.ids.astype(np.intp), len(told.names)
-        rows = np.array([self._rows.get(name, -1) for name in told.names], dtype=np.intp)
+    def _rows_of(self, report: ReportedElsewhere) -> tuple[Rows, bool]:
+        numbering = self._numberings.get(report.gateway)
+        if numbering is None or numbering.run != report.run:
+            numbering = self._numberings[report.gateway] = Numbering(report.run)
+        ids, named = report.ids.astype(np.intp), len(report.names)
+        rows = np.array([self._rows.get(name, -1) for name in report.names], dtype=np.intp)
         lives = np.where(rows >= 0, self._lives[rows] if len(self._lives) else 0, 0)
         numbering.name(ids[:named], rows, lives)
         others, all_named = numbering.rows(ids[named:], self._lives)
@@ -329,9 +343,8 @@ class RobotColumns:
 
     def move_times(self, step: ClockStep) -> None:
         """Keep the times since robots were heard when the clock was set."""
-        times = self._numbers[[POSE_AT, RECEIVED_AT]]
-        as_set = (times >= step.since) & (times <= step.now)
-        self._numbers[[POSE_AT, RECEIVED_AT]] = np.where(as_set, times, times + step.by)
+        times = self._numbers[[POSE_AT, RECEIVED_AT]].tolist()
+        self._numbers[[POSE_AT, RECEIVED_AT]] = [[step.moved(at) for at in row] for row in times]
 
     def changed(self, since: int) -> list[str]:
         """Return the names of those that changed after revision ``since``."""

@@ -16,7 +16,7 @@ from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.fleet import geofence as watch
 from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
-from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ToldElsewhere
+from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ReportedElsewhere
 
 IN_THE_BASIN = 66.0, 32.0
 OUTSIDE = 60.0, 22.0
@@ -63,7 +63,7 @@ async def test_a_robot_of_another_gateway_is_told_of_and_left_to_that(guarded):
         table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
         flags = np.array([LOCATED * located], dtype=np.uint8)
         guarded.fleet.robots.observe_elsewhere(
-            ToldElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, wall)
+            ReportedElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, wall)
         )
 
     told(IN_THE_BASIN, wall=guarded.now, located=False)

@@ -26,7 +26,7 @@ from robot_bridge.gateway.fleet import views as views_module
 from robot_bridge.gateway.fleet.operator_updates import position_table
 from robot_bridge.gateway.fleet.views import DensityGrid, FleetViews, RowStore, ViewWatch
 from robot_bridge.gateway.model.robots import Robots
-from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ToldElsewhere
+from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ReportedElsewhere
 
 BOUNDS = (0.0, 0.0, 100.0, 100.0)
 LIMITS = AlarmLimits(low_battery=0.2, unsure=2.0, outside=0.5)
@@ -116,7 +116,7 @@ def test_robots_of_other_gateways_count_as_those_of_this_one():
     desk = shared.desk()
     desk.listen()
     shared.robots.observe_elsewhere(
-        ToldElsewhere(
+        ReportedElsewhere(
             "south",
             1,
             np.array([0], dtype=np.uint32),

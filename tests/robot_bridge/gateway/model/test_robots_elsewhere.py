@@ -21,7 +21,7 @@ from robot_bridge.gateway.model.robots_elsewhere import (
     ONLY_SEEN,
     STATES,
     DescribedElsewhere,
-    ToldElsewhere,
+    ReportedElsewhere,
     liveness,
     state_codes,
 )
@@ -48,7 +48,7 @@ def numbered(ids, names, places=None, *, by="south", run=1, pose_age=0.0, age=0.
     places = [HERE] * len(ids) if places is None else places
     table = np.array([(*place, pose_age, age) for place in places], dtype="<f4").reshape(-1, 6)
     ids, flags = np.array(ids, dtype=np.uint32), np.full(len(ids), flags, dtype=np.uint8)
-    return ToldElsewhere(by, run, ids, names, table, flags, wall)
+    return ReportedElsewhere(by, run, ids, names, table, flags, wall)
 
 
 @pytest.fixture
