@@ -3,33 +3,23 @@
 from __future__ import annotations
 
 import contextlib
-import json
 import os
-import signal
 import sys
-import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from statistics import quantiles
 from typing import Any
 
 from benchmarks.clock import table
 from benchmarks.cluster_crowd import JITTER_S, Plan
+from benchmarks.cluster_gateways import Gateways, median_and_p99, median_and_worst, percentile
 from benchmarks.page import Part, goal
-from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
+from benchmarks.swarm import Onlooker
 from benchmarks.trial import size
 from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
-from robot_bridge.gateway.storage import revisions
-from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.database_server import DatabaseServer
 from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
-from tests.support.fleet import SITE, Served, serve
-from tests.support.nats_server import NatsServer
-from tests.support.processes import Processes
 
 GATEWAYS = 4
 ROBOTS = size(800, 40)
@@ -101,43 +91,45 @@ class Run:
 
 
 class Fleet:
-    """Gateways with everybody at them, and the servers that they need."""
+    """Gateways with everybody at them."""
 
-    def __init__(self, database: DatabaseServer, nats: NatsServer | None, gateways: list[Served]) -> None:
-        self._database, self._nats, self._gateways = database, nats, gateways
-        addresses = [one.address for one in gateways]
+    def __init__(self, gateways: Gateways) -> None:
+        self._gateways = gateways
         # With one gateway as many desks as with several.
-        addresses *= GATEWAYS if len(addresses) == 1 else 1
-        self._crowd = _onlooker(Plan(addresses, ROBOTS, ROBOT_RATE, DESK_RATE))
-        self._stopping = _onlooker(Plan(addresses, 0, ROBOT_RATE, 0.0))
+        addresses = gateways.addresses * (GATEWAYS if len(gateways.addresses) == 1 else 1)
+        self._crowd = self._begin(Plan(addresses, ROBOTS, ROBOT_RATE, DESK_RATE))
+        self._stopping = self._begin(Plan(addresses, 0, ROBOT_RATE, 0.0))
         """Desks that make stops and hear of them, in a process that has nothing else to do."""
-
-    def end(self) -> None:
-        """Let everybody go."""
-        self._stopping.end()
-        self._crowd.end()
 
     def measure(self) -> Run:
         """Measure all that these can show."""
         time.sleep(SETTLE)
-        cpu = sum(cpu_seconds(one.process.pid) for one in self._gateways)
+        cpu = self._gateways.cpu_seconds()
         watched = self._ask("watch", seconds=SECONDS)
-        cpu = sum(cpu_seconds(one.process.pid) for one in self._gateways) - cpu
-        memory = [megabytes_of(one.process.pid) for one in self._gateways]
+        cpu = self._gateways.cpu_seconds() - cpu
+        memory = self._gateways.megabytes()
         commands = self._ask("command", desk=0, robots_of=1, count=COMMANDS)
         stops = {"all is well": [self._stop_while(contextlib.nullcontext()) for _ in range(STOPS)]}
         recovered: dict[str, list[float]] = {}
-        if self._nats is not None:
-            stops["NATS is dead"] = [self._stop_while(self._without_nats()) for _ in range(STOPS)]
+        if self._gateways.nats is not None:
+            stops["NATS is dead"] = [self._stop_while(self._gateways.without_nats()) for _ in range(STOPS)]
             stops["one other gateway is frozen"] = [
-                self._stop_while(self._frozen(OTHERS[-1]), without=[OTHERS[-1]]) for _ in range(STOPS)
+                self._stop_while(self._gateways.frozen(OTHERS[-1]), without=[OTHERS[-1]])
+                for _ in range(STOPS)
             ]
             recovered["NATS killed, and back after some seconds"] = [self._lose_nats() for _ in range(ROUNDS)]
             # Last of those: gateways have to catch up after it.
-            stops["PostgreSQL is dead"] = [self._stop_while(self._without_database()) for _ in range(STOPS)]
+            stops["PostgreSQL is dead"] = [
+                self._stop_while(self._gateways.without_database()) for _ in range(STOPS)
+            ]
             self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
             recovered["a gateway killed"] = [self._lose_gateway()]
         return Run(watched, cpu, memory, commands, stops, recovered)
+
+    def _begin(self, plan: Plan) -> Onlooker:
+        one = self._gateways.begin("benchmarks.cluster_crowd", asdict(plan))
+        one.line()
+        return one
 
     def _ask(self, what: str, **how: Any) -> Any:
         return _answer(self._crowd, what, **how)
@@ -154,44 +146,17 @@ class Fleet:
         time.sleep(STANDING)
         return found
 
-    @contextmanager
-    def _without_nats(self) -> Iterator[None]:
-        assert self._nats is not None
-        self._nats.kill()
-        yield
-        self._nats.start()
-
-    @contextmanager
-    def _without_database(self) -> Iterator[None]:
-        self._database.kill()
-        yield
-        self._database.start()
-
-    @contextmanager
-    def _frozen(self, gateway: int) -> Iterator[None]:
-        process = self._gateways[gateway].process
-        process.send_signal(signal.SIGSTOP)
-        yield
-        process.send_signal(signal.SIGCONT)
-
     def _lose_nats(self) -> float:
-        with self._without_nats():
+        with self._gateways.without_nats():
             time.sleep(NATS_AWAY)
         seconds: float = self._ask("fresh", since=time.time(), desk=0, homes=list(OTHERS), age=FRESH_S)
         return seconds
 
     def _lose_gateway(self) -> float:
-        gateway, since = self._gateways[OTHERS[-1]].process, time.time()
-        gateway.kill()
-        gateway.wait()
+        since = time.time()
+        self._gateways.kill(OTHERS[-1])
         seconds: float = self._ask("heard", since=since, desk=0, homes=[OTHERS[-1]])
         return seconds
-
-
-def _onlooker(plan: Plan) -> Onlooker:
-    one = Onlooker(sys.executable, "-m", "benchmarks.cluster_crowd", json.dumps(asdict(plan)))
-    one.line()
-    return one
 
 
 def _answer(onlooker: Onlooker, what: str, **how: Any) -> Any:
@@ -203,42 +168,24 @@ def measure(_data: Path) -> Part:
     """Measure one gateway and several."""
     try:
         with PostgreSql(durable=True) as database:
-            one = _measured(database, several=False)
-            several = _measured(database, several=True)
+            one, several = (_measured(database, count) for count in (1, GATEWAYS))
     except StageError as error:
         sys.exit(f"bench: {error}")
     return report(one, several)
 
 
-def _measured(database: DatabaseServer, *, several: bool) -> Run:
-    url = database.new_database()
-    run_once(url, revisions.create)
-    with tempfile.TemporaryDirectory() as folder, contextlib.ExitStack() as stack:
-        root = Path(folder)
-        processes = stack.enter_context(Processes(root / "logs"))
-        nats = stack.enter_context(NatsServer(root)) if several else None
-        gateways = []
-        for number in range(GATEWAYS if several else 1):
-            state = root / f"state-{number}"
-            state.mkdir()
-            options: list[Any] = ["--state", state]
-            if nats is not None:
-                options += ["--gateway-name", f"g{number}", "--bus", nats.url]
-            gateways.append(serve(processes, SITE, url, *options, name=f"gateway-{number}"))
-        fleet = Fleet(database, nats, gateways)
-        try:
-            return fleet.measure()
-        finally:
-            fleet.end()
+def _measured(database: DatabaseServer, count: int) -> Run:
+    with Gateways(database, count) as gateways:
+        return Fleet(gateways).measure()
 
 
 def report(one: Run, several: Run) -> Part:
     """Return the part of the page."""
     desk_tick, tick = 1000 / DESK_RATE, POSITION_TICK_S * 1000
     share = one.microseconds / several.microseconds
-    across = _percentile(several.watched["elsewhere"], 99)
-    more = _percentile(several.commands, 50) - _percentile(one.commands, 50)
-    in_force = _percentile([ms for stop in several.stops["all is well"] for ms in stop["gateways"]], 99)
+    across = percentile(several.watched["elsewhere"], 99)
+    more = percentile(several.commands, 50) - percentile(one.commands, 50)
+    in_force = percentile([ms for stop in several.stops["all is well"] for ms in stop["gateways"]], 99)
     last = max(stop["robots"] for stops in several.stops.values() for stop in stops)
     died = max(several.recovered["a gateway killed"])
     back = max(several.recovered["NATS killed, and back after some seconds"])
@@ -256,15 +203,20 @@ def report(one: Run, several: Run) -> Part:
         [
             [
                 "position → desk at the same gateway, p50 / p99",
-                _both(_all(one)),
-                _both(several.watched["here"]),
+                median_and_p99(_all(one)),
+                median_and_p99(several.watched["here"]),
                 "",
             ],
-            ["position → desk at another one", "", _both(several.watched["elsewhere"]), goals["across"]],
+            [
+                "position → desk at another one",
+                "",
+                median_and_p99(several.watched["elsewhere"]),
+                goals["across"],
+            ],
             [
                 "command → robot there, p50 / p99",
-                _both(one.commands),
-                _both(several.commands),
+                median_and_p99(one.commands),
+                median_and_p99(several.commands),
                 goals["commands"],
             ],
             ["memory of a gateway", _megabytes(one), _megabytes(several), ""],
@@ -282,8 +234,8 @@ def report(one: Run, several: Run) -> Part:
         [
             [
                 name,
-                _worst([ms for stop in stops for ms in stop["gateways"]]),
-                _worst([s["robots"] for s in stops]),
+                median_and_worst([ms for stop in stops for ms in stop["gateways"]]),
+                median_and_worst([s["robots"] for s in stops]),
             ]
             for name, stops in rows
         ],
@@ -318,18 +270,6 @@ def report(one: Run, several: Run) -> Part:
 
 def _all(run: Run) -> list[float]:
     return [*run.watched["here"], *run.watched["elsewhere"]]
-
-
-def _percentile(values: list[float], share: int) -> float:
-    return quantiles(values, n=100, method="inclusive")[share - 1] if len(values) > 1 else values[0]
-
-
-def _both(values: list[float]) -> str:
-    return f"{_percentile(values, 50):.0f} / {_percentile(values, 99):.0f} ms"
-
-
-def _worst(values: list[float]) -> str:
-    return f"{_percentile(values, 50):.0f} / {max(values):.0f} ms"
 
 
 def _megabytes(run: Run) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import random
 import sys
 import tempfile
@@ -12,17 +11,14 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from benchmarks.clock import spread, table
 from benchmarks.cluster_crowd import JITTER_S
 from benchmarks.cluster_crowd import Plan as CrowdPlan
-from benchmarks.load import site_with_room
+from benchmarks.cluster_gateways import Gateways
 from benchmarks.page import Part, goal
-from benchmarks.swarm import Onlooker
 from benchmarks.trial import size
-from robot_bridge.gateway.storage import revisions
-from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 from tests.support.faults.audit import Findings
@@ -38,9 +34,7 @@ from tests.support.faults.cluster_yard import (
 )
 from tests.support.faults.desk import SHARE_ABORTED
 from tests.support.faults.yard import GATEWAY_KILLED
-from tests.support.fleet import serve
-from tests.support.nats_server import NatsCluster, NatsServer
-from tests.support.processes import Processes
+from tests.support.nats_server import NatsCluster
 
 GATEWAYS, ROBOTS = 4, 40
 KILLS = {GATEWAY_KILLED: size(60, 2), NATS_KILLED: size(20, 1), DATABASE_KILLED: size(20, 1)}
@@ -126,28 +120,14 @@ def _kill_all(seed: int) -> Killed:
 
 def _lose_one_of_many() -> float:
     """Return the seconds until all robots of a gateway that was killed are heard again at another one."""
-    with ExitStack() as stack:
-        root = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="fleet-many-")))
-        site = site_with_room(root, ROOM)
-        url = stack.enter_context(PostgreSql(durable=True)).new_database()
-        run_once(url, revisions.create)
-        nats = stack.enter_context(NatsServer(root))
-        processes = stack.enter_context(Processes(root / "logs"))
-        gateways = []
-        for number in range(GATEWAYS):
-            (root / f"state-{number}").mkdir()
-            named: list[Any] = ["--gateway-name", f"g{number}", "--bus", nats.url]
-            named += ["--state", root / f"state-{number}"]
-            gateways.append(serve(processes, site, url, *named, name=f"gateway-{number}"))
-        plan = CrowdPlan([one.address for one in gateways], MANY, MANY_RATE, 2.0)
-        crowd = Onlooker(sys.executable, "-m", "benchmarks.cluster_crowd", json.dumps(asdict(plan)))
-        stack.callback(crowd.end)
+    with PostgreSql(durable=True) as database, Gateways(database, GATEWAYS, ROOM) as gateways:
+        plan = CrowdPlan(gateways.addresses, MANY, MANY_RATE, 2.0)
+        crowd = gateways.begin("benchmarks.cluster_crowd", asdict(plan))
         crowd.line()
         # As many positions as it takes for every robot to have been heard.
         time.sleep(2 / MANY_RATE)
         since = time.time()
-        gateways[-1].process.kill()
-        gateways[-1].process.wait()
+        gateways.kill(GATEWAYS - 1)
         crowd.tell(do="heard", since=since, desk=0, homes=[GATEWAYS - 1])
         return float(crowd.line())
 

@@ -2,35 +2,26 @@
 
 from __future__ import annotations
 
-import json
 import os
-import signal
 import sys
-import tempfile
 import time
-from collections.abc import Callable, Iterator
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from statistics import quantiles
 from typing import Any, NamedTuple
 
 from benchmarks.clock import table
 from benchmarks.cluster_crowd import Plan as Desks
+from benchmarks.cluster_gateways import Gateways, median_and_p99, median_and_worst, percentile
 from benchmarks.cluster_onlookers import Plan as Onlookers
 from benchmarks.cluster_swarm import APART, ROW, home
-from benchmarks.load import site_with_room
 from benchmarks.page import Part, goal
-from benchmarks.swarm import Onlooker, cpu_seconds, megabytes_of
+from benchmarks.swarm import Onlooker, cpu_seconds
 from benchmarks.trial import size
 from robot_bridge.gateway.cluster.robot_relay import POSITION_TICK_S
-from robot_bridge.gateway.storage import revisions
-from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
-from tests.support.fleet import serve
-from tests.support.nats_server import NatsServer
-from tests.support.processes import Processes
 
 GATEWAYS = 4
 ROBOTS, RATE = size(1250, 50), 1.0
@@ -112,37 +103,19 @@ def measure(_data: Path) -> Part:
         sys.exit(f"bench: {error}")
 
 
-class Fleet(ExitStack):
-    """A context with gateways, each with robots of its own, and the servers that they need."""
+class Fleet(Gateways):
+    """Gateways, each with ``robots`` of its own."""
 
     def __init__(self, database: PostgreSql, count: int, robots: int) -> None:
-        super().__init__()
-        self.database = database
-        try:
-            self._start(database, count, robots)
-        except BaseException:
-            self.close()
-            raise
+        self._robots = robots
+        super().__init__(database, count, 2 * count * robots)
 
-    def _start(self, database: PostgreSql, count: int, robots: int) -> None:
-        url = database.new_database()
-        run_once(url, revisions.create)
-        root = Path(self.enter_context(tempfile.TemporaryDirectory(prefix="fleet-large-")))
-        site = site_with_room(root, 2 * count * robots)
-        processes = self.enter_context(Processes(root / "logs"))
-        self.nats = self.enter_context(NatsServer(root)) if count > 1 else None
-        self.gateways = []
-        for number in range(count):
-            state = root / f"state-{number}"
-            state.mkdir()
-            options: list[Any] = ["--state", state]
-            if self.nats is not None:
-                options += ["--gateway-name", f"g{number}", "--bus", self.nats.url]
-            self.gateways.append(serve(processes, site, url, *options, name=f"gateway-{number}"))
-        self.addresses = [one.address for one in self.gateways]
+    def start(self, count: int, room: int) -> None:
+        """Start the gateways, and their robots; return when every robot has its map."""
+        super().start(count, room)
+        plan = {"host": "127.0.0.1", "robots": self._robots, "stride": count}
         self.crowds = [
-            self.begin("benchmarks.cluster_swarm", {**of_all, "port": one.port, "first": number})
-            for of_all in ({"host": "127.0.0.1", "robots": robots, "stride": count},)
+            self.begin("benchmarks.cluster_swarm", {**plan, "port": one.port, "first": number})
             for number, one in enumerate(self.gateways)
         ]
         for crowd in self.crowds:
@@ -150,41 +123,12 @@ class Fleet(ExitStack):
 
     def wait_until_calm(self) -> None:
         """Wait until the gateways have stored what came of a stop."""
-        pids, until = [one.process.pid for one in self.gateways], time.monotonic() + CALM_WITHIN
+        until = time.monotonic() + CALM_WITHIN
         while time.monotonic() < until:
-            cpu = sum(map(cpu_seconds, pids))
+            cpu = self.cpu_seconds()
             time.sleep(1.0)
-            if sum(map(cpu_seconds, pids)) - cpu < BUSY:
+            if self.cpu_seconds() - cpu < BUSY:
                 return
-
-    def begin(self, module: str, plan: dict[str, Any]) -> Onlooker:
-        """Start a process that ends with this."""
-        onlooker = Onlooker(sys.executable, "-m", module, json.dumps(plan))
-        self.callback(onlooker.end)
-        return onlooker
-
-    @contextmanager
-    def without_nats(self) -> Iterator[None]:
-        """Have the bus dead."""
-        assert self.nats is not None
-        self.nats.kill()
-        yield
-        self.nats.start()
-
-    @contextmanager
-    def without_database(self) -> Iterator[None]:
-        """Have PostgreSQL dead."""
-        self.database.kill()
-        yield
-        self.database.start()
-
-    @contextmanager
-    def frozen(self, gateway: int) -> Iterator[None]:
-        """Have a gateway stand still."""
-        process = self.gateways[gateway].process
-        process.send_signal(signal.SIGSTOP)
-        yield
-        process.send_signal(signal.SIGCONT)
 
 
 def _watched(database: PostgreSql, count: int) -> Run:
@@ -199,11 +143,9 @@ def _watched(database: PostgreSql, count: int) -> Run:
         schedule = {"robots": ROBOTS, "rate": RATE, "begin": wall}
         desks.tell(schedule=schedule, begin=wall + SETTLE, seconds=SECONDS)
         time.sleep(begin + SETTLE - time.monotonic())
-        gateways = [one.process.pid for one in fleet.gateways]
-        bus = [] if fleet.nats is None else [fleet.nats.pid]
-        before = [sum(map(cpu_seconds, pids)) for pids in (gateways, bus)]
+        before = fleet.cpu_seconds(), _of_the_bus(fleet)
         time.sleep(max(0.0, begin + SETTLE + SECONDS - time.monotonic()))
-        now = [sum(map(cpu_seconds, pids)) for pids in (gateways, bus)]
+        now = fleet.cpu_seconds(), _of_the_bus(fleet)
         sent, seen = [crowd.line() for crowd in fleet.crowds], desks.line()
         return Run(
             seen["here"],
@@ -211,9 +153,14 @@ def _watched(database: PostgreSql, count: int) -> Run:
             round(count * ROBOTS * RATE * SECONDS),
             now[0] - before[0],
             now[1] - before[1],
-            [megabytes_of(pid) for pid in gateways],
+            fleet.megabytes(),
             max(one["late"] for one in sent),
         )
+
+
+def _of_the_bus(fleet: Fleet) -> float:
+    """Return the processor time that the NATS server has used, where there is one."""
+    return 0.0 if fleet.nats is None else cpu_seconds(fleet.nats.pid)
 
 
 def _subscriptions(count: int) -> list[dict[str, Any]]:
@@ -281,7 +228,7 @@ def _stop(
 def report(one: Run, several: Run, stops: dict[str, list[Stop]]) -> Part:
     """Return the part of the page."""
     share = one.microseconds / several.microseconds
-    across = _percentile(several.elsewhere, 99)
+    across = percentile(several.elsewhere, 99)
     rows = table(
         ["", "one gateway", f"{GATEWAYS} gateways", ""],
         [
@@ -293,11 +240,16 @@ def report(one: Run, several: Run, stops: dict[str, list[Stop]]) -> Part:
                 "",
             ],
             ["... of the NATS server", "", f"{several.bus / several.sent * 1e6:.1f} µs", ""],
-            ["position → desk at the same gateway, p50 / p99", _both(one.here), _both(several.here), ""],
+            [
+                "position → desk at the same gateway, p50 / p99",
+                median_and_p99(one.here),
+                median_and_p99(several.here),
+                "",
+            ],
             [
                 "position → desk at another one",
                 "",
-                _both(several.elsewhere),
+                median_and_p99(several.elsewhere),
                 goal(f"p99 at most {LATEST_MS:.0f} ms", across <= LATEST_MS),
             ],
             ["memory of a gateway", f"{max(one.megabytes):.0f} MB", f"{max(several.megabytes):.0f} MB", ""],
@@ -309,7 +261,11 @@ def report(one: Run, several: Run, stops: dict[str, list[Stop]]) -> Part:
     stopped = table(
         ["", "in force at a gateway, p50 / worst", "last robot, p50 / worst"],
         [
-            [name, _worst([ms for stop in some for ms in stop.in_force]), _worst([s.last for s in some])]
+            [
+                name,
+                median_and_worst([ms for stop in some for ms in stop.in_force]),
+                median_and_worst([s.last for s in some]),
+            ]
             for name, some in stops.items()
         ],
     )
@@ -318,20 +274,8 @@ def report(one: Run, several: Run, stops: dict[str, list[Stop]]) -> Part:
         **{"desk_rate": DESK_RATE, "near": NEAR, "cpus": os.cpu_count(), "desk_tick": 1000 / DESK_RATE},
         **{"tick": POSITION_TICK_S * 1000, "rows": rows, "share": share},
         **{"stops": STOPS, "stopped": GATEWAYS * ROBOTS, "rows_of_stops": stopped},
-        in_force_goal=goal(f"p99 at most {IN_FORCE_MS} ms", _percentile(in_force, 99) <= IN_FORCE_MS),
+        in_force_goal=goal(f"p99 at most {IN_FORCE_MS} ms", percentile(in_force, 99) <= IN_FORCE_MS),
         last_goal=goal(f"at most {LAST_MS} ms", last <= LAST_MS),
         share_goal=f"{goal(f'at least {SHARE}', share >= SHARE).capitalize()}.",
     )
     return Part("Several gateways and a large fleet", text)
-
-
-def _percentile(values: list[float], share: int) -> float:
-    return quantiles(values, n=100, method="inclusive")[share - 1] if len(values) > 1 else values[0]
-
-
-def _worst(values: list[float]) -> str:
-    return f"{_percentile(values, 50):.0f} / {max(values):.0f} ms"
-
-
-def _both(values: list[float]) -> str:
-    return f"{_percentile(values, 50):.0f} / {_percentile(values, 99):.0f} ms"

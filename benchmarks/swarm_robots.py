@@ -10,6 +10,7 @@ import json
 import select
 import sys
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from typing import Any, Generic, TypeVar
@@ -79,7 +80,7 @@ class Robot(Peer):
 Kind = TypeVar("Kind", bound=Robot)
 
 
-class Robots(Generic[Kind]):
+class Robots(ABC, Generic[Kind]):
     """All of them."""
 
     def __init__(self, plan: dict[str, Any]) -> None:
@@ -95,9 +96,9 @@ class Robots(Generic[Kind]):
                 while self._take_in(0.0):
                     pass
 
+    @abstractmethod
     def make(self, plan: dict[str, Any]) -> Iterator[Kind]:
         """Yield robots that have said Ready."""
-        raise NotImplementedError
 
     def arrive(self) -> None:
         """Hear until every robot has its map."""
