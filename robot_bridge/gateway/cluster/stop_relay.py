@@ -5,10 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import uuid
-from collections.abc import Sequence
 from typing import Any, Protocol
-
-from sqlalchemy import Connection
 
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import StoreError
@@ -138,12 +135,14 @@ class EmergencyStopRelay:
 
     async def read_stored(self) -> None:
         """Learn from the database of stops, and of their end; raises StoreError."""
-        current = self._stops.current
-        mine = current.id if current is not None and self._stops.in_force else None
-        found = await self._lease.read(_look, mine)
+        current, id, after = self._stops.current, "", 0.0
+        if current is not None:
+            id, after = current.id, current.at if current.cleared_at is None else current.cleared_at
+        found = await self._lease.read(emergency_stops.changed, id, after)
         self._looked_at = self._clock.steady()
         self._has_company = bool(self._membership.others())
-        for stop in found:
+        # The end of one last: another one that is in force is to hold by then.
+        for stop in sorted(found, key=lambda stop: stop.cleared_at or 0.0):
             await self._stops.learn(stop)
 
     def is_cut_off(self) -> bool:
@@ -238,11 +237,3 @@ class EmergencyStopRelay:
     def _woken(self, wake: Wake) -> None:
         if wake.what == "stops":
             self._look_now.set()
-
-
-def _look(connection: Connection, mine: str | None) -> Sequence[StopRow]:
-    """Return the stops in force, and how the one is stored that is in force here."""
-    found = emergency_stops.in_force(connection)
-    own = None if mine is None else emergency_stops.find(connection, mine)
-    # The end of one last: another one that is in force is to hold by then.
-    return [*reversed(found), *([own] if own is not None and own.cleared_at is not None else [])]

@@ -239,7 +239,7 @@ def _stored(command: ActiveCommand) -> StoredCommand:
 class UnstoredAborts:
     """The newest Abort of each robot, and of each command that was to be aborted alone.
 
-    The Abort of an emergency stop is not among them: the stop keeps it.
+    That of an emergency stop is among them once the stop is over: before, the stop keeps it.
     """
 
     def __init__(self) -> None:
@@ -248,7 +248,7 @@ class UnstoredAborts:
     def keep(self, orders: Iterable[CommandOrder]) -> None:
         """Keep the Aborts among ``orders``."""
         for order in orders:
-            if isinstance(order.message, Abort) and not order.is_emergency:
+            if isinstance(order.message, Abort):
                 self._orders.setdefault(order.robot, {})[order.aborts] = order
 
     def of(self, robots: Iterable[str]) -> list[CommandOrder]:
@@ -258,6 +258,10 @@ class UnstoredAborts:
     def robots(self) -> list[str]:
         """Return the names of the robots of which there are some."""
         return list(self._orders)
+
+    def postpone(self, robot: str) -> None:
+        """Name a robot last: others are not to wait for what keeps its Aborts from being stored."""
+        self._orders[robot] = self._orders.pop(robot)
 
     def drop(self, robot: str) -> None:
         """Forget the Aborts of a robot."""

@@ -104,6 +104,10 @@ class CommandService(CommandReader):
         """
         return await to_its_end(self._issue(orders, also))
 
+    def keep_aborts(self, aborts: Iterable[CommandOrder]) -> None:
+        """Store Aborts of a stop that is over, and before anything else that their robots are told."""
+        self._unstored.keep(aborts)
+
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
         """Tell a robot the way to its target; ``write`` writes that. The target stays the command.
 
@@ -240,8 +244,13 @@ class CommandService(CommandReader):
         """
         await self.look_up()
         for robot in self._unstored.robots():
-            with contextlib.suppress(FencedError):
+            try:
                 await to_its_end(self._issue_unstored(robot))
+            except FencedError:
+                continue
+            except StoreError:
+                self._unstored.postpone(robot)
+                raise
         for robot, sa_id in list(self._late):
             # One that is refused, or goes wrong otherwise, is forgotten: the others have their turn.
             what = f"a late acknowledgement of robot {robot!r}"
@@ -283,7 +292,7 @@ class CommandService(CommandReader):
             except DataRefusedError:
                 raise
             except StoreError:
-                self._unstored.keep(orders)
+                self._unstored.keep(order for order in orders if not order.is_emergency)
                 raise
 
     async def _issue_unstored(self, robot: str) -> None:

@@ -91,6 +91,13 @@ class CommandReader:
         """Tell whether the Abort of an emergency stop is on its way to the robot."""
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
+    def drives_since(self, robot: str, at: float) -> bool:
+        """Tell whether the robot has a motion from before ``at`` to carry out, and no stop's Abort."""
+        mine = self._open.of(robot)
+        return any(c.is_motion and c.report.steps[0].at <= at for c in mine) and not any(
+            c.is_emergency for c in mine
+        )
+
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message that waits in SA, by the message's id."""
         return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}

@@ -204,8 +204,11 @@ class StopWriter:
         """Owe a robot no Abort: it was removed."""
         self._owed.pop(robot, None)
 
-    def clear(self) -> None:
-        """Owe no robot an Abort: no stop is in force."""
+    def end(self) -> None:
+        """Leave the Aborts that are owed still to the book, which stores them first: the stop is over."""
+        self._book.keep_aborts(
+            order for robot, stop in self._owed.items() for order in orders_of(stop, [robot])
+        )
         self._owed.clear()
         self._news = TroubleNews()
 
@@ -222,7 +225,7 @@ class StopWriter:
         :raises StoreError: when the database cannot be used; the stop is then to be written again.
         """
         try:
-            await self._book.issue(_orders(stop, robots), partial(_write_stop, stop))
+            await self._book.issue(orders_of(stop, robots), partial(_write_stop, stop))
             return True
         except UncertainError:
             raise
@@ -268,7 +271,7 @@ class StopWriter:
         return True
 
     async def _issue(self, stop: StopRow, robots: Sequence[str]) -> None:
-        await self._book.issue(_orders(stop, robots), partial(_withdraw_motions, robots))
+        await self._book.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
 
     async def _send_bare(self, robots: Sequence[str]) -> None:
         await self._database.run(_write_bare, robots)
@@ -309,7 +312,8 @@ def abort_id(stop: StopRow, robot: str) -> str:
     return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{stop.id} {robot}"))
 
 
-def _orders(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:
+def orders_of(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:
+    """Return the Aborts of a stop."""
     abort = Abort(emergency=True)
     return [CommandOrder(abort_id(stop, robot), robot, abort, stop.by, stop.reason) for robot in robots]
 

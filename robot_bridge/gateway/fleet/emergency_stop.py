@@ -6,14 +6,14 @@ import asyncio
 import logging
 import time
 import uuid
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from enum import IntEnum
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
 
 from ...core.clock import Clock
-from ...core.errors import RefusedError, StoreError
+from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import LONGEST_OPERATOR, one_line, to_json
 from ...core.messages.commands import CommandReport, CommandState
@@ -26,7 +26,7 @@ from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
-from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter
+from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter, orders_of
 
 # --- What the robots said to an emergency stop; no I/O ---
 
@@ -234,6 +234,8 @@ class EmergencyStops:
             self._writer.owe(
                 self._stop, [robot for robot in self._robots.commanded() if robot not in reached]
             )
+        else:
+            self._abort_overdue(self._stop, self._robots.commanded())
         noted = await asyncio.to_thread(self._journal.read) if self._journal else []
         for stop in noted:
             if stop.id not in self._seen:
@@ -284,27 +286,39 @@ class EmergencyStops:
     async def learn(self, stop: StopRow) -> None:
         """Take in how a stop is stored: put in force one that is new, end the one in force that was cleared.
 
-        What is not stored yet stays in force, whatever others have cleared.
+        What is not stored yet stays in force, whatever others have cleared. Of one that was over before this
+        gateway knew of it the robots here are told as well.
         """
         if stop.cleared_at is None:
             await self.stop_elsewhere(stop)
             return
+        is_new = stop.id not in self._seen
         self._seen.add(stop.id)
+        if is_new and not self.in_force:
+            self._stop = stop
+            self._abort_overdue(stop, self._robots.commanded())
+            self.announce()
+            return
         mine = self._stop
         if mine is None or mine.id != stop.id or not self.in_force or stop in self._unstored:
             return
         self._stop = stop
-        self._writer.clear()
+        self._writer.end()
         self._note()
         log.warning(
             "emergency stop of %s cleared by %s%s", stop.by, stop.cleared_by, _because(stop.clear_reason)
         )
         self.announce()
 
-    def take_over(self, robots: Iterable[str]) -> None:
-        """Count robots that another gateway had; those that were sent no Abort yet are owed one."""
+    async def take_over(self, robots: Sequence[str]) -> None:
+        """Count robots that another gateway had; those that were sent no Abort yet are owed one.
+
+        That one may have died before it had stored theirs, and the stop may be over. Raises StoreError.
+        """
+        newest = None if self.in_force else await self._database.run(emergency_stops.newest)
         stop = self._stop
         if stop is None or not self.in_force:
+            self._abort_overdue(newest, robots)
             return
         for robot in robots:
             self._tally.note_sent(robot)
@@ -338,7 +352,7 @@ class EmergencyStops:
                 )
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
-                self._writer.clear()
+                self._writer.end()
                 self._unlisted.clear()
                 self._note()
                 log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
@@ -383,6 +397,22 @@ class EmergencyStops:
         self._stop = stop
         self._unstored.append(stop)
         self._tally.begin(self._robots.commanded())
+
+    def _abort_overdue(self, stop: StopRow | None, robots: Iterable[str]) -> None:
+        """Have robots aborted that drive since before a stop that is over: its Abort was stored for none.
+
+        A stop that was cleared in the future is of a wrong clock: what was before it cannot be known.
+        """
+        if stop is None or stop.cleared_at is None or stop.cleared_at > self._clock.time():
+            return
+        overdue = [robot for robot in robots if self._book.drives_since(robot, stop.cleared_at)]
+        if overdue:
+            log.warning(
+                "%s: sent the Abort of the emergency stop by %s, which was over before that was stored",
+                listed_names(overdue),
+                stop.by,
+            )
+            self._book.keep_aborts(orders_of(stop, overdue))
 
     async def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._put_in_force(stop)

@@ -174,7 +174,7 @@ class Takeover:
             self._robots.remove(name)
         self._saving.begin([robot.name for robot in known])
         await self._queues.take_up(some)
-        self._emergency.take_over([robot.name for robot in known if robot.abilities != ""])
+        await self._emergency.take_over([robot.name for robot in known if robot.abilities != ""])
         self._events.publish(RobotsTakenUp(tuple(some)))
 
     def _drop(self, robot: str, gateway: str | None) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, insert, select, update
+from sqlalchemy import Connection, insert, or_, select, update
 from sqlalchemy.dialects import postgresql
 
 from ..rows import delete_oldest
@@ -55,6 +55,13 @@ def in_force(connection: Connection) -> list[StopRow]:
     c = emergency_stops.c
     query = select(*_COLUMNS).where(c.cleared_at.is_(None)).order_by(c.at.desc())
     return [StopRow(*row) for row in connection.execute(query)]
+
+
+def changed(connection: Connection, id: str, after: float) -> list[StopRow]:
+    """Return the stops in force, those cleared after a time, and the one with an id, the oldest first."""
+    c = emergency_stops.c
+    found = or_(c.cleared_at.is_(None), c.cleared_at > after, c.id == id)
+    return [StopRow(*row) for row in connection.execute(select(*_COLUMNS).where(found).order_by(c.at))]
 
 
 def ids(connection: Connection, most: int = 1000) -> set[str]:

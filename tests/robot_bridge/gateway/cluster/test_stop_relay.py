@@ -14,6 +14,7 @@ from robot_bridge.gateway.cluster.bus import STOP
 from robot_bridge.gateway.cluster.messages import Beat, Codec, Exchange, StopCall, StopSeen, Wake
 from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
 from robot_bridge.gateway.fleet import emergency_stop
+from robot_bridge.gateway.fleet.emergency_persistence import abort_id
 from robot_bridge.gateway.storage.repositories import emergency_stops
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.patience import BUSY
@@ -194,6 +195,78 @@ async def test_another_stop_that_was_cleared_ends_nothing_here(place):
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
     await place.relay.read_stored()
     assert place.stops.in_force
+
+
+def over_at(cleared_at):
+    """A stop that Eve has cleared."""
+    return StopRow("stop-number-a", cleared_at - 1.0, "Ada", "smoke", cleared_at, "Eve")
+
+
+async def test_robots_that_drive_since_before_a_stop_that_is_over_are_aborted(place):
+    """Nobody told this gateway of it in time."""
+    await place.yard.send("before")
+    await place.yard.acknowledge_all()
+    over = over_at(place.yard.now + 2.0)
+    place.yard.now += 10.0
+    await place.yard.send("after", robot="r2")
+    await place.store(over)
+    await place.relay.read_stored()
+    report = place.stops.report()
+    assert (report.stop, report.in_force, report.cleared_by) == ("stop-number-a", False, "Eve")
+    await place.yard.fleet.save()
+    assert (place.yard.waiting("r1"), place.yard.waiting("r2")) == (["Abort"], ["SetPosEnd"])
+    await place.yard.acknowledge_all()
+    assert await place.yard.states() == {
+        "before": "aborted", "after": "queued", abort_id(over, "r1"): "acknowledged"
+    }  # fmt: skip
+    # Not each time that it is read.
+    await place.relay.read_stored()
+    await place.yard.fleet.save()
+    assert place.yard.waiting("r1") == []
+
+
+async def test_a_stop_that_was_over_at_a_time_to_come_tells_nothing(place):
+    await place.yard.send("before")
+    await place.store(over_at(place.yard.now + 1000.0))
+    await place.relay.read_stored()
+    await place.yard.fleet.save()
+    assert place.yard.waiting("r1") == ["SetPosEnd"]
+
+
+async def test_a_robot_of_a_gateway_that_died_over_a_stop_is_aborted_when_that_is_over(place):
+    for robot in ("r1", "r2"):
+        await place.yard.send(f"before-{robot}", robot=robot)
+    place.yard.now += 10.0
+    await place.store(over_at(place.yard.now - 5.0))
+    await place.stops.take_over(["r1"])
+    await place.yard.fleet.save()
+    assert (place.yard.waiting("r1"), place.yard.waiting("r2")) == (["Abort"], ["SetPosEnd"])
+    await place.yard.restart()
+    await place.yard.fleet.save()
+    assert (place.yard.waiting("r1"), place.yard.waiting("r2")) == (["Abort"], ["Abort"])
+
+
+async def test_an_abort_that_could_not_be_stored_before_the_stop_was_over_is_stored(place, monkeypatch):
+    """And before anything else that its robot is told."""
+    book = place.yard.fleet._book
+    await place.yard.send("before")
+
+    async def issue(orders, also=None, _issue=book.issue):
+        if any(order.robot == "r1" for order in orders):
+            raise StoreError("the robot's rows are locked")
+        return await _issue(orders, also)
+
+    monkeypatch.setattr(book, "issue", issue)
+    place.say(CALL)
+    await place.until(lambda: place.stops.in_force and place.stops.report().stored)
+    await place.yard.database.run(emergency_stops.clear, 1010.0, "Eve", "clear", {"stop-number-a"})
+    await place.relay.read_stored()
+    assert not place.stops.in_force
+    monkeypatch.undo()
+    await place.yard.send("after")
+    states = await place.yard.states()
+    assert list(states)[-2:] == [abort_id(StopRow("stop-number-a", 0.0, ""), "r1"), "after"]
+    assert place.yard.waiting("r1")[-2:] == ["Abort", "SetPosEnd"]
 
 
 async def test_a_newer_stop_holds_when_the_one_before_ends(place):

@@ -344,6 +344,27 @@ def test_a_gateway_that_stands_still_is_named_and_stops_its_robots_when_it_wakes
     clear(desk)
 
 
+def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
+    """The stop is stored and over before anybody has stored the Abort of its robot."""
+    old, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    desk.send(f"c-{name}", name, "SetPosEnd", x=22.0, y=8.0)
+    old.hear("SetPosEnd")
+    desk.wait_for_step(f"c-{name}", "acknowledged")
+    stop_between_transactions(pair.a)
+    stop(desk, name)
+    desk.until(lambda: desk.emergency["stored"])
+    clear(desk)
+    pair.a.kill_gateway()
+    robot = pair.robot(pair.b, name)
+    assert robot.hear("Abort")["emergency"]
+    desk.wait_for_step(f"c-{name}", "aborted")
+    # It takes on what it is told next.
+    desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
+    assert robot.hear("SetPosEnd")["x"] == 24.0
+    pair.a.start_gateway()
+
+
 def test_robots_of_two_gateways_are_aborted_together(pair, name):
     there, here = pair.robot(pair.a, name), pair.robot(pair.b, f"{name}-b", at=(30.0, 8.0))
     desk = desk_at(pair.b)

@@ -100,6 +100,18 @@ async def test_it_is_kept_for_as_long_as_the_database_takes_nothing(driving, los
     assert driving.waiting("r1") == ["Abort"]
 
 
+async def test_one_robot_whose_abort_is_not_taken_keeps_no_other_from_having_its_own(driving, lose):
+    await abort_in_vain(driving, lose)
+    lose(driving, insert_commands, False, StoreError)
+    with pytest.raises(StoreError):
+        await driving.fleet.orders.abort(AbortTask("command-other", robot="r2"), "Ada")
+    for robot in ("r2", "r1"):
+        lose(driving, insert_commands, False, StoreError)
+        with pytest.raises(StoreError):
+            await driving.fleet.save()
+        assert driving.fleet._book._unstored.robots()[0] == robot
+
+
 async def test_one_that_is_refused_as_data_is_not_kept(driving, lose):
     told = await abort_in_vain(driving, lose, DataRefusedError)
     assert told.endswith("it was sent to no robot")

@@ -18,13 +18,19 @@ def kept():
     return UnstoredAborts()
 
 
-def test_only_the_aborts_of_operators_are_kept_and_given_by_robot(kept):
+def test_aborts_alone_are_kept_and_given_by_robot(kept):
     one, other = abort("abort-0001"), abort("abort-0002", "r2")
     target = CommandOrder("target-01", "r1", SetPosEnd(1.0, 2.0), "Ada")
-    kept.keep([target, one, other, CommandOrder("stop-0001", "r3", Abort(emergency=True), "Ada")])
+    kept.keep([target, one, other])
     assert kept.robots() == ["r1", "r2"]
     assert kept.of(["r2", "r3", "r1"]) == [other, one]
     assert kept.of(["r3"]) == []
+
+
+def test_a_robot_whose_abort_cannot_be_stored_comes_last(kept):
+    kept.keep([abort("abort-0001"), abort("abort-0002", "r2"), abort("abort-0003", "r3")])
+    kept.postpone("r1")
+    assert kept.robots() == ["r2", "r3", "r1"]
 
 
 def test_a_newer_one_takes_the_place_of_the_one_before_and_none_of_one_for_a_command(kept):
