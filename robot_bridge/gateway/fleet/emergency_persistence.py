@@ -225,7 +225,7 @@ class StopWriter:
         :raises StoreError: when the database cannot be used; the stop is then to be written again.
         """
         try:
-            await self._book.issue(orders_of(stop, robots), partial(_write_stop, stop))
+            await self._book.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
             return True
         except UncertainError:
             raise
@@ -318,10 +318,13 @@ def orders_of(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:
     return [CommandOrder(abort_id(stop, robot), robot, abort, stop.by, stop.reason) for robot in robots]
 
 
-def _write_stop(stop: StopRow, connection: Connection) -> None:
-    emergency_stops.add(connection, stop)
-    # Some are no commands' messages, but answers to GetPath.
-    requests.remove_everywhere(connection, HELD_BACK)
+def _write_stop(stop: StopRow, robots: Sequence[str], connection: Connection) -> None:
+    # What is withdrawn is not commands' messages alone, but answers to GetPath, too.
+    if emergency_stops.add(connection, stop):
+        requests.remove_everywhere(connection, HELD_BACK)
+    else:
+        # Another gateway stored it, and may have cleared it by now: its robots may be sent on.
+        _withdraw_motions(robots, connection)
 
 
 def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:

@@ -300,7 +300,9 @@ class EmergencyStops:
             self.announce()
             return
         mine = self._stop
-        if mine is None or mine.id != stop.id or not self.in_force or stop in self._unstored:
+        if mine is None or mine.id != stop.id or not self.in_force:
+            return
+        if any(one.id == stop.id for one in self._unstored):
             return
         self._stop = stop
         self._writer.end()

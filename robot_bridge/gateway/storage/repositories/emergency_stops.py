@@ -24,15 +24,18 @@ class StopRow(NamedTuple):
     clear_reason: str | None = None
 
 
-def add(connection: Connection, stop: StopRow) -> None:
-    """Write a new emergency stop; one that is stored already stays as it is.
+def add(connection: Connection, stop: StopRow) -> bool:
+    """Write a new emergency stop, and return true; one that is stored already stays as it is.
 
     Several gateways may write the same one at the same time.
     """
     if connection.dialect.name == "postgresql":
-        connection.execute(postgresql.insert(emergency_stops).on_conflict_do_nothing(), stop._asdict())
-    elif find(connection, stop.id) is None:
-        connection.execute(insert(emergency_stops), stop._asdict())
+        write = postgresql.insert(emergency_stops).on_conflict_do_nothing().values(stop._asdict())
+        return connection.execute(write).rowcount > 0
+    if find(connection, stop.id) is not None:
+        return False
+    connection.execute(insert(emergency_stops), stop._asdict())
+    return True
 
 
 def find(connection: Connection, id: str) -> StopRow | None:

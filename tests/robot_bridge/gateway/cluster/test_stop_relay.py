@@ -197,6 +197,43 @@ async def test_another_stop_that_was_cleared_ends_nothing_here(place):
     assert place.stops.in_force
 
 
+@pytest.fixture
+def held(place, monkeypatch):
+    """An event until which no Abort is stored."""
+    book, may_store = place.yard.fleet._book, asyncio.Event()
+
+    async def issue(orders, also=None, _issue=book.issue):
+        await may_store.wait()
+        return await _issue(orders, also)
+
+    monkeypatch.setattr(book, "issue", issue)
+    return may_store
+
+
+async def test_one_that_others_have_cleared_stays_in_force_until_it_is_stored_here(place, held):
+    place.say(CALL)
+    await place.until(lambda: place.stops.in_force)
+    await place.store(StopRow("stop-number-a", 1000.0, "Ada", "smoke", 1001.0, "Eve"))
+    place.yard.now += 5.0
+    await place.relay.read_stored()
+    assert place.stops.in_force
+    # What robots of other gateways have been sent since is theirs.
+    for robot in ("r1", "elsewhere"):
+        place.yard.sql("insert into sa (robot, op, urgent) values (?, 'SetPath', ?)", robot, False)
+    held.set()
+    await place.until(lambda: place.stops.report().stored)
+    assert (place.yard.waiting("r1"), place.yard.waiting("elsewhere")) == (["Abort"], ["SetPath"])
+    await place.relay.read_stored()
+    assert not place.stops.in_force
+
+
+async def test_who_stores_a_stop_first_takes_back_what_robots_of_all_gateways_were_to_do(place):
+    place.yard.sql("insert into sa (robot, op, urgent) values (?, 'SetPath', ?)", "elsewhere", False)
+    place.say(CALL)
+    await place.until(lambda: place.stops.in_force and place.stops.report().stored)
+    assert place.yard.waiting("elsewhere") == []
+
+
 def over_at(cleared_at):
     """A stop that Eve has cleared."""
     return StopRow("stop-number-a", cleared_at - 1.0, "Ada", "smoke", cleared_at, "Eve")

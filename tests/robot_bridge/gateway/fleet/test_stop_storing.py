@@ -30,6 +30,9 @@ class Book:
         self.book = book
         self.errors, self.asked = {}, []
 
+    def keep_aborts(self, aborts):
+        self.book.keep_aborts(aborts)
+
     async def issue(self, orders, also=None):
         robots = [order.robot for order in orders]
         self.asked.append(robots)
@@ -275,7 +278,9 @@ async def test_robots_are_owed_the_abort_of_their_own_stop(storing_on):
     assert by == {"r1": "Ada", "r2": "Bob", "r3": "Bob"}
 
 
-async def test_who_was_removed_and_who_may_drive_again_is_owed_nothing(storing_on):
+async def test_who_was_removed_is_owed_nothing_and_what_is_owed_when_it_is_over_is_left_to_the_book(
+    storing_on,
+):
     storing_on.writer.owe(STOP, ["r1", "r2"])
     storing_on.writer.forget("r1")
     storing_on.writer.forget("nobody")
@@ -283,10 +288,12 @@ async def test_who_was_removed_and_who_may_drive_again_is_owed_nothing(storing_o
     await storing_on.writer.write_owed()
     assert storing_on.book.asked == [["r2"]]
     storing_on.writer.owe(STOP, ["r3"])
-    storing_on.writer.clear()
+    storing_on.writer.end()
     assert not storing_on.writer.is_owing
     await storing_on.writer.write_owed()
-    assert storing_on.book.asked == [["r2"]]
+    assert storing_on.book.asked == [["r2"]] and storing_on.aborts("r3") == (0, 0)
+    await storing_on.yard.fleet.save()
+    assert storing_on.aborts("r3") == (1, 1)
 
 
 async def test_a_robot_that_is_removed_while_its_abort_is_written_is_no_trouble(storing_on):
