@@ -199,6 +199,8 @@ SUBJECTS = ("robot", "session", "operator", "site", "observation", "command", "p
 """Parameters that say what a request is about; of several the first."""
 UNNOTED = ("hello", "subscribe", "find_robots")
 """Requests that change nothing but the connection they come from."""
+AT_ONCE = ("emergency",)
+"""News that wait for no turn of the loop, which thousands of robots may have before."""
 VIEW_REST_S = 0.1
 """between frames to a desk whose view moves."""
 
@@ -241,7 +243,11 @@ class OperatorSession:
             await self._lanes.finish()
 
     def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Keep the newest news of ``key`` until they can be sent."""
+        """Keep the newest news of ``key`` until they can be sent; those of a stop are sent at once."""
+        if method in AT_ONCE and self._connection.is_idle:
+            self._news.pop((method, key), None)
+            if self._connection.write_at_once(jsonrpc.call(method, params)):
+                return
         self._news[method, key] = params
         self._news_event.set()
 
@@ -411,8 +417,9 @@ class OperatorSession:
             while True:
                 await self._news_event.wait()
                 self._news_event.clear()
-                news, self._news = self._news, {}
-                for (method, _), params in news.items():
+                while self._news:
+                    method, key = next(iter(self._news))
+                    params = self._news.pop((method, key))
                     # What cannot be told of one robot must not keep back what is told of others.
                     with log_and_continue(log, f"news of {method}", except_for=ConnectionClosed):
                         await self._connection.send(jsonrpc.call(method, params))

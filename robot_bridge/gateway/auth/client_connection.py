@@ -285,6 +285,11 @@ class ClientConnection(ServerConnection):
         """Give messages to ``handler`` as their bytes come in; one of which it returns false is queued."""
         self.short_cut.set_handler(handler)
 
+    @property
+    def is_idle(self) -> bool:
+        """Whether all that was written has gone out: the client reads what it is sent."""
+        return bool(self.transport.get_write_buffer_size() == 0)
+
     def write_at_once(self, text: str) -> bool:
         """Write a short message without a turn of the loop.
 

@@ -116,6 +116,8 @@ STORED_WITHIN = 1.0
 """seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
 NOTED_WITHIN = 0.1
 """seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
+MOST_FIRST = 20
+"""operators who are told of a stop before the robots: in a millisecond; thousands of robots take longer."""
 ANSWERS_TOGETHER = 0.05
 """seconds for which answers of robots wait for one another before operators are told: to count thousands at
 each answer of one of them would take all the time in which the robots are to be heard."""
@@ -422,6 +424,8 @@ class EmergencyStops:
         for relay in self._relays if is_own else ():
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
+        if operators_first := len(self._listeners) <= MOST_FIRST:
+            self.announce()
         with log_and_continue(log, "noting an emergency stop"):
             noting = self._note()
             # Who made one elsewhere has noted it already, and stores it.
@@ -431,7 +435,8 @@ class EmergencyStops:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
         log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
-        self.announce()
+        if not operators_first:
+            self.announce()
 
     def _note(self) -> asyncio.Future[None] | None:
         """Have what is not stored noted on the disk."""

@@ -15,6 +15,7 @@ class Connection:
 
     identity = SimpleNamespace(name="Ada")
     address = "127.0.0.1"
+    is_idle = True
 
     def __init__(self):
         self.sent = asyncio.Queue()
@@ -22,6 +23,10 @@ class Connection:
 
     async def send(self, frame, text=None):
         await self.sent.put(json.loads(frame))
+
+    def write_at_once(self, frame):
+        self.sent.put_nowait(json.loads(frame))
+        return True
 
     async def __aiter__(self):
         await self.hung_up.wait()
@@ -40,5 +45,26 @@ async def test_news_that_cannot_be_told_keep_back_none_that_come_after_them(capl
     fleet.listeners.announce("command", "two", {"state": "queued"})
     assert (await asyncio.wait_for(connection.sent.get(), 20))["params"] == {"state": "queued"}
     assert "news of command failed; what comes after it is done all the same" in caplog.text
+    connection.hung_up.set()
+    await running
+
+
+async def test_news_of_a_stop_are_sent_at_once_and_behind_none_that_are_older():
+    fleet, connection = SimpleNamespace(listeners=Listeners()), Connection()
+    session = OperatorSession(fleet, connection, gate=None, handlers=None)
+    running = asyncio.create_task(session.run())
+    await asyncio.sleep(0)
+    for number in (1, 2):
+        # What was written before the first has not gone out yet.
+        connection.is_idle = number == 2
+        fleet.listeners.announce("command", "one", {"number": number})
+        fleet.listeners.announce("emergency", "emergency", {"number": number})
+    # Without a turn of the loop.
+    first = connection.sent.get_nowait()
+    assert (first["method"], first["params"]) == ("emergency", {"number": 2}) and connection.sent.empty()
+    second = await asyncio.wait_for(connection.sent.get(), 20)
+    assert (second["method"], second["params"]) == ("command", {"number": 2})
+    await asyncio.sleep(0.01)
+    assert connection.sent.empty()
     connection.hung_up.set()
     await running
