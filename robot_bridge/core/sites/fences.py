@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import OrderedDict
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -86,6 +86,7 @@ OVERHEAD_M = 2.5
 """An obstacle that begins so many metres above the ground is driven under."""
 TOUCH_M = 0.05
 """Metres within which a leg touches an area."""
+_NONE = np.empty(0, dtype=np.int64)
 _MOST_KEPT = 20_000
 """obstacles whose geometry is kept, of those that robots came near to last."""
 
@@ -112,7 +113,7 @@ class FencedAreas(ABC):
         """
         import shapely
 
-        return self._near(shapely.points(places), metres)
+        return self._near(places, places, lambda rows: shapely.points(places[rows]), metres)
 
     def near_legs(self, start: tuple[float, float], ends: Points, metres: float) -> Indices:
         """Return which straight legs, from ``start`` to each of ``ends``, (n, 2), come within ``metres`` of
@@ -121,7 +122,8 @@ class FencedAreas(ABC):
 
         legs = np.empty((len(ends), 2, 2))
         legs[:, 0], legs[:, 1] = start, ends
-        return self._near(shapely.linestrings(legs), metres)
+        low, high = legs.min(axis=1), legs.max(axis=1)
+        return self._near(low, high, lambda rows: shapely.linestrings(legs[rows]), metres)
 
     def are_between(self, start: tuple[float, float], goal: tuple[float, float], metres: float) -> bool:
         """Tell whether the straight leg comes within ``metres`` of an area at neither end, or touches one.
@@ -135,13 +137,36 @@ class FencedAreas(ABC):
                 return True
         return False
 
+    def _near(
+        self, low: Points, high: Points, geometries: Callable[[Indices], NDArray[Any]], metres: float
+    ) -> Indices:
+        """Return which geometries are within ``metres`` of which area; with 0 metres inside it.
+
+        Their boxes are from ``low`` to ``high``, (n, 2) each. Most are near no area, and are never made:
+        ``geometries`` returns those of some rows.
+        """
+        import shapely
+
+        query, area = self._boxes_between(low - metres, high + metres)
+        if not len(query):
+            return np.empty((2, 0), dtype=np.int64)
+        rows, of_row = np.unique(query, return_inverse=True)
+        queried, shapes = geometries(rows)[of_row], self._shapes(area)
+        near = shapely.dwithin(shapes, queried, metres) if metres > 0 else shapely.contains(shapes, queried)
+        pairs: Indices = np.array([query, area], dtype=np.int64)[:, near]
+        return pairs
+
     @abstractmethod
-    def _near(self, geometries: Any, metres: float) -> Indices:
-        """Return which of ``geometries`` are within ``metres`` of which area; with 0 metres inside it."""
+    def _boxes_between(self, low: Points, high: Points) -> tuple[Indices, Indices]:
+        """Return which rectangles from ``low`` to ``high``, (n, 2) each, touch the box of which area."""
+
+    @abstractmethod
+    def _shapes(self, areas: Indices) -> NDArray[Any]:
+        """Return the geometries of areas."""
 
 
 class FencedPolygons(FencedAreas):
-    """Some areas, in shapely's tree of boxes, under ``ids`` where their numbers may be those of others.
+    """Some areas, under ``ids`` where their numbers may be those of others.
 
     :raises ImportError: where shapely is not installed.
     """
@@ -152,7 +177,11 @@ class FencedPolygons(FencedAreas):
         import shapely
 
         self._names, self._ids = list(names), ids
-        self._tree = shapely.STRtree(shapely.make_valid(np.array(geometries, dtype=object)))
+        self._made = shapely.make_valid(np.array(geometries, dtype=object))
+        shapely.prepare(self._made)
+        boxes = shapely.bounds(self._made).reshape(-1, 4)
+        self._boxes = boxes[:, :2], boxes[:, 2:]
+        self._grid, self._order = BoxGrid.of(*self._boxes)
 
     @classmethod
     def of(cls, areas: Sequence[tuple[int, str, Points]]) -> FencedPolygons:
@@ -173,15 +202,15 @@ class FencedPolygons(FencedAreas):
         """Return what an area is known by."""
         return area if self._ids is None else self._ids[area]
 
-    def _near(self, geometries: Any, metres: float) -> Indices:
-        if not len(self._names) or not len(geometries):
-            return np.empty((2, 0), dtype=np.int64)
-        if metres > 0:
-            found = self._tree.query(geometries, predicate="dwithin", distance=metres)
-        else:
-            found = self._tree.query(geometries, predicate="within")
-        pairs: Indices = found.astype(np.int64)
-        return pairs
+    def _boxes_between(self, low: Points, high: Points) -> tuple[Indices, Indices]:
+        if not len(self._names):
+            return _NONE, _NONE
+        query, box = self._grid.pairs(low, high)
+        return _touching(query, self._order[box], low, high, self._boxes)
+
+    def _shapes(self, areas: Indices) -> NDArray[Any]:
+        made: NDArray[Any] = self._made[areas]
+        return made
 
 
 @dataclass(frozen=True)
@@ -235,23 +264,14 @@ class FencedOutlines(FencedAreas):
         """Return the name of an area."""
         return _name(self._outlines, int(self._rows.first[area]))
 
-    def _near(self, geometries: Any, metres: float) -> Indices:
-        import shapely
+    def _boxes_between(self, low: Points, high: Points) -> tuple[Indices, Indices]:
+        query, area = self._rows.grid.pairs(low, high)
+        return _touching(query, area, low, high, (self._rows.low, self._rows.high))
 
-        bounds = shapely.bounds(geometries).reshape(-1, 4)
-        low, high = bounds[:, :2] - metres, bounds[:, 2:] + metres
-        queries, area = self._rows.grid.pairs(low, high)
-        touches = ((self._rows.high[area] >= low[queries]) & (self._rows.low[area] <= high[queries])).all(
-            axis=1
-        )
-        queries, area = queries[touches], area[touches]
-        shapes = np.array([self._geometry(one) for one in area.tolist()], dtype=object)
-        if metres > 0:
-            near = shapely.dwithin(geometries[queries], shapes, metres)
-        else:
-            near = shapely.within(geometries[queries], shapes)
-        pairs: Indices = np.array([queries, area], dtype=np.int64)[:, near]
-        return pairs
+    def _shapes(self, areas: Indices) -> NDArray[Any]:
+        some, which = np.unique(areas, return_inverse=True)
+        made: NDArray[Any] = np.array([self._geometry(one) for one in some.tolist()], dtype=object)[which]
+        return made
 
     def _geometry(self, area: int) -> Any:
         import shapely
@@ -260,6 +280,7 @@ class FencedOutlines(FencedAreas):
         if known is None:
             first, last = int(self._rows.first[area]), int(self._rows.last[area])
             known = shapely.make_valid(_geometry(self._outlines, first, last))
+            shapely.prepare(known)
             self._kept[area] = known
             if len(self._kept) > _MOST_KEPT:
                 self._kept.popitem(last=False)
@@ -286,6 +307,14 @@ class Fences:
         polygons = [shapely.Polygon(outer, holes) for outer, *holes in (area.rings for area in areas)]
         obstacles = FencedOutlines(outlines, FencedRows.of(outlines) if rows is None else rows)
         return cls(FencedPolygons(polygons, [area.label for area in areas]), obstacles)
+
+
+def _touching(
+    query: Indices, area: Indices, low: Points, high: Points, boxes: tuple[NDArray[Any], NDArray[Any]]
+) -> tuple[Indices, Indices]:
+    """Return those pairs of a rectangle from ``low`` to ``high`` and a box that touch."""
+    touches = ((boxes[1][area] >= low[query]) & (boxes[0][area] <= high[query])).all(axis=1)
+    return query[touches], area[touches]
 
 
 def _boxes(outlines: Outlines, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:

@@ -7,6 +7,7 @@ import logging
 import time
 import uuid
 from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
@@ -79,8 +80,10 @@ class Clearances(NamedTuple):
 
 
 class FoundStays(NamedTuple):
-    """Robots with their ``places``; those ``inside`` an area, with its name, and those still ``near`` one."""
+    """Robots that were ``judged``; those ``inside`` an area, with its name and ``places`` of those, and those
+    still ``near`` one."""
 
+    judged: AbstractSet[str]
     places: dict[str, Place]
     inside: dict[StayKey, str]
     near: set[StayKey]
@@ -162,7 +165,7 @@ class Stays:
         for key in self._stays:
             if key in found.near:
                 self._outside_since.pop(key, None)
-            elif key.robot in found.places:
+            elif key.robot in found.judged:
                 self._outside_since.setdefault(key, now)
 
     def _end_outside(self, now: float) -> list[Stay]:
@@ -177,18 +180,23 @@ def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances
     """Return in which areas ``robots`` at ``places``, (n, 2) metres in the site frame, are; in any thread."""
     inside: dict[StayKey, str] = {}
     near: set[StayKey] = set()
+    at: dict[str, Place] = {}
     kinds: tuple[tuple[FenceKind, FencedAreas, float], ...] = (
         ("keepout", fences.keepouts, clearances.keepout),
         ("obstacle", fences.obstacles, clearances.obstacle),
         ("obstacle", fences.observed, clearances.obstacle),
     )
     for kind, areas, metres in kinds:
-        for robot, area in areas.near(places, metres).T.tolist():
-            inside[StayKey(robots[robot], kind, areas.id(area))] = areas.name(area)
-        pairs = areas.near(places, metres + MARGIN_M).T.tolist()
-        near.update(StayKey(robots[robot], kind, areas.id(area)) for robot, area in pairs)
-    at = {robot: (x, y) for robot, (x, y) in zip(robots, places.tolist(), strict=True)}
-    return FoundStays(at, inside, near)
+        pairs = areas.near(places, metres + MARGIN_M)
+        near.update(StayKey(robots[robot], kind, areas.id(area)) for robot, area in pairs.T.tolist())
+        # Most robots are nowhere near.
+        rows = np.unique(pairs[0])
+        for row, area in areas.near(places[rows], metres).T.tolist():
+            robot = robots[rows[row]]
+            inside[StayKey(robot, kind, areas.id(area))] = areas.name(area)
+            x, y = places[rows[row]].tolist()
+            at[robot] = x, y
+    return FoundStays(set(robots), at, inside, near)
 
 
 def finite_places(places: Points) -> NDArray[np.bool_]:
@@ -275,7 +283,7 @@ class GeofenceWatch:
         fenced = self._fenced
         return Geofence(
             t=now,
-            alarms=[self._alarm(stay) for stay in stays[:MOST_ALARMS]],
+            alarms=self._alarms(stays[:MOST_ALARMS]),
             more=max(len(stays) - MOST_ALARMS, 0),
             keepouts=0 if fenced is None else len(fenced.keepouts),
             obstacles=0 if fenced is None else len(fenced.obstacles) + len(fenced.observed),
@@ -305,7 +313,7 @@ class GeofenceWatch:
         seen = self._robots.revision
         names, places = _placed(self._robots, self._seen)
         settings = self._site.settings
-        found = FoundStays({}, {}, set())
+        found = FoundStays(set(), {}, {}, set())
         if names:
             clearances = Clearances.of(settings.geofence, settings.routes.radius_m)
             found = await asyncio.to_thread(find_stays, names, places, fences, clearances)
@@ -388,7 +396,13 @@ class GeofenceWatch:
             self._last_report = time.monotonic(), report
             self._listeners.announce("geofence", "geofence", to_json(report))
 
-    def _alarm(self, stay: Stay) -> FenceAlarm:
+    def _alarms(self, stays: Sequence[Stay]) -> list[FenceAlarm]:
+        placed = {
+            robot.name for robot in self._robots.known({stay.robot for stay in stays}) if robot.is_placed
+        }
+        return [self._alarm(stay, is_placed=stay.robot in placed) for stay in stays]
+
+    def _alarm(self, stay: Stay, *, is_placed: bool) -> FenceAlarm:
         return FenceAlarm(
             stay.robot,
             stay.kind,
@@ -399,7 +413,7 @@ class GeofenceWatch:
             stay.action,
             stay.outcome,
             stay.reason,
-            self._robots.is_placed(stay.robot),
+            is_placed,
         )
 
     def _unjudged(self, now: float) -> list[str]:
