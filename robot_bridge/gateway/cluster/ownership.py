@@ -6,7 +6,7 @@ import asyncio
 import logging
 import math
 import uuid
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, Protocol
 
@@ -34,7 +34,8 @@ ALL_S = 30.0
 
 
 class OwnerChanges(NamedTuple):
-    """Robots that another gateway has taken over, that turned out to be this one's, and who has which.
+    """Robots that another gateway has taken over, and that turned out to be this one's; ``gateways`` says who
+    has those whose owner has changed.
 
     Of those that are ``gone`` no more is stored: they are new, or were removed.
     """
@@ -61,6 +62,12 @@ class Ownership:
         self._mark: str | None = None
         self._owners: dict[str, Owner] = {}
         """who had which robot at the read that :attr:`_mark` is of."""
+        self._mine: dict[str, int] = {}
+        """those of them that this run of this gateway had, with their fences."""
+        self._unstored: set[str] = set()
+        self._changed: set[str] = set()
+        """those whose owners have changed and were not followed yet."""
+        self._run = ""
         self._read_all_at = -math.inf
 
     # --- the fence --------------------------------------------------------------------------------------
@@ -131,34 +138,56 @@ class Ownership:
     async def refresh(self) -> OwnerChanges:
         """Return what has changed in the database of who has which robot; raises StoreError.
 
-        The robots that are lost are nobody's here from then on.
+        The robots that are lost are nobody's here from then on. What has changed is returned again until
+        :meth:`note_followed`; all once in a while.
         """
-        me = self._membership.me
-        owners = await self._read_owners()
-        mine = {robot: o.fence for robot, o in owners.items() if (o.gw, o.run) == (me.gw, me.run)}
-        lost, new = self._robots.compare(mine)
+        await self._read_owners()
+        lost, new = self._robots.compare(self._mine)
         self._robots.forget(lost)
         # A claim of which nobody knew whether it was stored.
-        self._robots.gained({robot: mine[robot] for robot in new})
-        gone = {robot for robot, owner in owners.items() if not owner.stored}
-        return OwnerChanges(lost, new, gone, {robot: owner.gw for robot, owner in owners.items()})
+        self._robots.gained({robot: self._mine[robot] for robot in new})
+        changed = [robot for robot in self._changed | lost if robot in self._owners]
+        owners = {robot: self._owners[robot].gw for robot in changed}
+        return OwnerChanges(lost, new, set(self._unstored), owners)
 
-    async def _read_owners(self) -> dict[str, Owner]:
-        """Return the owner of each robot; those that have changed are read, and all once in a while."""
+    def note_followed(self, changes: OwnerChanges) -> None:
+        """Note that what has changed is known everywhere in this gateway."""
+        self._changed.difference_update(changes.gateways)
+
+    async def _read_owners(self) -> None:
+        """Read the owners that have changed, and all once in a while."""
         now = asyncio.get_running_loop().time()
-        if now - self._read_all_at >= ALL_S:
+        if now - self._read_all_at >= ALL_S or self._run != self._membership.me.run:
             self._mark = None
         found = await self._database.read(gateways.owners_since, self._mark)
         if self._mark is not None:
             # Those that are not stored are among what was read, whether they have changed or not.
-            stored = {r: o._replace(stored=True) for r, o in self._owners.items() if not o.stored}
-            found = found._replace(owners={**self._owners, **stored, **found.owners})
-            if len(found.owners) != found.total:
+            stored = self._unstored.difference(found.owners)
+            self._note_owners({robot: self._owners[robot]._replace(stored=True) for robot in stored})
+            self._note_owners(found.owners)
+            if len(self._owners) != found.total:
+                self._mark = None
                 found = await self._database.read(gateways.owners_since, None)
-        else:
+        if self._mark is None:
             self._read_all_at = now
-        self._mark, self._owners = found.mark, found.owners
-        return self._owners
+            self._owners, self._mine, self._unstored = {}, {}, set()
+            self._run = self._membership.me.run
+            self._note_owners(found.owners)
+        self._mark = found.mark
+
+    def _note_owners(self, owners: Mapping[str, Owner]) -> None:
+        me = self._membership.me
+        self._owners.update(owners)
+        self._changed.update(owners)
+        for robot, owner in owners.items():
+            if (owner.gw, owner.run) == (me.gw, self._run):
+                self._mine[robot] = owner.fence
+            else:
+                self._mine.pop(robot, None)
+            if owner.stored:
+                self._unstored.discard(robot)
+            else:
+                self._unstored.add(robot)
 
     async def _claim_together(self) -> None:
         await asyncio.sleep(BATCH_S)

@@ -8,10 +8,12 @@ from types import SimpleNamespace
 import pytest
 
 from robot_bridge.core.errors import StoreError
+from robot_bridge.gateway.cluster import ownership as owning
 from robot_bridge.gateway.cluster.ownership import OwnerChanges
 from robot_bridge.gateway.fleet.registration import Takeover
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.model.robots import Robots
+from robot_bridge.gateway.storage.repositories.gateways import Member, Owner, OwnersRead
 
 ROBOTS = ["r1", "r2", "r3", "r4"]
 
@@ -113,9 +115,103 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
             {"r1"} if "r1" in {one.name for one in known.own()} else set(), set(), set(), owners
         )
 
-    ownership.refresh = refresh
+    ownership.refresh, ownership.note_followed = refresh, lambda _changes: None
     await takeover.follow()
     assert {robot: known.gateway_of(robot) for robot in owners} == owners
     assert woken == [("positions", "b"), ("positions", "c")]
     await takeover.follow()
     assert len(woken) == 2
+
+
+class OwnersTable:
+    """The owners as the database has them; who reads is told of all, or of those that have changed."""
+
+    def __init__(self):
+        self.owners, self.changed, self.read_all = {}, set(), 0
+
+    def write(self, **owners):
+        self.owners.update(owners)
+        self.changed.update(owners)
+
+    async def read(self, _work, since):
+        self.read_all += since is None
+        found = {
+            robot: owner
+            for robot, owner in self.owners.items()
+            if since is None or robot in self.changed or not owner.stored
+        }
+        self.changed.clear()
+        return OwnersRead("mark", len(self.owners), found)
+
+
+@pytest.fixture
+def table():
+    return OwnersTable()
+
+
+@pytest.fixture
+def owned(table):
+    me = Member("a", "run 1", 0.0, True)
+    return owning.Ownership(SimpleNamespace(me=me, name="a"), table)
+
+
+def here(fence, run="run 1", *, stored=True):
+    return Owner("a", run, fence, stored)
+
+
+def elsewhere(fence, gateway="b"):
+    return Owner(gateway, "run 9", fence)
+
+
+async def followed(owned):
+    changes = await owned.refresh()
+    owned.note_followed(changes)
+    return changes
+
+
+async def test_owners_that_have_changed_are_told_until_they_are_followed(owned, table):
+    table.write(r1=here(1), r2=elsewhere(4))
+    for _ in range(2):
+        changes = await owned.refresh()
+        assert changes.gateways == {"r1": "a", "r2": "b"}
+    assert await owned.refresh() == (set(), set(), set(), {"r1": "a", "r2": "b"}) and owned.owns("r1")
+    owned.note_followed(changes)
+    assert await owned.refresh() == (set(), set(), set(), {})
+    table.write(r1=elsewhere(2, "c"), r2=here(5))
+    assert await owned.refresh() == ({"r1"}, {"r2"}, set(), {"r1": "c", "r2": "a"})
+    assert (owned.owns("r1"), owned.owns("r2"), table.read_all) == (False, True, 1)
+
+
+async def test_a_robot_that_is_let_go_here_alone_turns_out_to_be_this_ones_again(owned, table):
+    table.write(r1=here(1))
+    assert (await followed(owned)).new == {"r1"}
+    owned.forget(["r1"])
+    assert (await followed(owned)).new == {"r1"}
+
+
+async def test_robots_that_are_not_stored_are_named_each_time(owned, table):
+    table.write(r1=here(1, stored=False), r2=elsewhere(1))
+    assert (await followed(owned)).gone == {"r1"}
+    assert (await followed(owned)).gone == {"r1"}
+    table.write(r1=here(1))
+    assert (await followed(owned)).gone == set()
+
+
+async def test_all_are_read_when_one_is_missing_and_once_in_a_while(owned, table, monkeypatch):
+    table.write(r1=here(1), r2=elsewhere(1))
+    await followed(owned)
+    del table.owners["r1"]
+    assert (await followed(owned)).lost == {"r1"} and table.read_all == 2
+    await followed(owned)
+    assert table.read_all == 2
+    monkeypatch.setattr(owning, "ALL_S", 0.0)
+    assert (await followed(owned)).gateways == {"r2": "b"} and table.read_all == 3
+
+
+async def test_another_run_of_this_gateway_has_none_of_the_robots_of_the_one_before(owned, table):
+    table.write(r1=here(1))
+    await followed(owned)
+    owned._membership.me = Member("a", "run 2", 0.0, True)
+    assert (await followed(owned)).lost == {"r1"}
+    table.write(r1=here(2, "run 2"))
+    assert (await followed(owned)).new == {"r1"}
