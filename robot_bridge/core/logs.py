@@ -106,18 +106,23 @@ def log_unforeseen(log: logging.Logger, who: str) -> str:
 
 @contextlib.contextmanager
 def log_and_continue(
-    log: logging.Logger, what: str, except_for: type[Exception] | tuple[type[Exception], ...] = ()
+    log: logging.Logger,
+    what: str,
+    *arguments: object,
+    except_for: type[Exception] | tuple[type[Exception], ...] = (),
 ) -> Iterator[None]:
     """Log what goes wrong in the block: it must keep nothing after it from being done.
 
-    What is raised ``except_for`` that is known and goes on its way.
+    ``arguments`` stand for each %s of ``what``, and are written only then. What is raised ``except_for`` that
+    is known and goes on its way.
     """
     try:
         yield
     except except_for:
         raise
     except Exception:
-        log.exception("%s failed; what comes after it is done all the same", what)
+        text = what % arguments if arguments else what
+        log.exception("%s failed; what comes after it is done all the same", text)
 
 
 # --- What goes wrong for as long as a disk is full or a database away: at its beginning, and once a minute

@@ -190,7 +190,7 @@ DETAIL_ALL_AGAIN_S = 5.0
 DETAIL_OLD_S = 5.0
 """seconds after which a message is dropped: it has waited somewhere."""
 
-LATENCY_S, LATENCY_PART = 0.005, 0.25
+LATENCY_S, LATENCY_PART = 0.02, 0.5
 """A latency that differs from the one sent last by no more seconds, and no more of that, is not sent: each
 robot's is measured every few seconds, and is never twice the same."""
 PIECE = 500

@@ -424,8 +424,10 @@ class EmergencyStops:
         for relay in self._relays if is_own else ():
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
-        if operators_first := len(self._listeners) <= MOST_FIRST:
-            self.announce()
+        operators_first = False
+        with log_and_continue(log, "telling operators of an emergency stop"):
+            if operators_first := len(self._listeners) <= MOST_FIRST:
+                self.announce()
         with log_and_continue(log, "noting an emergency stop"):
             noting = self._note()
             # Who made one elsewhere has noted it already, and stores it.

@@ -166,7 +166,7 @@ class EventBus:
     def publish(self, event: object) -> None:
         """Hand ``event`` on; a subscriber that fails is logged, and keeps it from no other."""
         for handler in self._subscribers.get(type(event), ()):
-            with log_and_continue(log, f"telling of {event}"):
+            with log_and_continue(log, "telling of %s", event):
                 handler(event)
 
 
