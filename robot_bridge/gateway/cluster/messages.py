@@ -27,7 +27,7 @@ from ...core.logs import RepeatedLines
 from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import PathDeclaration
 from ..model.events import EventBus
-from ..model.robots_elsewhere import REPORTED_NUMBERS
+from ..model.robot_columns import REPORTED_NUMBERS
 from ..storage.repositories import metadata
 from .bus import EVERYBODY, STOP, Bus, own_subject
 
@@ -128,7 +128,7 @@ class PositionBatch(BusMessage, frozen=True, tag="positions"):
     ``ids`` are uint32, by which run ``run`` of the gateway knows its robots; ``names`` those of the first of
     them, the others were named before. ``numbers`` are float32, robot by robot, NaN where there is none: x, y
     (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its last message. ``flags`` are a
-    byte of each robot: see :data:`~..model.robots_elsewhere.REPORTED_FLAGS`.
+    byte of each robot: see :data:`~..model.robot_columns.REPORTED_FLAGS`.
     """
 
     t: float

@@ -9,24 +9,22 @@ from __future__ import annotations
 import asyncio
 import math
 import secrets
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from ...core.messages.base import LONGEST_STATUS, one_line
-from ..model.robots import Robot, Robots
-from ..model.robots_elsewhere import (
-    ENDED,
-    LOCATED,
-    NO_POSE,
-    ONLY_SEEN,
+from ..model.robot_columns import (
+    POSE_AT,
+    REPORTED_FLAGS,
     REPORTED_NUMBERS,
     DescribedElsewhere,
     ReportedElsewhere,
+    RobotPlaces,
 )
+from ..model.robots import Robot, Robots
 from ..monitoring import wait_at_most
 from .bus import LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership
@@ -113,32 +111,35 @@ class PositionRelay:
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
             self._sent_all_at = now
-        mine = self._robots.own(since)
-        if mine:
+        mine = self._robots.own_places(since)
+        if mine.names:
             for batch in position_batches(self._batch(mine, now, name_all=everything), self._largest):
                 self._exchange.send(POSITIONS, batch)
 
-    def _batch(self, robots: list[Robot], now: float, *, name_all: bool) -> PositionBatch:
+    def _batch(self, robots: RobotPlaces, now: float, *, name_all: bool) -> PositionBatch:
         """Return where robots are; those that are new are named, with ``name_all`` all."""
-        if len(self._ids) + len(robots) > MOST_IDS:
+        names = robots.names
+        if len(self._ids) + len(names) > MOST_IDS:
             # Of those that were here before most have gone.
             self._run, self._ids, name_all = self._run + 1, {}, True
         known, ids = len(self._ids), self._ids
-        numbers = np.array([ids.setdefault(robot.name, len(ids)) for robot in robots], dtype="<u4")
-        if not name_all and len(ids) > known:
+        numbers = np.array([ids.setdefault(name, len(ids)) for name in names], dtype="<u4")
+        table = robots.table[:REPORTED_NUMBERS].T
+        table[:, POSE_AT:] = now - self._membership.clock_offset - table[:, POSE_AT:]
+        flags, named = robots.flags & REPORTED_FLAGS, len(names) if name_all else len(ids) - known
+        if 0 < named < len(names):
             # What is named comes first.
             order = np.argsort(numbers < known, kind="stable")
-            robots, numbers = [robots[row] for row in order.tolist()], numbers[order]
-        named = len(robots) if name_all else len(ids) - known
-        table = _table(robots, now - self._membership.clock_offset)
+            names = [names[row] for row in order[:named].tolist()]
+            numbers, table, flags = numbers[order], table[order], flags[order]
         return PositionBatch(
             self._exchange.gateway,
             now,
             self._run,
             numbers.tobytes(),
-            [robot.name for robot in robots[:named]],
-            table.tobytes(),
-            _flags(robots),
+            names[:named],
+            table.astype("<f4").tobytes(),
+            flags.tobytes(),
         )
 
     def _woken(self, wake: Wake) -> None:
@@ -158,25 +159,6 @@ class PositionRelay:
             # A message was lost, or came before this gateway knew that the other one has the robot.
             self._asked_at = batch.t
             self._exchange.wake("positions", batch.gw)
-
-
-def _table(robots: Sequence[Robot], wall: float) -> npt.NDArray[np.float32]:
-    """Return the numbers of robots: (n, :data:`REPORTED_NUMBERS`)."""
-    table = np.empty((len(robots), REPORTED_NUMBERS))
-    # Column by column: rows of tuples would take twice as long.
-    poses = [robot.pose or NO_POSE for robot in robots]
-    table[:, 0], table[:, 1] = [at.x for at in poses], [at.y for at in poses]
-    table[:, 2], table[:, 3] = [at.theta for at in poses], [at.v for at in poses]
-    table[:, 4], table[:, 5] = [robot.pose_at for robot in robots], [robot.received_at for robot in robots]
-    table[:, 4:] = wall - table[:, 4:]
-    return table.astype("<f4")
-
-
-def _flags(robots: Sequence[Robot]) -> bytes:
-    return bytes(
-        ENDED * robot.ended_in_order | LOCATED * robot.located | ONLY_SEEN * (robot.abilities == "")
-        for robot in robots
-    )
 
 
 # --- What changes seldom: battery, status, latency and what robots declared; told when it has changed ---

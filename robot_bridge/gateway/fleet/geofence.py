@@ -19,14 +19,14 @@ from ...core.errors import BridgeError, RefusedError
 from ...core.messages.base import MessageError, to_json
 from ...core.messages.commands import AbortTask
 from ...core.messages.queues import PauseRobot
-from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, RobotState, StopAction, StopOutcome
+from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, StopAction, StopOutcome
 from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
 from ..commands.requests import CommandRequests
 from ..model.events import Listeners
-from ..model.robots import Robot, Robots
-from ..model.robots_elsewhere import FRESH, LOCATED, OFFLINE
+from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, X, Y
+from ..model.robots import Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
 from .emergency_stop import EmergencyStops
@@ -419,33 +419,21 @@ class GeofenceWatch:
     def _unjudged(self, now: float) -> list[str]:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
         lost_after = self._site.settings.liveness.lost_after_s
-        own = [
-            one.name
-            for one in self._robots.own()
-            if one.state is not RobotState.OFFLINE and not _is_seen(one, now, lost_after)
-        ]
-        others = self._robots.places_elsewhere()
-        seen = (others.states == FRESH) & ((others.flags & LOCATED) > 0) & (now - others.pose_at < lost_after)
-        rows = np.flatnonzero((others.states != OFFLINE) & ~seen)
-        return sorted(own + [others.names[row] for row in rows.tolist()])
-
-
-def _is_seen(robot: Robot, now: float, lost_after: float) -> bool:
-    fresh = robot.state is RobotState.FRESH and robot.located and robot.pose_at is not None
-    return fresh and now - (robot.pose_at or 0.0) < lost_after
+        places = self._robots.places()
+        is_recent = now - places.table[POSE_AT] < lost_after
+        seen = (places.states == FRESH) & ((places.flags & LOCATED) > 0) & is_recent
+        rows = np.flatnonzero((places.states != OFFLINE) & ~seen)
+        return sorted(places.names[row] for row in rows.tolist())
 
 
 def _placed(robots: Robots, since: int) -> tuple[list[str], Points]:
     """Return the names and places, (n, 2), of those that changed after revision ``since`` and have said where
     they are since they connected."""
-    own = [(one.name, one.pose) for one in robots.own(since) if one.located and one.pose is not None]
-    others = robots.places_elsewhere(since)
-    places = np.array([(pose.x, pose.y) for _, pose in own], dtype=np.float64).reshape(-1, 2)
-    there = np.stack([others.x, others.y], axis=1)
-    there[(others.flags & LOCATED) == 0] = np.nan
-    names, places = [name for name, _ in own] + others.names, np.concatenate([places, there])
+    found = robots.places(since)
+    places = found.table[[X, Y]].T
+    places[(found.flags & LOCATED) == 0] = np.nan
     rows = finite_places(places)
-    return [names[row] for row in np.flatnonzero(rows).tolist()], places[rows]
+    return [found.names[row] for row in np.flatnonzero(rows).tolist()], places[rows]
 
 
 def _where(stay: Stay) -> str:

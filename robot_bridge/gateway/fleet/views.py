@@ -35,8 +35,8 @@ from ...core.messages.positions import (
     View,
 )
 from ..model.events import Encoded, handles
+from ..model.robot_columns import ACCURACY, BATTERY, DOUBTED, LOST, STATES, X, Y
 from ..model.robots import Robot, Robots
-from ..model.robots_elsewhere import DOUBTED, LOST, NO_POSE, STATES
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
 
@@ -54,7 +54,6 @@ Bounds = tuple[float, float, float, float]
 # --- Where all robots are at one moment, as arrays ---
 
 _STATES = tuple(state.value for state in STATES)
-_CODES = {state: code for code, state in enumerate(_STATES)}
 _GROUPS = np.array([{"fresh": 0, "offline": 2}.get(state, 1) for state in _STATES])
 """Of each state whether it counts as fresh, silent or offline."""
 
@@ -63,22 +62,10 @@ class FleetPlaces:
     """All robots at one moment; what is asked of it is worked out once. ``bounds`` are the site's."""
 
     def __init__(self, robots: Robots, bounds: Bounds) -> None:
-        own, others = robots.own(), robots.places_elsewhere()
-        self.names = [robot.name for robot in own] + others.names
-        self._bounds = bounds
-        codes = np.array([_CODES[robot.state._value_] for robot in own], dtype=np.intp)
-        self._codes = np.concatenate([codes, others.states])
-        disbelieved = np.array([robot.doubt is not None for robot in own], dtype=np.bool_)
-        self._disbelieved = np.concatenate([disbelieved, (others.flags & DOUBTED) > 0])
-        # Column by column: 100 000 rows in tuples would take twice as long.
-        poses = [robot.pose or NO_POSE for robot in own]
-        self._x = np.concatenate([[at.x for at in poses], others.x])
-        self._y = np.concatenate([[at.y for at in poses], others.y])
-        battery = np.array([at.battery for at in poses], dtype=np.float64)
-        self._battery = np.concatenate([battery, others.battery])
-        accuracy = np.array([at.accuracy for at in poses], dtype=np.float64)
-        # Other gateways do not tell how sure their robots are.
-        self._accuracy = np.concatenate([accuracy, np.full(len(others.names), np.nan)])
+        places = robots.places()
+        self.names, self._codes, self._bounds = places.names, places.states, bounds
+        self._disbelieved = (places.flags & DOUBTED) > 0
+        self._x, self._y, self._battery, self._accuracy = places.table[[X, Y, BATTERY, ACCURACY]]
         self.counts = dict(zip(_STATES, np.bincount(self._codes, minlength=4).tolist(), strict=True))
         self._alarmed: dict[AlarmLimits, tuple[list[str], int]] = {}
         self._grid: DensityGrid | None = None

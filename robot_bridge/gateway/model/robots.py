@@ -15,14 +15,14 @@ from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
 from .position_checks import AcceptedArea, LatePoses
-from .robots_elsewhere import (
+from .robot_columns import (
     DOUBTED,
     ONLY_SEEN,
     RECEIVED_AT,
     DescribedElsewhere,
-    PlacesElsewhere,
     ReportedElsewhere,
     RobotColumns,
+    RobotPlaces,
     liveness,
 )
 
@@ -151,6 +151,8 @@ class Robots:
         """those of other gateways, each as it was when somebody asked for it last."""
         self._details: dict[str, tuple[float | None, str | None]] = {}
         """battery and status of those."""
+        self._rows = RobotColumns()
+        """those of this gateway once more, where many are judged."""
         self._columns = RobotColumns()
         """what other gateways said of theirs last."""
         self._removed: dict[str, int] = {}
@@ -337,6 +339,7 @@ class Robots:
             robot.pose_at = robot.received_at
         else:
             robot.pose_at, robot.located = now, True
+        self._write(robot)
         return True
 
     def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
@@ -361,8 +364,10 @@ class Robots:
         robot.received_at = now
         robot.revision = self.revision = self.revision + 1
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
+            self._rows.write(robot)
             return False
         robot.pose, robot.pose_at = pose, now
+        self._rows.move(name, pose, now, robot.revision)
         return True
 
     def let_go(self, name: str, gateway: str) -> None:
@@ -409,7 +414,7 @@ class Robots:
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""
-        if self._robots.pop(name, None) or self._forget_elsewhere(name):
+        if self._forget_here(name) or self._forget_elsewhere(name):
             self.revision += 1
             self._removed[name] = self.revision
 
@@ -442,17 +447,17 @@ class Robots:
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
+        self._rows.move_times(step)
         self._columns.move_times(step)
 
     def age(self, now: float) -> None:
         """Bring the state of every robot up to ``now``; what changed gets a new revision."""
-        for robot in self._robots.values():
+        for name in self._rows.outdated(now, self._stale_after, self._lost_after):
+            robot = self._robots[name]
             # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
             robot.received_at = min(robot.received_at, now)
-            state = self._judge(robot, now)
-            if state is not robot.state:
-                robot.state = state
-                self._touch(robot)
+            robot.state = self._judge(robot, now)
+            self._touch(robot)
         self.revision = self._columns.age(now, self._stale_after, self._lost_after, self.revision)
 
     def changed(self, since: int) -> list[Robot]:
@@ -463,9 +468,13 @@ class Robots:
         """Return the robots of this gateway that changed after revision ``since``."""
         return [robot for robot in self._robots.values() if robot.revision > since]
 
-    def places_elsewhere(self, since: int = -1) -> PlacesElsewhere:
-        """Return where the robots of other gateways are that changed after revision ``since``."""
-        return self._columns.places(since)
+    def own_places(self, since: int = -1) -> RobotPlaces:
+        """Return where the robots of this gateway are that changed after revision ``since``."""
+        return self._rows.places(since)
+
+    def places(self, since: int = -1) -> RobotPlaces:
+        """Return where those are that changed after revision ``since``, those of this gateway first."""
+        return self._rows.places(since).join(self._columns.places(since))
 
     def only_seen(self) -> list[Robot]:
         """Return the robots that can do nothing."""
@@ -506,11 +515,15 @@ class Robots:
             self._forget_elsewhere(robot.name)
             self._robots[robot.name] = robot
         else:
-            self._robots.pop(robot.name, None)
+            self._forget_here(robot.name)
             self._elsewhere[robot.name] = robot
             if robot.pose is not None:
                 self._details[robot.name] = robot.pose.battery, robot.pose.status
         self._touch(robot)
+
+    def _forget_here(self, name: str) -> Robot | None:
+        self._rows.remove(name)
+        return self._robots.pop(name, None)
 
     def _forget_elsewhere(self, name: str) -> Robot | None:
         self._details.pop(name, None)
@@ -528,5 +541,7 @@ class Robots:
     def _touch(self, robot: Robot) -> None:
         self.revision += 1
         robot.revision = self.revision
-        if robot.gateway is not None:
-            self._columns.write(robot)
+        self._write(robot)
+
+    def _write(self, robot: Robot) -> None:
+        (self._rows if robot.gateway is None else self._columns).write(robot)

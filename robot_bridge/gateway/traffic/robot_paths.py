@@ -147,7 +147,7 @@ class RobotPaths:
 
     def own(self) -> list[DrivenTask]:
         """Return what the robots of this gateway are doing that have a task."""
-        underway = (self.of(robot.name) for robot in self._robots.own())
+        underway = (self.of(robot) for robot in self._book.robots())
         return sorted((one for one in underway if one is not None), key=lambda one: one.robot)
 
     def all(self) -> list[DrivenTask]:

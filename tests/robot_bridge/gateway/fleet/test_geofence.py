@@ -16,7 +16,7 @@ from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.fleet import geofence as watch
 from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
-from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ReportedElsewhere
+from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
 
 IN_THE_BASIN = 66.0, 32.0
 OUTSIDE = 60.0, 22.0

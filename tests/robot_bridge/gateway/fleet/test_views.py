@@ -25,8 +25,8 @@ from robot_bridge.core.position_frame import split_frame
 from robot_bridge.gateway.fleet import views as views_module
 from robot_bridge.gateway.fleet.operator_updates import position_table
 from robot_bridge.gateway.fleet.views import DensityGrid, FleetViews, RowStore, ViewWatch
+from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
 from robot_bridge.gateway.model.robots import Robots
-from robot_bridge.gateway.model.robots_elsewhere import LOCATED, ReportedElsewhere
 
 BOUNDS = (0.0, 0.0, 100.0, 100.0)
 LIMITS = AlarmLimits(low_battery=0.2, unsure=2.0, outside=0.5)

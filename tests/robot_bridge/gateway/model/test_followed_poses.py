@@ -8,6 +8,7 @@ from dataclasses import asdict, replace
 from types import SimpleNamespace
 from typing import ClassVar
 
+import numpy as np
 import pytest
 
 from robot_bridge.core.errors import BridgeError
@@ -18,6 +19,7 @@ from robot_bridge.core.sites.settings import SiteSettings
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.model.events import EventBus, RobotReturned
 from robot_bridge.gateway.model.position_checks import PlaceChecks
+from robot_bridge.gateway.model.robot_columns import RobotColumns
 from robot_bridge.gateway.model.robots import Robots
 
 LIMITS = LimitSettings(place_within_m=60.0, leap_m=100.0)
@@ -74,6 +76,23 @@ class Side:
         elif odd == "silent":
             self.robots.age(now)
 
+    def rows(self):
+        """What the columns say of each robot, and what they would say if all were written now."""
+        fresh = RobotColumns()
+        for robot in self.robots.own():
+            fresh.write(robot)
+        return [
+            {
+                name: (
+                    *np.nan_to_num(places.table[:, row], nan=-1.0).tolist(),
+                    places.states[row],
+                    places.flags[row],
+                )
+                for row, name in enumerate(places.names)
+            }
+            for places in (self.robots.own_places(), fresh.places())
+        ]
+
     def state(self):
         names = self.robots.names()
         return self.back, self.unseen, [{**asdict(self.robots.get(name)), "revision": 0} for name in names]
@@ -113,6 +132,12 @@ def test_poses_that_are_followed_leave_robots_as_those_that_are_considered():
         considered.receive(poses, now)
         followed.receive(poses, now)
         assert followed.state() == considered.state(), (number, now)
+        for side in (considered, followed):
+            rows, written = side.rows()
+            assert rows == written, (number, now)
+            since = side.robots.revision - chance.randrange(12)
+            changed = {robot.name for robot in side.robots.own(since)}
+            assert set(side.robots.own_places(since).names) == changed
     # Nearly all poses of a fleet that drives need no second look.
     assert followed.followed > ROUNDS * len(names) / 3
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 from robot_bridge.core.errors import RefusedError
@@ -92,7 +93,7 @@ async def test_the_place_aside_is_free_of_keepouts_obstacles_and_other_robots(me
     assert math.dist(first, second) >= math.hypot(0.5, 0.8) + 0.3
     fences = meeting.site.site.fences
     for areas in (fences.keepouts, fences.obstacles):
-        assert areas.near([second], 0.47).shape[1] == 0
+        assert areas.near(np.array([second]), 0.47).shape[1] == 0
 
 
 async def test_a_robot_that_others_reach_first_cannot_go_aside(meeting):

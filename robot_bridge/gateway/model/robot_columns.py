@@ -1,13 +1,14 @@
-"""What other gateways say of their robots, in columns: thousands are taken in at once, and judged at once.
+"""Robots in columns: thousands are judged at once, and taken in at once where other gateways tell of theirs.
 
-No I/O. :class:`.Robots` makes a :class:`.Robot` of a row when somebody asks for that robot.
+No I/O. Of a robot of this gateway a row repeats what its :class:`.Robot` says. One of another gateway is what
+its row says: :class:`.Robots` makes a :class:`.Robot` of that when somebody asks for it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple, Protocol, TypeVar
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -21,9 +22,10 @@ ENDED, LOCATED, ONLY_SEEN, DOUBTED = 1, 2, 4, 8
 """Flags of a robot: it ended in good order, has said where it is since its Ready, is only seen, and the place
 that it said last is not believed. The last comes with its details."""
 REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN
-X, Y, POSE_AT, RECEIVED_AT, BATTERY = 0, 1, 4, 5, 6
-"""Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, and
-0 to 1."""
+X, Y, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 4, 5, 6, 7
+"""Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, 0 to 1,
+and m, which other gateways do not tell."""
+NUMBERS = 8
 REPORTED_NUMBERS = 6
 """numbers of a robot in a message, the first of those; in place of times there are seconds since."""
 STATES = tuple(RobotState)
@@ -64,20 +66,6 @@ def state_codes(
     return np.where(ages < stale_after, FRESH, silent).astype(np.uint8)
 
 
-class NoPose(NamedTuple):
-    """In place of the pose of a robot that has not said where it is, where many become columns."""
-
-    x: float = math.nan
-    y: float = math.nan
-    theta: float = math.nan
-    v: float = math.nan
-    battery: float | None = None
-    accuracy: float | None = None
-
-
-NO_POSE = NoPose()
-
-
 class ReportedElsewhere(NamedTuple):
     """What another gateway says of n of its robots.
 
@@ -112,16 +100,22 @@ class DescribedElsewhere(NamedTuple):
     magic: int | None = None
 
 
-class PlacesElsewhere(NamedTuple):
-    """Where robots of other gateways are, by robot: (n,) each but ``names``; NaN where nothing is known."""
+class RobotPlaces(NamedTuple):
+    """Where n robots are: ``table`` is (:data:`NUMBERS`, n), NaN where nothing is known; the rest (n,)."""
 
     names: list[str]
-    x: Numbers
-    y: Numbers
-    pose_at: Numbers
-    battery: Numbers
+    table: Numbers
     states: Flags
     flags: Flags
+
+    def join(self, other: RobotPlaces) -> RobotPlaces:
+        """Return these robots, and the others behind them."""
+        return RobotPlaces(
+            self.names + other.names,
+            np.concatenate([self.table, other.table], axis=1),
+            np.concatenate([self.states, other.states]),
+            np.concatenate([self.flags, other.flags]),
+        )
 
 
 class RobotElsewhere(Protocol):
@@ -199,7 +193,7 @@ class Observed(NamedTuple):
 
 
 class RobotColumns:
-    """Robots of other gateways by row; a row whose robot is gone is used again."""
+    """Robots by row; a row whose robot is gone is used again."""
 
     def __init__(self) -> None:
         self._rows: dict[str, int] = {}
@@ -207,7 +201,9 @@ class RobotColumns:
         self._free: list[int] = []
         self._gateways: dict[str, int] = {}
         self._numberings: dict[str, Numbering] = {}
-        self._numbers = np.empty((BATTERY + 1, 0))
+        self._numbers = np.empty((NUMBERS, 0))
+        self._cells: list[Any] = []
+        """the numbers, in which one is written faster than in an array."""
         self._flags = np.empty(0, dtype=np.uint8)
         self._states = np.empty(0, dtype=np.uint8)
         self._owners = np.empty(0, dtype=np.int32)
@@ -229,19 +225,15 @@ class RobotColumns:
     # --- One robot ---
 
     def write(self, robot: RobotElsewhere) -> None:
-        """Write all that is known of a robot that another gateway has into its row."""
+        """Write all that is known of a robot into its row."""
         row = self._rows.get(robot.name)
         if row is None:
             row = self._new_row(robot.name)
         pose, pose_at = robot.pose, robot.pose_at
         place = (math.nan,) * 4 if pose is None else (pose.x, pose.y, pose.theta, pose.v)
-        battery = None if pose is None else pose.battery
-        self._numbers[:, row] = (
-            *place,
-            math.nan if pose_at is None else pose_at,
-            robot.received_at,
-            math.nan if battery is None else battery,
-        )
+        self._numbers[:BATTERY, row] = *place, math.nan if pose_at is None else pose_at, robot.received_at
+        battery, accuracy = (None, None) if pose is None else (pose.battery, pose.accuracy)
+        self._numbers[BATTERY:, row] = _number(battery), _number(accuracy)
         self._flags[row] = (
             ENDED * robot.ended_in_order
             | LOCATED * robot.located
@@ -251,6 +243,15 @@ class RobotColumns:
         self._states[row] = _CODES[robot.state]
         self._owners[row] = self._owner(robot.gateway or "")
         self._revisions[row] = robot.revision
+
+    def move(self, name: str, pose: SendPos, at: float, revision: int) -> None:
+        """Write where a robot with a row is at time ``at``, of which all else is as it was."""
+        row = self._rows[name]
+        x, y, theta, v, pose_at, received_at, battery, accuracy = self._cells
+        x[row], y[row], theta[row], v[row] = pose.x, pose.y, pose.theta, pose.v
+        pose_at[row] = received_at[row] = at
+        battery[row], accuracy[row] = _number(pose.battery), _number(pose.accuracy)
+        self._revisions[row] = revision
 
     def remove(self, name: str) -> None:
         """Have no row of a robot any more."""
@@ -341,6 +342,14 @@ class RobotColumns:
         self._states[rows] = states[rows]
         return self._changed(rows, revision)
 
+    def outdated(self, now: float, stale_after: float, lost_after: float) -> list[str]:
+        """Return the names of those whose states are not up to ``now``, or that were heard later."""
+        times = self._numbers[RECEIVED_AT]
+        states = state_codes(now - times, (self._flags & ENDED) > 0, stale_after, lost_after)
+        return self._named(
+            np.flatnonzero(((states != self._states) | (times > now)) & (self._revisions >= 0))
+        )
+
     def move_times(self, step: ClockStep) -> None:
         """Keep the times since robots were heard when the clock was set."""
         times = self._numbers[[POSE_AT, RECEIVED_AT]].tolist()
@@ -354,12 +363,10 @@ class RobotColumns:
         """Return the names of those that are only seen."""
         return self._named(np.flatnonzero(((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)))
 
-    def places(self, since: int = -1) -> PlacesElsewhere:
+    def places(self, since: int = -1) -> RobotPlaces:
         """Return where those are that changed after revision ``since``."""
         rows = np.flatnonzero(self._revisions > since)
-        x, y, pose_at, battery = self._numbers[[X, Y, POSE_AT, BATTERY]][:, rows]
-        names, states, flags = self._named(rows), self._states[rows], self._flags[rows]
-        return PlacesElsewhere(names, x, y, pose_at, battery, states, flags)
+        return RobotPlaces(self._named(rows), self._numbers[:, rows], self._states[rows], self._flags[rows])
 
     def _named(self, rows: Rows) -> list[str]:
         names = self._names
@@ -385,9 +392,14 @@ class RobotColumns:
         more = max(have, _SPARE)
         self._names += [""] * more
         self._free += range(have + more - 1, have - 1, -1)
-        self._numbers = np.concatenate([self._numbers, np.full((BATTERY + 1, more), np.nan)], axis=1)
+        self._numbers = np.concatenate([self._numbers, np.full((NUMBERS, more), np.nan)], axis=1)
+        self._cells = [memoryview(column) for column in self._numbers]
         self._flags = np.concatenate([self._flags, np.zeros(more, np.uint8)])
         self._states = np.concatenate([self._states, np.zeros(more, np.uint8)])
         self._owners = np.concatenate([self._owners, np.zeros(more, np.int32)])
         self._revisions = np.concatenate([self._revisions, np.full(more, -1, np.int64)])
         self._lives = np.concatenate([self._lives, np.zeros(more, np.int64)])
+
+
+def _number(value: float | None) -> float:
+    return math.nan if value is None else value

@@ -14,8 +14,9 @@ from robot_bridge.core.clock import ClockStep
 from robot_bridge.core.messages.positions import link_elsewhere
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.core.messages.safety import RobotState
-from robot_bridge.gateway.model.robots import Robot, Robots
-from robot_bridge.gateway.model.robots_elsewhere import (
+from robot_bridge.gateway.model.robot_columns import (
+    BATTERY,
+    DOUBTED,
     ENDED,
     LOCATED,
     ONLY_SEEN,
@@ -25,6 +26,7 @@ from robot_bridge.gateway.model.robots_elsewhere import (
     liveness,
     state_codes,
 )
+from robot_bridge.gateway.model.robots import Robot, Robots
 
 NOW = 1000.0
 HERE = (1.0, 2.0, 0.5, 0.25)
@@ -145,12 +147,9 @@ def test_details_go_with_the_place_until_others_come(robots):
         "it leapt",
         0.01,
     )
-    places = robots.places_elsewhere()
-    assert (places.names, places.battery.tolist(), places.flags.tolist()) == (
-        ["theirs"],
-        [0.5],
-        [LOCATED | 8],
-    )
+    places = robots.places()
+    row = places.names.index("theirs")
+    assert (places.table[BATTERY, row], places.flags[row]) == (0.5, LOCATED | DOUBTED)
 
 
 def test_only_what_changed_has_a_newer_revision(robots):
@@ -158,7 +157,7 @@ def test_only_what_changed_has_a_newer_revision(robots):
     seen = robots.revision
     robots.observe_elsewhere(told(["b"], wall=NOW + 1))
     assert [robot.name for robot in robots.changed(seen)] == ["b"]
-    assert robots.places_elsewhere(seen).names == ["b"]
+    assert robots.places(seen).names == ["b"]
     assert {robot.name for robot in robots.changed(-1)} == {"mine", "theirs", "a", "b", "c"}
     robots.assign("c", "task")
     assert [(robot.name, robot.command) for robot in robots.changed(seen)][1:] == [("c", "task")]
@@ -169,7 +168,7 @@ def test_a_robot_that_was_removed_leaves_nothing_to_the_next_one(robots):
     seen = robots.revision
     robots.remove("theirs")
     assert robots.removed(seen) == ["theirs"] and "theirs" not in robots and robots.count() == 1
-    assert robots.places_elsewhere().names == [] and robots.known(["theirs"]) == []
+    assert robots.places().names == ["mine"] and robots.known(["theirs"]) == []
     robots.observe_elsewhere(told(["next"], [(math.nan, 0.0, 0.0, 0.0)]))
     assert robots.get("next").pose is None and not robots.is_unseen("next", NOW)
     robots.observe_elsewhere(told(["theirs"]))
