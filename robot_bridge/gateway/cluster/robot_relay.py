@@ -227,7 +227,7 @@ class DetailRelay:
         if now - self._sent_all_at >= (DETAIL_ALL_AGAIN_S if self._is_asked else DETAIL_ALL_S):
             self._sent, self._revision, self._sent_all_at, self._is_asked = {}, -1, now, False
         since, self._revision = self._revision, self._robots.revision
-        robots = self._robots.own(since)
+        robots = self._robots.own_described(since)
         for begin in range(0, len(robots), PIECE):
             self._send_changed(robots[begin : begin + PIECE], now)
             await asyncio.sleep(0)

@@ -34,7 +34,7 @@ _CODES = {state: code for code, state in enumerate(STATES)}
 FRESH, STALE, LOST, OFFLINE = (
     _CODES[state] for state in (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 )
-_LARGEST = np.array([COORDINATE[1], COORDINATE[1], THETA[1], SPEED[1]])
+_LARGEST = COORDINATE[1], COORDINATE[1], THETA[1], SPEED[1]
 _SPARE = 256
 
 Numbers = npt.NDArray[np.float64]
@@ -148,10 +148,7 @@ class Numbering:
 
     def name(self, ids: Rows, rows: Rows, lives: Counts) -> None:
         """Note the rows of robots, below 0 where they have none, and which use of each row it is."""
-        missing = int(ids.max(initial=-1)) + 1 - len(self._rows)
-        if missing > 0:
-            self._rows = np.concatenate([self._rows, np.full(missing + _SPARE, -1, np.intp)])
-            self._lives = np.concatenate([self._lives, np.full(missing + _SPARE, -1)])
+        self._grow(ids)
         self._rows[ids], self._lives[ids] = rows, lives
 
     def rows(self, ids: Rows, lives: Counts) -> tuple[Rows, bool]:
@@ -159,15 +156,19 @@ class Numbering:
 
         ``lives`` counts by row how often it has been used.
         """
-        known = ids < len(self._rows)
-        rows = np.full(len(ids), -1, dtype=np.intp)
-        rows[known] = self._rows[ids[known]]
-        then = np.full(len(ids), -1)
-        then[known] = self._lives[ids[known]]
+        self._grow(ids)
+        rows, then = self._rows[ids], self._lives[ids]
         # A row that has another robot since is not its any more.
         stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, 0)
         rows[stale] = -1
         return rows, not stale.any()
+
+    def _grow(self, ids: Rows) -> None:
+        """Have room for numbers, which nobody has named yet."""
+        missing = int(ids.max(initial=-1)) + 1 - len(self._rows)
+        if missing > 0:
+            self._rows = np.concatenate([self._rows, np.full(missing + _SPARE, -1, np.intp)])
+            self._lives = np.concatenate([self._lives, np.full(missing + _SPARE, -1)])
 
 
 class RowReading(NamedTuple):
@@ -203,7 +204,7 @@ class RobotColumns:
         self._numberings: dict[str, Numbering] = {}
         self._numbers = np.empty((NUMBERS, 0))
         self._cells: list[Any] = []
-        """the numbers, in which one is written faster than in an array."""
+        """numbers of a place, and revisions, in which one is written faster than in an array."""
         self._flags = np.empty(0, dtype=np.uint8)
         self._states = np.empty(0, dtype=np.uint8)
         self._owners = np.empty(0, dtype=np.int32)
@@ -247,11 +248,10 @@ class RobotColumns:
     def move(self, name: str, pose: SendPos, at: float, revision: int) -> None:
         """Write where a robot with a row is at time ``at``, of which all else is as it was."""
         row = self._rows[name]
-        x, y, theta, v, pose_at, received_at, battery, accuracy = self._cells
+        x, y, theta, v, pose_at, received_at, revisions = self._cells
         x[row], y[row], theta[row], v[row] = pose.x, pose.y, pose.theta, pose.v
         pose_at[row] = received_at[row] = at
-        battery[row], accuracy[row] = _number(pose.battery), _number(pose.accuracy)
-        self._revisions[row] = revision
+        revisions[row] = revision
 
     def remove(self, name: str) -> None:
         """Have no row of a robot any more."""
@@ -279,23 +279,28 @@ class RobotColumns:
         """Take in what a gateway says of the robots that are known as its own; each gets a revision after
         ``revision``."""
         rows, all_named = self._rows_of(report)
-        table = report.table.astype(np.float64)
-        with np.errstate(invalid="ignore"):
-            heard = np.isfinite(table[:, RECEIVED_AT])
-            placed = (
-                (np.abs(table[:, :POSE_AT]) <= _LARGEST).all(axis=1) & np.isfinite(table[:, POSE_AT]) & heard
-            )
+        # Column by column throughout: what goes over rows of a table takes four times as long.
+        columns = report.table.T.astype(np.float64, order="C")
+        heard = np.isfinite(columns[RECEIVED_AT])
         named = len(report.names)
         missing = np.flatnonzero((rows[:named] < 0) & heard[:named]).tolist()
         counts = (rows >= 0) & heard
         counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
-        placed &= counts
-        at = rows[placed]
-        self._numbers[:POSE_AT, at] = table[placed, :POSE_AT].T
-        self._numbers[POSE_AT, at] = report.wall - table[placed, POSE_AT]
-        rows = rows[counts]
-        self._numbers[RECEIVED_AT, rows] = report.wall - table[counts, RECEIVED_AT]
-        self._flags[rows] = (self._flags[rows] & DOUBTED) | (report.flags[counts] & REPORTED_FLAGS)
+        placed = counts & np.isfinite(columns[POSE_AT])
+        with np.errstate(invalid="ignore"):
+            for column, largest in zip(columns, _LARGEST, strict=False):
+                placed &= np.abs(column) <= largest
+        columns[POSE_AT:] = report.wall - columns[POSE_AT:]
+        flags = report.flags
+        if not placed.all():
+            at, places = rows[placed], columns[:RECEIVED_AT, placed]
+            rows, columns, flags = rows[counts], columns[:, counts], flags[counts]
+        else:
+            at, places = rows, columns[:RECEIVED_AT]
+        for own, column in zip(self._numbers, places, strict=False):
+            own[at] = column
+        self._numbers[RECEIVED_AT][rows] = columns[RECEIVED_AT]
+        self._flags[rows] = (self._flags[rows] & DOUBTED) | (flags & REPORTED_FLAGS)
         return Observed(self._changed(rows, revision), missing, all_named)
 
     def _rows_of(self, report: ReportedElsewhere) -> tuple[Rows, bool]:
@@ -393,11 +398,11 @@ class RobotColumns:
         self._names += [""] * more
         self._free += range(have + more - 1, have - 1, -1)
         self._numbers = np.concatenate([self._numbers, np.full((NUMBERS, more), np.nan)], axis=1)
-        self._cells = [memoryview(column) for column in self._numbers]
         self._flags = np.concatenate([self._flags, np.zeros(more, np.uint8)])
         self._states = np.concatenate([self._states, np.zeros(more, np.uint8)])
         self._owners = np.concatenate([self._owners, np.zeros(more, np.int32)])
         self._revisions = np.concatenate([self._revisions, np.full(more, -1, np.int64)])
+        self._cells = [memoryview(column) for column in (*self._numbers[:BATTERY], self._revisions)]
         self._lives = np.concatenate([self._lives, np.zeros(more, np.int64)])
 
 

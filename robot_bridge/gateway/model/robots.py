@@ -90,7 +90,8 @@ class Robot:
     where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
     link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
     believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
-    it can do with spaces between them, None for everything. ``gateway`` is the other gateway of the fleet
+    it can do with spaces between them, None for everything. ``described`` is the revision since which more of
+    it may have changed than where it is. ``gateway`` is the other gateway of the fleet
     that has it, None for this one: all else is what that one tells then.
     """
 
@@ -108,6 +109,7 @@ class Robot:
     doubt: str | None = None
     says_magic: bool = False
     revision: int = 0
+    described: int = 0
     paths: PathDeclaration | None = None
     abilities: str | None = None
     gateway: str | None = None
@@ -367,7 +369,11 @@ class Robots:
             self._rows.write(robot)
             return False
         robot.pose, robot.pose_at = pose, now
-        self._rows.move(name, pose, now, robot.revision)
+        if pose.battery == last.battery and pose.status == last.status and pose.accuracy == last.accuracy:
+            self._rows.move(name, pose, now, robot.revision)
+        else:
+            robot.described = robot.revision
+            self._rows.write(robot)
         return True
 
     def let_go(self, name: str, gateway: str) -> None:
@@ -433,7 +439,8 @@ class Robots:
         """Note how many seconds the robot's link took there and back; told with the robot's next change."""
         robot = self._find(name)
         if robot is not None:
-            robot.latency = latency
+            self.revision += 1
+            robot.latency, robot.described = latency, self.revision
 
     def assign(self, name: str, command: str | None) -> None:
         """Set the command that the robot is busy with."""
@@ -467,6 +474,10 @@ class Robots:
     def own(self, since: int = -1) -> list[Robot]:
         """Return the robots of this gateway that changed after revision ``since``."""
         return [robot for robot in self._robots.values() if robot.revision > since]
+
+    def own_described(self, since: int) -> list[Robot]:
+        """Return the robots of this gateway of which more than the place may have changed after ``since``."""
+        return [robot for robot in self._robots.values() if robot.described > since]
 
     def own_places(self, since: int = -1) -> RobotPlaces:
         """Return where the robots of this gateway are that changed after revision ``since``."""
@@ -540,7 +551,7 @@ class Robots:
 
     def _touch(self, robot: Robot) -> None:
         self.revision += 1
-        robot.revision = self.revision
+        robot.revision = robot.described = self.revision
         self._write(robot)
 
     def _write(self, robot: Robot) -> None:

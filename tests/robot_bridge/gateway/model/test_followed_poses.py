@@ -34,6 +34,7 @@ class Side:
     ODD: ClassVar = (
         *("late", "outside", "leap", "standing", "fix", "magic"),
         *("silent", "stopped", "other link", "anew"),
+        *("battery", "status", "accuracy"),
     )
 
     def __init__(self, names, *, follows):
@@ -93,9 +94,20 @@ class Side:
             for places in (self.robots.own_places(), fresh.places())
         ]
 
+    def details(self):
+        """What is told of each robot when it has changed."""
+        return {
+            one.name: (one.doubt, one.pose and one.pose.battery, one.pose and one.pose.status)
+            for one in self.robots.own()
+        }
+
     def state(self):
         names = self.robots.names()
-        return self.back, self.unseen, [{**asdict(self.robots.get(name)), "revision": 0} for name in names]
+        return (
+            self.back,
+            self.unseen,
+            [{**asdict(self.robots.get(name)), "revision": 0, "described": 0} for name in names],
+        )
 
 
 def odd_pose(pose, odd, chance):
@@ -108,6 +120,10 @@ def odd_pose(pose, odd, chance):
         return replace(pose, x=pose.x + far) if chance.random() < 0.5 else replace(pose, y=pose.y + far)
     if odd == "magic":
         return replace(pose, magic=chance.choice((1, 5)))
+    if odd in ("battery", "accuracy"):
+        return replace(pose, **{odd: chance.choice((0.1, 0.2, 0.5))})
+    if odd == "status":
+        return replace(pose, status=chance.choice(("busy", "idle")))
     if odd == "standing":
         return replace(pose, v=0.0, t=None)
     return replace(pose, fix_t=pose.t - chance.uniform(0, 1)) if odd == "fix" else pose
@@ -129,8 +145,11 @@ def test_poses_that_are_followed_leave_robots_as_those_that_are_considered():
                 side.happen(odd, name, now) if name != "ghost" else None
             if odd != "silent":
                 poses.append((name, odd_pose(SendPos(number * STEP, n + 0.5, 0.0, 1.0, t=now), odd, chance)))
-        considered.receive(poses, now)
-        followed.receive(poses, now)
+        for side in (considered, followed):
+            before, since = side.details(), side.robots.revision
+            side.receive(poses, now)
+            changed = {name for name, details in side.details().items() if details != before[name]}
+            assert changed <= {robot.name for robot in side.robots.own_described(since)}, (number, now)
         assert followed.state() == considered.state(), (number, now)
         for side in (considered, followed):
             rows, written = side.rows()

@@ -73,6 +73,7 @@ def test_a_robot_that_another_gateway_tells_of_is_known(robots):
         located=True,
         gateway="south",
         revision=robots.revision,
+        described=one.described,
         order=one.order,
     )
     assert "theirs" in robots and robots.count() == 2 and robots.names() == ["mine", "theirs"]
