@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from itertools import accumulate
 
@@ -150,11 +151,21 @@ FIELDS = 10
 """x, y, source left, top, width, height, scale x, scale y, rotation, opacity: Qt's PixmapFragment."""
 
 
-class Fragments:
-    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one."""
+SMALL = 24
+"""Device pixels up to which a part is painted faster by Qt's loop for scaled pictures."""
+ALMOST_ONE = 1.0 + 1e-9
+"""Scaled by so much every pixel is the same, and Qt takes that loop: it has no masked reads and writes, of
+which the loop for pictures as they are has two a line."""
 
-    def __init__(self, ratio: float) -> None:
-        self._ratio = ratio
+
+class Fragments:
+    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one.
+
+    No part is larger than ``most`` device pixels in either direction, where that is said.
+    """
+
+    def __init__(self, ratio: float, most: float = math.inf) -> None:
+        self._scale = (ALMOST_ONE if most <= SMALL else 1.0) / ratio
         self._fragments = None
         self._table = np.empty((0, FIELDS))
         self._painted = 0
@@ -179,7 +190,7 @@ class Fragments:
         raw = sip.voidptr(self._fragments, size * FIELDS * 8, True)
         self._table = np.frombuffer(raw, dtype=np.float64).reshape(size, FIELDS)
         self._table[:] = 0.0
-        self._table[:, 6:8] = 1.0 / self._ratio
+        self._table[:, 6:8] = self._scale
         self._table[:, 9] = 1.0
         self._painted = 0
 
@@ -197,8 +208,8 @@ class Sprites:
         kept = [cell[part] for cell, part in zip(cells, parts, strict=True)]
         self._atlas = in_a_column(kept)
         self._ratio = ratio
-        self._fragments = Fragments(ratio)
         height, width = np.array([cell.shape for cell in kept], dtype=np.float64).T
+        self._fragments = Fragments(ratio, max(height.max(), width.max()))
         across = np.array([columns.start for _, columns in parts]) + width / 2
         down = np.array([lines.start for lines, _ in parts]) + height / 2
         bottom = np.cumsum(height)
