@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 from itertools import compress
 from operator import ne
 from typing import Any, NamedTuple
@@ -75,21 +76,43 @@ ALIASES = (
 """What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
 LABEL_OFFSET_MM = 6.5
 """How far below a robot a label is: the live map's arrow and name are above that."""
-_PLACES = range(len(FIELDS))
+_STATE_WORDS = [state.value for state in STATES]
 NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
 
 
-class RobotFeature(NamedTuple):
-    """A robot as the layer shows it: a value for each of :data:`FIELDS`; the place in the site's CRS."""
+class RobotFeatures(NamedTuple):
+    """Some robots as the layer shows them: for each of :data:`FIELDS` their values; (n, 2) places in the
+    site's CRS, not finite where not known."""
 
-    values: tuple[Any, ...]
-    place: tuple[float, float] | None
+    values: list[list[Any]]
+    places: npt.NDArray[np.float64]
 
-    def since(self, before: RobotFeature) -> dict[int, Any]:
-        """Return the values that are others than ``before``, by their fields' places."""
-        values = self.values
-        # In Python's own loops: this is done for every robot once a second.
-        return {at: values[at] for at in compress(_PLACES, map(ne, values, before.values))}
+    @property
+    def names(self) -> list[str]:
+        """The robots' names."""
+        return self.values[NAME_AT]
+
+    def row(self, at: int) -> list[Any]:
+        """Return the values of one robot."""
+        return [column[at] for column in self.values]
+
+    def since(self, before: RobotFeatures) -> tuple[dict[int, dict[int, Any]], list[int]]:
+        """Return by robot the values that are others than in ``before``, by their fields' places; and which
+        of them are elsewhere."""
+        changed: dict[int, dict[int, Any]] = defaultdict(dict)
+        for at, (column, was) in enumerate(zip(self.values, before.values, strict=True)):
+            # Most columns are as they were, which Python sees at once.
+            if column != was:
+                for robot in compress(range(len(column)), map(ne, column, was)):
+                    changed[robot][at] = column[robot]
+        place, was_at = self.places, before.places
+        # Nothing is equal to NaN.
+        is_other = (place != was_at) & ((place == place) | (was_at == was_at))
+        return changed, np.flatnonzero(is_other[:, 0] | is_other[:, 1]).tolist()
+
+    def is_only_age(self, robot: int, changed: Iterable[int]) -> bool:
+        """Tell whether it is only the age of a robot that talks: not worth writing all of them again."""
+        return self.values[STATE_AT][robot] == RobotState.FRESH.value and [*changed] == [AGE_AT]
 
 
 def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
@@ -121,13 +144,13 @@ def _labels() -> QgsPalLayerSettings:
     return labels
 
 
-def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame) -> list[RobotFeature]:
+def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame) -> RobotFeatures:
     """Return what the layer has to say at ``now`` of the robots in ``rows`` of ``picture``."""
     robots = picture.arrays(now, rows)
     turn = frame.theta_to_crs(0.0)
-    columns = (
+    columns = [
         robots.names,
-        [STATES[state].value for state in robots.state.tolist()],
+        [_STATE_WORDS[state] for state in robots.state.tolist()],
         _or_none(robots.theta),
         _or_none(np.round(headings_of(robots.theta + turn), 2)),
         _or_none(robots.v),
@@ -137,20 +160,17 @@ def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame)
         picture.texts("link", rows),
         [text or None for text in picture.texts("command", rows)],
         _or_none(robots.accuracy),
-    )
-    on_map = frame.to_crs(robots.xy)
-    there = np.isfinite(on_map).all(axis=1).tolist()
-    places = [
-        tuple(place) if is_there else None for place, is_there in zip(on_map.tolist(), there, strict=True)
     ]
-    return list(map(RobotFeature, zip(*columns, strict=True), places))
+    return RobotFeatures(columns, frame.to_crs(robots.xy))
 
 
-def geometries_of(features: Sequence[RobotFeature]) -> Iterator[QgsGeometry]:
-    """Return the points of ``features``, an empty geometry for one without a place."""
-    places = [feature.place for feature in features if feature.place is not None]
-    points = iter(points_of(np.array(places).reshape(-1, 2)))
-    return (QgsGeometry() if feature.place is None else next(points) for feature in features)
+def geometries_of(places: npt.NDArray[np.float64]) -> list[QgsGeometry]:
+    """Return (n, 2) ``places`` as points, an empty geometry for one that is not finite."""
+    is_there = np.isfinite(places).all(axis=1)
+    if is_there.all():
+        return points_of(places)
+    points = iter(points_of(places[is_there]))
+    return [next(points) if there else QgsGeometry() for there in is_there.tolist()]
 
 
 def _or_none(column: npt.NDArray[np.float64]) -> list[float | None]:
@@ -197,7 +217,8 @@ class RobotLayer(QObject):
         self._frame: SiteFrame | None = None
         self._style: QgsMapLayerStyle | None = None
         self._ids: dict[str, int] = {}
-        self._written: dict[str, RobotFeature] = {}
+        self._written: dict[int, RobotFeatures] = {}
+        """What the layer has of the robots that are written in one go, by the row of the first."""
         self._waiting = range(0)
         self._marking = False
         self.is_new = False
@@ -245,7 +266,7 @@ class RobotLayer(QObject):
         if self._layer is None or not self._waiting:
             return
         rows, self._waiting = self._waiting[:AT_ONCE], self._waiting[AT_ONCE:]
-        self._write(features_of(picture, now, slice(rows.start, rows.stop), self._frame))
+        self._write(rows.start, features_of(picture, now, slice(rows.start, rows.stop), self._frame))
         if not self._waiting:
             self._show_written()
 
@@ -258,9 +279,10 @@ class RobotLayer(QObject):
             self._marking = False
             self._show_written()
         for robot in known:
-            del self._ids[robot], self._written[robot]
-        # A round that is under way goes by rows that are others' now.
+            del self._ids[robot]
+        # A round that is under way goes by rows that are others' now, as does what was written.
         self._waiting = range(0)
+        self._written.clear()
 
     def clear(self) -> None:
         """Take every robot out of the layer."""
@@ -297,40 +319,42 @@ class RobotLayer(QObject):
         live_layers.remove_if_empty(self._project)
         live_layers.leave_clean(self._project, was_dirty)
 
-    def _write(self, features: list[RobotFeature]) -> None:
+    def _write(self, first: int, robots: RobotFeatures) -> None:
         """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
-        attributes, moved, new = {}, {}, []
-        for feature in features:
-            name = feature.values[NAME_AT]
-            before = self._written.get(name)
-            if before is None:
-                new.append(feature)
-                continue
-            changed = feature.since(before)
-            has_moved = feature.place != before.place
-            if not has_moved and (not changed or _is_only_age(feature, changed)):
-                continue
-            self._written[name] = feature
-            if changed:
-                attributes[self._ids[name]] = changed
-            if has_moved:
-                moved[self._ids[name]] = feature
-        if attributes or moved:
-            geometries = dict(zip(moved, geometries_of([*moved.values()]), strict=True))
-            self._layer.dataProvider().changeFeatures(attributes, geometries)
+        ids = [*map(self._ids.get, robots.names)]
+        before = self._written.get(first)
+        if before is not None and before.names == robots.names:
+            changed, moved = robots.since(before)
+            ages, still = robots.values[AGE_AT], changed.keys() - moved
+            for robot in [robot for robot in still if robots.is_only_age(robot, changed[robot])]:
+                ages[robot] = before.values[AGE_AT][robot]
+                del changed[robot]
+        else:
+            # Others stood in these rows: what the layer has of each is not at hand.
+            changed = {robot: dict(enumerate(robots.row(robot))) for robot in range(len(ids))}
+            moved = [*changed]
+        self._written[first] = robots
+        new = [robot for robot, fid in enumerate(ids) if fid is None]
         if new:
-            self._add(new)
+            there = {*range(len(ids))}.difference(new)
+            changed, moved = {k: changed[k] for k in changed if k in there}, [k for k in moved if k in there]
+        if changed or moved:
+            attributes = {ids[robot]: values for robot, values in changed.items()}
+            geometries = geometries_of(robots.places.take(moved, axis=0))
+            places = dict(zip([ids[robot] for robot in moved], geometries, strict=True))
+            self._layer.dataProvider().changeFeatures(attributes, places)
+        if new:
+            self._add(robots, new)
 
-    def _add(self, features: list[RobotFeature]) -> None:
+    def _add(self, robots: RobotFeatures, new: list[int]) -> None:
         made, fields = [], self._layer.fields()
-        for feature, geometry in zip(features, geometries_of(features), strict=True):
+        for robot, geometry in zip(new, geometries_of(robots.places[new]), strict=True):
             made.append(QgsFeature(fields))
-            made[-1].setAttributes(list(feature.values))
+            made[-1].setAttributes(robots.row(robot))
             made[-1].setGeometry(geometry)
         _, stored = self._layer.dataProvider().addFeatures(made)
-        for feature, in_layer in zip(features, stored, strict=True):
-            self._ids[feature.values[NAME_AT]] = in_layer.id()
-            self._written[feature.values[NAME_AT]] = feature
+        for robot, in_layer in zip(new, stored, strict=True):
+            self._ids[robots.names[robot]] = in_layer.id()
         self._layer.updateExtents()
         self.is_new = True
 
@@ -354,11 +378,6 @@ class RobotLayer(QObject):
         self._ids.clear()
         self._written.clear()
         self._waiting = range(0)
-
-
-def _is_only_age(feature: RobotFeature, changed: Iterable[int]) -> bool:
-    """Tell whether it is only the age of a robot that talks: not worth writing all of them again."""
-    return feature.values[STATE_AT] == RobotState.FRESH.value and set(changed) == {AGE_AT}
 
 
 LABEL_MM = 1.5
