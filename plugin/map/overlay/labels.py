@@ -168,7 +168,7 @@ class TextAtlas:
         if len(parts) == 0:
             return
         table = self._fragments.table(len(parts))
-        table[:, 2:] = parts[:, 2:]
+        table[:, 2:6] = parts[:, 2:]
         # Whole device pixels keep letters sharp.
         at = np.floor(corner * self.ratio + 0.5) + parts[:, :2] + parts[:, 4:] / 2
         table[:, :2] = at / self.ratio

@@ -165,18 +165,19 @@ class Fragments:
     """
 
     def __init__(self, ratio: float, most: float = math.inf) -> None:
-        self._scale = (ALMOST_ONE if most <= SMALL else 1.0) / ratio
+        self.scale = (ALMOST_ONE if most <= SMALL else 1.0) / ratio
         self._fragments = None
         self._table = np.empty((0, FIELDS))
         self._painted = 0
 
     def table(self, count: int) -> npt.NDArray[np.float64]:
-        """Return the (``count``, 6) first :data:`FIELDS` of what is to be painted, to be filled."""
+        """Return the (``count``, :data:`FIELDS`) table of what is to be painted, to be filled: scale and
+        opacity are there already."""
         self._provide(count)
         # What was painted before and is no more must not show: a size of nothing hides it.
         self._table[count : self._painted, 4:6] = 0.0
         self._painted = count
-        return self._table[:count, :6]
+        return self._table[:count]
 
     def paint(self, painter: QPainter, picture: QPixmap) -> None:
         """Paint what was filled in out of ``picture``."""
@@ -190,7 +191,7 @@ class Fragments:
         raw = sip.voidptr(self._fragments, size * FIELDS * 8, True)
         self._table = np.frombuffer(raw, dtype=np.float64).reshape(size, FIELDS)
         self._table[:] = 0.0
-        self._table[:, 6:8] = self._scale
+        self._table[:, 6:8] = self.scale
         self._table[:, 9] = 1.0
         self._painted = 0
 
@@ -213,10 +214,13 @@ class Sprites:
         across = np.array([columns.start for _, columns in parts]) + width / 2
         down = np.array([lines.start for lines, _ in parts]) + height / 2
         bottom = np.cumsum(height)
+        self._cells = np.zeros((len(kept), FIELDS))
+        """Of each what a fragment says of it; its place is that of the middle of what is drawn as seen from
+        the left and upper border, in logical pixels."""
         places = across / ratio, down / ratio, np.zeros(len(kept)), bottom - height, width, height
-        self._cells = np.column_stack(places)
-        """Of each how far from its left and upper border the middle of what is drawn is, in logical pixels,
-        and where that is in the picture."""
+        self._cells[:, :6] = np.column_stack(places)
+        self._cells[:, 6:8] = self._fragments.scale
+        self._cells[:, 9] = 1.0
         self._half = np.array([len(cell) / 2 for cell in cells])
         """Device pixels from the left and the upper border of each to its middle."""
 
@@ -229,17 +233,17 @@ class Sprites:
         """Paint ``cell``, (n,), around each ``centre``, (n, 2) logical pixels."""
         if len(centre) == 0:
             return
-        made = self._cells.take(cell, axis=0)
+        # All cells are there: to have numpy check that would copy the whole table once more.
+        table = self._fragments.table(len(centre))
+        np.take(self._cells, cell, axis=0, out=table, mode="clip")
         half = self._half.take(cell)
         for axis in range(2):
-            at = centre[:, axis] * self._ratio
-            at -= half
+            at = centre[:, axis] - half if self._ratio == 1.0 else centre[:, axis] * self._ratio - half
             # A whole device pixel keeps the drawing sharp.
             np.rint(at, out=at)
-            at /= self._ratio
-            made[:, axis] += at
-        # The table is large, and goes through memory once.
-        self._fragments.table(len(centre))[:] = made
+            if self._ratio != 1.0:
+                at /= self._ratio
+            table[:, axis] += at
         self._fragments.paint(painter, self._atlas)
 
 

@@ -210,3 +210,28 @@ def test_only_what_is_drawn_of_a_cell_is_kept_and_painted_where_the_cell_would_b
     found = {(x, y): image.pixel(x, y) for x in range(40) for y in range(30) if image.pixel(x, y) & 0xFFFFFF}
     expected = {(6 + x, 6 + y): 0xFF336699 for x in (5, 6, 7) for y in (2, 3)}
     assert found == {**expected, (16, 24): 0xFF993366}
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.5, 2.0])
+@pytest.mark.parametrize("size", [0.3, 0.46, 0.7, 1.0])
+def test_many_are_painted_pixel_for_pixel_like_each_alone(qgis_app, size, ratio):
+    cells = robots_painter.robot_atlas(ratio, size, RobotState.FRESH)
+    random = np.random.default_rng(3)
+    centre = random.uniform((-12.0, -12.0), (132.0, 112.0), (300, 2))
+    of = random.integers(0, len(cells), 300)
+    together, alone = (QImage(QSize(120, 100) * ratio, QImage.Format.Format_RGB32) for _ in range(2))
+    for image in (together, alone):
+        image.fill(QColor("#88aa66"))
+    together.setDevicePixelRatio(ratio)
+    painter = QPainter(together)
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    Sprites([cells], ratio).paint(painter, centre, of)
+    painter.end()
+    painter = QPainter(alone)
+    side = cells.shape[1]
+    for (x, y), k in zip(np.rint(centre * ratio - side / 2).astype(int).tolist(), of.tolist(), strict=True):
+        picture = QImage(cells[k].tobytes(), side, side, 4 * side, robots_painter.FORMAT)
+        painter.drawImage(x, y, picture)
+    painter.end()
+    together.setDevicePixelRatio(1.0)
+    assert together == alone
