@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
-from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates
+from fleet_supervisor.plugin.gateway_client.robot_states import RobotStates, RobotTable
 from fleet_supervisor.plugin.map.reported_layers import AT_ONCE, RobotLayer
 from qgis.core import NULL, QgsPalLayerSettings, QgsProject, QgsSingleSymbolRenderer
 from qgis.gui import QgsAttributeTableFilterModel, QgsDualView
@@ -77,6 +77,19 @@ def test_only_what_has_changed_is_written(layer, writes):
     silent = ("r0", "r1", "r4")
     assert writes[0] == ({**{name: {"state", "age"} for name in silent}, "r3": {"state", "age"}}, set())
     assert writes[1] == ({name: {"age"} for name in (*silent, "r3")}, set())
+
+
+def test_one_that_moves_up_and_says_what_the_one_in_its_row_had_said_is_written(layer):
+    picture = RobotStates()
+    picture.merge(table_from_rows([told(k, float(k), battery=k / 10) for k in range(4)], 0.0))
+    write_all(layer, picture)
+    gone = picture.merge(RobotTable(removed=["r1"]))
+    layer.drop(gone.all_names)
+    picture.merge(table_from_rows([told(2, 1.0, battery=0.1), told(1, 8.0, battery=0.8)], 1.0))
+    write_all(layer, picture, 1.0)
+    assert xs(layer) == pytest.approx({"r0": 0.0, "r1": 8.0, "r2": 1.0, "r3": 3.0})
+    batteries = {f["robot"]: f["battery"] for f in layer.layer.getFeatures()}
+    assert batteries == pytest.approx({"r0": 0.0, "r1": 0.8, "r2": 0.1, "r3": 0.3})
 
 
 def test_what_a_robot_does_not_say_any_more_is_in_the_layer_no_more(layer):
