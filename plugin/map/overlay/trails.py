@@ -267,11 +267,11 @@ class TrailSheet:
         times, band = self._times[top:bottom].reshape(-1), self._argb[top:bottom].reshape(-1)
         seen = times > np.float32(now - self._epoch - self._trails.length.seconds)
         if np.count_nonzero(seen) > len(seen) * MANY_SEEN:
-            self._core.take(self._shade(times, now), out=band, mode="clip")
+            self._core.take(self._age(times, now).astype(np.intp), out=band, mode="clip")
             return
         where = np.flatnonzero(seen)
         band[:] = 0
-        band[where] = self._core.take(self._shade(times.take(where), now))
+        band[where] = self._core.take(self._age(times.take(where), now).astype(np.intp), mode="clip")
 
     def _colour_wide(self, top: int, bottom: int, now: float) -> None:
         """Colour also the pixels around them."""
@@ -294,11 +294,19 @@ class TrailSheet:
 
     def _shade(self, times: npt.NDArray[np.float32], now: float) -> Shades:
         """Return indices into the shades: 0 for what is new, :data:`FADED` for what has faded away."""
-        age = np.float32(now - self._epoch) - times
-        age *= np.float32(FADED / self._trails.length.seconds)
+        age = self._age(times, now)
         # np.clip takes ten times as long.
         np.minimum(age, FADED, out=age)
         return np.maximum(age, 0, out=age).astype(np.uint8)
+
+    def _age(self, times: npt.NDArray[np.float32], now: float) -> npt.NDArray[np.float32]:
+        """Return how old ``times`` are, in shades, which end at :data:`FADED`.
+
+        To take shades by it with mode "clip" is twice as fast as to end it there before.
+        """
+        age = np.float32(now - self._epoch) - times
+        age *= np.float32(FADED / self._trails.length.seconds)
+        return age
 
 
 def _on_lines(start: Points, end: Points, shape: tuple[int, int]) -> tuple[Pixels, Pixels]:
