@@ -36,6 +36,8 @@ BUSY, CALM_WITHIN = 1.0, size(60.0, 5.0)
 """cores that all gateways take at most when what came of a stop is stored, and seconds until then at most."""
 WHILE_STOPPED, STANDING = size(3.0, 1.5), size(1.0, 0.2)
 """seconds for which robots go on speaking about a stop, and between a stop and the next one."""
+TROUBLE = 0.3
+"""seconds for which something is dead or frozen before a stop, and all in all less than a lease lasts."""
 SHARE, ACROSS_MS, IN_FORCE_MS, LAST_MS = 0.9, 50, 50, 500
 """What is to be kept to: see :func:`report`."""
 LATEST_MS = 1000 / DESK_RATE + POSITION_TICK_S * 1000 + ACROSS_MS
@@ -203,8 +205,9 @@ def _stop(
     begin = time.monotonic() + 0.2
     for crowd in fleet.crowds:
         crowd.tell(begin=begin, seconds=WHILE_STOPPED, rate=RATE, measured=0.0)
+    time.sleep(begin + WHILE_STOPPED / 3 - TROUBLE - time.monotonic())
     with trouble():
-        time.sleep(begin + WHILE_STOPPED / 3 - time.monotonic())
+        time.sleep(TROUBLE)
         desks.tell(do="stop", desk=0, without=without)
         made = desks.line()
         for crowd in fleet.crowds:
