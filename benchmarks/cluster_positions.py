@@ -205,6 +205,8 @@ def _stop(
     begin = time.monotonic() + 0.2
     for crowd in fleet.crowds:
         crowd.tell(begin=begin, seconds=WHILE_STOPPED, rate=RATE, measured=0.0)
+    # Robots speak for a third of the time before the stop; trouble begins late in it, since a gateway that is
+    # frozen for longer than its lease loses its robots.
     time.sleep(begin + WHILE_STOPPED / 3 - TROUBLE - time.monotonic())
     with trouble():
         time.sleep(TROUBLE)

@@ -318,24 +318,12 @@ class RobotLayer(QObject):
     def _write(self, first: int, robots: RobotFeatures) -> None:
         """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
         ids = [*map(self._ids.get, robots.names)]
-        before = self._written.get(first)
-        if before is not None and before.names == robots.names:
-            changed, moved = robots.since(before)
-            ages, still = robots.values[AGE_AT], changed.keys() - moved
-            for robot in [robot for robot in still if robots.is_only_age(robot, changed[robot])]:
-                ages[robot] = before.values[AGE_AT][robot]
-                del changed[robot]
-        else:
-            # Others stood in these rows: what the layer has of each is not at hand.
-            changed = {
-                k: dict(enumerate(values)) for k, values in enumerate(zip(*robots.values, strict=True))
-            }
-            moved = [*changed]
+        changed, moved = self._changes(first, robots)
         self._written[first] = robots
         new = [robot for robot, fid in enumerate(ids) if fid is None]
         if new:
-            there = {*range(len(ids))}.difference(new)
-            changed, moved = {k: changed[k] for k in changed if k in there}, [k for k in moved if k in there]
+            changed = {robot: changed[robot] for robot in changed if ids[robot] is not None}
+            moved = [robot for robot in moved if ids[robot] is not None]
         if changed or moved:
             attributes = {ids[robot]: values for robot, values in changed.items()}
             geometries = geometries_of(robots.places.take(moved, axis=0))
@@ -343,6 +331,22 @@ class RobotLayer(QObject):
             self._layer.dataProvider().changeFeatures(attributes, places)
         if new:
             self._add(robots, new)
+
+    def _changes(self, first: int, robots: RobotFeatures) -> tuple[dict[int, dict[int, Any]], list[int]]:
+        """Return what the layer does not have of ``robots``: as :meth:`RobotFeatures.since`, without those of
+        which only the age is another; that stays as it was written."""
+        before = self._written.get(first)
+        if before is None or before.names != robots.names:
+            # Others stood in these rows: what the layer has of each is not at hand.
+            everything = enumerate(zip(*robots.values, strict=True))
+            changed = {robot: dict(enumerate(values)) for robot, values in everything}
+            return changed, [*changed]
+        changed, moved = robots.since(before)
+        for robot in changed.keys() - moved:
+            if robots.is_only_age(robot, changed[robot]):
+                robots.values[AGE_AT][robot] = before.values[AGE_AT][robot]
+                del changed[robot]
+        return changed, moved
 
     def _add(self, robots: RobotFeatures, new: list[int]) -> None:
         # Features that know their fields take twice as long to make; the provider knows them.

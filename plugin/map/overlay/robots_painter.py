@@ -171,8 +171,7 @@ class Fragments:
         self._painted = 0
 
     def table(self, count: int) -> npt.NDArray[np.float64]:
-        """Return the (``count``, :data:`FIELDS`) table of what is to be painted, to be filled: scale and
-        opacity are there already."""
+        """Return the table of the parts to paint, (``count``, :data:`FIELDS`), with scale and opacity."""
         self._provide(count)
         # What was painted before and is no more must not show: a size of nothing hides it.
         self._table[count : self._painted, 4:6] = 0.0
@@ -238,11 +237,10 @@ class Sprites:
         np.take(self._cells, cell, axis=0, out=table, mode="clip")
         half = self._half.take(cell)
         for axis in range(2):
-            at = centre[:, axis] - half if self._ratio == 1.0 else centre[:, axis] * self._ratio - half
+            at = centre[:, axis] * self._ratio - half
             # A whole device pixel keeps the drawing sharp.
             np.rint(at, out=at)
-            if self._ratio != 1.0:
-                at /= self._ratio
+            at /= self._ratio
             table[:, axis] += at
         self._fragments.paint(painter, self._atlas)
 

@@ -86,7 +86,6 @@ OVERHEAD_M = 2.5
 """An obstacle that begins so many metres above the ground is driven under."""
 TOUCH_M = 0.05
 """Metres within which a leg touches an area."""
-_NONE = np.empty(0, dtype=np.int64)
 _MOST_KEPT = 20_000
 """obstacles whose geometry is kept, of those that robots came near to last."""
 
@@ -203,8 +202,6 @@ class FencedPolygons(FencedAreas):
         return area if self._ids is None else self._ids[area]
 
     def _boxes_between(self, low: Points, high: Points) -> tuple[Indices, Indices]:
-        if not len(self._names):
-            return _NONE, _NONE
         query, box = self._grid.pairs(low, high)
         return _touching(query, self._order[box], low, high, self._boxes)
 

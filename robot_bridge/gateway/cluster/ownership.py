@@ -150,9 +150,9 @@ class Ownership:
         owners = {robot: self._owners[robot].gw for robot in changed}
         return OwnerChanges(lost, new, set(self._unstored), owners)
 
-    def note_followed(self, changes: OwnerChanges) -> None:
-        """Note that what has changed is known everywhere in this gateway."""
-        self._changed.difference_update(changes.gateways)
+    def note_followed(self) -> None:
+        """Note that what :meth:`refresh` returned last is known everywhere in this gateway."""
+        self._changed.clear()
 
     async def _read_owners(self) -> None:
         """Read the owners that have changed, and all once in a while."""

@@ -141,7 +141,7 @@ class EmergencyStopRelay:
         found = await self._lease.read(emergency_stops.changed, id, after)
         self._looked_at = self._clock.steady()
         self._has_company = bool(self._membership.others())
-        # The end of one last: another one that is in force is to hold by then.
+        # Ends last: another stop in force must hold by then.
         for stop in sorted(found, key=lambda stop: stop.cleared_at or 0.0):
             await self._stops.learn(stop)
 

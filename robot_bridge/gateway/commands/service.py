@@ -105,7 +105,7 @@ class CommandService(CommandReader):
         return await to_its_end(self._issue(orders, also))
 
     def keep_aborts(self, aborts: Iterable[CommandOrder]) -> None:
-        """Store Aborts of a stop that is over, and before anything else that their robots are told."""
+        """Store Aborts of a stop that is over, and before any other message of their robots."""
         self._unstored.keep(aborts)
 
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:

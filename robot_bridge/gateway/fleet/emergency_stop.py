@@ -117,7 +117,7 @@ STORED_WITHIN = 1.0
 NOTED_WITHIN = 0.1
 """seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
 MOST_FIRST = 20
-"""operators who are told of a stop before the robots: in a millisecond; thousands of robots take longer."""
+"""operators who are notified of a stop before the robots: that takes a millisecond."""
 ANSWERS_TOGETHER = 0.05
 """seconds for which answers of robots wait for one another before operators are told: to count thousands at
 each answer of one of them would take all the time in which the robots are to be heard."""
@@ -289,7 +289,7 @@ class EmergencyStops:
         """Take in how a stop is stored: put in force one that is new, end the one in force that was cleared.
 
         What is not stored yet stays in force, whatever others have cleared. Of one that was over before this
-        gateway knew of it the robots here are told as well.
+        gateway knew of it, the robots here are aborted as well.
         """
         if stop.cleared_at is None:
             await self.stop_elsewhere(stop)

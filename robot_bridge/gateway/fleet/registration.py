@@ -105,7 +105,7 @@ class Takeover:
         # What those said of these robots before this gateway knew that they have them was not taken in.
         for gateway in sorted(came_to):
             self._exchange.wake("positions", gateway)
-        self._ownership.note_followed(changes)
+        self._ownership.note_followed()
 
     async def _meet(self, names: Collection[str], gateways: dict[str, str]) -> None:
         """Get to know robots that other gateways have."""

@@ -118,7 +118,7 @@ class RobotPlaces(NamedTuple):
         )
 
 
-class RobotElsewhere(Protocol):
+class RobotRecord(Protocol):
     """A robot as it is written into a row: see :class:`.Robot`."""
 
     name: str
@@ -134,7 +134,7 @@ class RobotElsewhere(Protocol):
     revision: int
 
 
-Known = TypeVar("Known", bound=RobotElsewhere)
+Known = TypeVar("Known", bound=RobotRecord)
 
 
 class Numbering:
@@ -225,7 +225,7 @@ class RobotColumns:
 
     # --- One robot ---
 
-    def write(self, robot: RobotElsewhere) -> None:
+    def write(self, robot: RobotRecord) -> None:
         """Write all that is known of a robot into its row."""
         row = self._rows.get(robot.name)
         if row is None:
@@ -269,7 +269,7 @@ class RobotColumns:
         self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED) | flags
         self._revisions[row] = revision
 
-    def has_changed(self, robot: RobotElsewhere) -> bool:
+    def has_changed(self, robot: RobotRecord) -> bool:
         """Tell whether a robot with a row is not as that says."""
         return bool(self._revisions[self._rows[robot.name]] != robot.revision)
 
@@ -342,18 +342,16 @@ class RobotColumns:
         """Bring the states of all up to ``now``; returns the newest revision after ``revision``."""
         times = self._numbers[RECEIVED_AT]
         np.minimum(times, now, out=times)
-        states = state_codes(now - times, (self._flags & ENDED) > 0, stale_after, lost_after)
+        states = self._states_at(now, stale_after, lost_after)
         rows = np.flatnonzero((states != self._states) & (self._revisions >= 0))
         self._states[rows] = states[rows]
         return self._changed(rows, revision)
 
     def outdated(self, now: float, stale_after: float, lost_after: float) -> list[str]:
         """Return the names of those whose states are not up to ``now``, or that were heard later."""
-        times = self._numbers[RECEIVED_AT]
-        states = state_codes(now - times, (self._flags & ENDED) > 0, stale_after, lost_after)
-        return self._named(
-            np.flatnonzero(((states != self._states) | (times > now)) & (self._revisions >= 0))
-        )
+        is_outdated = self._states_at(now, stale_after, lost_after) != self._states
+        is_outdated |= self._numbers[RECEIVED_AT] > now
+        return self._named(np.flatnonzero(is_outdated & (self._revisions >= 0)))
 
     def move_times(self, step: ClockStep) -> None:
         """Keep the times since robots were heard when the clock was set."""
@@ -372,6 +370,10 @@ class RobotColumns:
         """Return where those are that changed after revision ``since``."""
         rows = np.flatnonzero(self._revisions > since)
         return RobotPlaces(self._named(rows), self._numbers[:, rows], self._states[rows], self._flags[rows])
+
+    def _states_at(self, now: float, stale_after: float, lost_after: float) -> Flags:
+        ages = now - self._numbers[RECEIVED_AT]
+        return state_codes(ages, (self._flags & ENDED) > 0, stale_after, lost_after)
 
     def _named(self, rows: Rows) -> list[str]:
         names = self._names

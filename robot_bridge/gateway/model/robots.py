@@ -153,9 +153,9 @@ class Robots:
         """those of other gateways, each as it was when somebody asked for it last."""
         self._details: dict[str, tuple[float | None, str | None]] = {}
         """battery and status of those."""
-        self._rows = RobotColumns()
+        self._own_columns = RobotColumns()
         """those of this gateway once more, where many are judged."""
-        self._columns = RobotColumns()
+        self._other_columns = RobotColumns()
         """what other gateways said of theirs last."""
         self._removed: dict[str, int] = {}
         """the robots that were removed and have not come back, with the revision of that."""
@@ -167,15 +167,15 @@ class Robots:
         self._stale_after, self._lost_after = stale_after, lost_after
 
     def __contains__(self, name: str) -> bool:
-        return name in self._robots or name in self._columns
+        return name in self._robots or name in self._other_columns
 
     def count(self) -> int:
         """Return how many there are."""
-        return len(self._robots) + len(self._columns)
+        return len(self._robots) + len(self._other_columns)
 
     def names(self) -> list[str]:
         """Return the names of all robots, sorted."""
-        return sorted([*self._robots, *self._columns.names()])
+        return sorted([*self._robots, *self._other_columns.names()])
 
     def commanded(self) -> list[str]:
         """Return the names of those that this gateway has and that are not only seen, sorted."""
@@ -183,7 +183,7 @@ class Robots:
 
     def commanded_elsewhere(self) -> list[str]:
         """Return the names of those that other gateways have and that are not only seen, sorted."""
-        return sorted(set(self._columns.names()).difference(self._columns.only_seen()))
+        return sorted(set(self._other_columns.names()).difference(self._other_columns.only_seen()))
 
     def doing(self, command: str) -> str | None:
         """Return the robot that is busy with a command, None where none is known to be."""
@@ -317,12 +317,7 @@ class Robots:
         One that has ``waited`` until there was a gateway to read it does not show that the robot is there.
         """
         robot = self.get(name)
-        robot.link, robot.ended_in_order = link, stopped
-        if not waited:
-            if robot.state in AWAY:
-                self._events.publish(RobotReturned(name, now - robot.received_at))
-            robot.received_at = now
-        robot.state = self._judge(robot, now) if waited else RobotState.FRESH
+        self._note_heard(robot, link, now, stopped=stopped, waited=waited)
         self._touch(robot)
         return robot
 
@@ -333,16 +328,13 @@ class Robots:
         """
         robot = self.get(name)
         standing_still = robot.ended_in_order and standing(pose)
-        self.note_received(name, link, now, stopped=standing_still, waited=waited)
-        if not robot.order.admit(pose.fix_t, pose.t, link, now):
-            return False
-        robot.pose, robot.doubt = pose, None
-        if waited:
-            robot.pose_at = robot.received_at
-        else:
-            robot.pose_at, robot.located = now, True
-        self._write(robot)
-        return True
+        self._note_heard(robot, link, now, stopped=standing_still, waited=waited)
+        is_newest = robot.order.admit(pose.fix_t, pose.t, link, now)
+        if is_newest:
+            robot.pose, robot.doubt = pose, None
+            robot.pose_at, robot.located = (robot.received_at, robot.located) if waited else (now, True)
+        self._touch(robot)
+        return is_newest
 
     def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
         """Take in, as :meth:`observe`, a pose that only goes on from where its robot was a moment ago.
@@ -366,14 +358,14 @@ class Robots:
         robot.received_at = now
         robot.revision = self.revision = self.revision + 1
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
-            self._rows.write(robot)
+            self._own_columns.write(robot)
             return False
         robot.pose, robot.pose_at = pose, now
         if pose.battery == last.battery and pose.status == last.status and pose.accuracy == last.accuracy:
-            self._rows.move(name, pose, now, robot.revision)
+            self._own_columns.move(name, pose, now, robot.revision)
         else:
             robot.described = robot.revision
-            self._rows.write(robot)
+            self._own_columns.write(robot)
         return True
 
     def let_go(self, name: str, gateway: str) -> None:
@@ -388,7 +380,7 @@ class Robots:
 
         Returns whether all of them are known by their numbers: else it had better name them again.
         """
-        self.revision, missing, all_named = self._columns.observe(report, self.revision)
+        self.revision, missing, all_named = self._other_columns.observe(report, self.revision)
         new = [row for row in missing if report.names[row] not in self._robots]
         if not new:
             return all_named
@@ -396,7 +388,7 @@ class Robots:
         for row in new:
             received_at = report.wall - float(report.table[row, RECEIVED_AT])
             self._add(Robot(report.names[row], 0, link, received_at, gateway=report.gateway))
-        self.revision = self._columns.observe(report.only(new), self.revision).revision
+        self.revision = self._other_columns.observe(report.only(new), self.revision).revision
         return all_named
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
@@ -410,7 +402,7 @@ class Robots:
         self._details[name] = said.battery, said.status
         self.revision += 1
         flags = ONLY_SEEN * (said.abilities == "") | DOUBTED * (said.doubt is not None)
-        self._columns.describe(name, said.battery, flags, self.revision)
+        self._other_columns.describe(name, said.battery, flags, self.revision)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
         """Note that the robot is heard, and that the place that it says cannot be."""
@@ -438,7 +430,7 @@ class Robots:
     def measured(self, name: str, latency: float) -> None:
         """Note how many seconds the robot's link took there and back; told with the robot's next change."""
         robot = self._find(name)
-        if robot is not None:
+        if robot is not None and robot.latency != latency:
             self.revision += 1
             robot.latency, robot.described = latency, self.revision
 
@@ -454,22 +446,22 @@ class Robots:
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
-        self._rows.move_times(step)
-        self._columns.move_times(step)
+        self._own_columns.move_times(step)
+        self._other_columns.move_times(step)
 
     def age(self, now: float) -> None:
         """Bring the state of every robot up to ``now``; what changed gets a new revision."""
-        for name in self._rows.outdated(now, self._stale_after, self._lost_after):
+        for name in self._own_columns.outdated(now, self._stale_after, self._lost_after):
             robot = self._robots[name]
             # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
             robot.received_at = min(robot.received_at, now)
             robot.state = self._judge(robot, now)
             self._touch(robot)
-        self.revision = self._columns.age(now, self._stale_after, self._lost_after, self.revision)
+        self.revision = self._other_columns.age(now, self._stale_after, self._lost_after, self.revision)
 
     def changed(self, since: int) -> list[Robot]:
         """Return the robots that changed after revision ``since``, those of this gateway first."""
-        return self.own(since) + self._renew(self._columns.changed(since))
+        return self.own(since) + self._renew(self._other_columns.changed(since))
 
     def own(self, since: int = -1) -> list[Robot]:
         """Return the robots of this gateway that changed after revision ``since``."""
@@ -481,16 +473,16 @@ class Robots:
 
     def own_places(self, since: int = -1) -> RobotPlaces:
         """Return where the robots of this gateway are that changed after revision ``since``."""
-        return self._rows.places(since)
+        return self._own_columns.places(since)
 
     def places(self, since: int = -1) -> RobotPlaces:
         """Return where those are that changed after revision ``since``, those of this gateway first."""
-        return self._rows.places(since).join(self._columns.places(since))
+        return self._own_columns.places(since).join(self._other_columns.places(since))
 
     def only_seen(self) -> list[Robot]:
         """Return the robots that can do nothing."""
         here = [robot for robot in self._robots.values() if robot.abilities == ""]
-        return here + self._renew(self._columns.only_seen())
+        return here + self._renew(self._other_columns.only_seen())
 
     def known(self, names: Iterable[str]) -> list[Robot]:
         """Return those of ``names`` that there are."""
@@ -501,14 +493,14 @@ class Robots:
 
     def _find(self, name: str) -> Robot | None:
         robot = self._robots.get(name) or self._elsewhere.get(name)
-        if robot is not None and robot.gateway is not None and self._columns.has_changed(robot):
+        if robot is not None and robot.gateway is not None and self._other_columns.has_changed(robot):
             self._renew([name])
         return robot
 
     def _renew(self, names: Sequence[str]) -> list[Robot]:
         """Return robots of other gateways as those say that they are by now."""
         robots = [self._elsewhere[name] for name in names]
-        for robot, seen in self._columns.read_changed(robots):
+        for robot, seen in self._other_columns.read_changed(robots):
             robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
             robot.located, robot.state, robot.revision = seen.located, seen.state, seen.revision
             robot.abilities = "" if seen.only_seen else robot.abilities
@@ -533,12 +525,12 @@ class Robots:
         self._touch(robot)
 
     def _forget_here(self, name: str) -> Robot | None:
-        self._rows.remove(name)
+        self._own_columns.remove(name)
         return self._robots.pop(name, None)
 
     def _forget_elsewhere(self, name: str) -> Robot | None:
         self._details.pop(name, None)
-        self._columns.remove(name)
+        self._other_columns.remove(name)
         return self._elsewhere.pop(name, None)
 
     def _judge(self, robot: Robot, now: float) -> RobotState:
@@ -549,10 +541,15 @@ class Robots:
             lost_after=self._lost_after,
         )
 
+    def _note_heard(self, robot: Robot, link: str, now: float, *, stopped: bool, waited: bool) -> None:
+        robot.link, robot.ended_in_order = link, stopped
+        if not waited:
+            if robot.state in AWAY:
+                self._events.publish(RobotReturned(robot.name, now - robot.received_at))
+            robot.received_at = now
+        robot.state = self._judge(robot, now) if waited else RobotState.FRESH
+
     def _touch(self, robot: Robot) -> None:
         self.revision += 1
         robot.revision = robot.described = self.revision
-        self._write(robot)
-
-    def _write(self, robot: Robot) -> None:
-        (self._rows if robot.gateway is None else self._columns).write(robot)
+        (self._own_columns if robot.gateway is None else self._other_columns).write(robot)

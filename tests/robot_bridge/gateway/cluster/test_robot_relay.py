@@ -124,6 +124,15 @@ async def test_a_latency_is_told_again_once_it_is_another_one(place, measured, t
         assert len(await place.detailed()) == expected
 
 
+def test_a_latency_that_is_measured_again_is_no_change(place):
+    place.robots.measured("r1", 0.1)
+    seen = place.robots.revision
+    place.robots.measured("r1", 0.1)
+    assert place.robots.revision == seen and place.robots.own_described(seen) == []
+    place.robots.measured("r1", 0.2)
+    assert [robot.name for robot in place.robots.own_described(seen)] == ["r1"]
+
+
 async def test_a_latency_that_creeps_is_told_in_the_end(place):
     heard = []
     for step in range(100):

@@ -240,7 +240,7 @@ def over_at(cleared_at):
 
 
 async def test_robots_that_drive_since_before_a_stop_that_is_over_are_aborted(place):
-    """Nobody told this gateway of it in time."""
+    """This gateway did not hear of it in time."""
     await place.yard.send("before")
     await place.yard.acknowledge_all()
     over = over_at(place.yard.now + 2.0)
@@ -284,7 +284,7 @@ async def test_a_robot_of_a_gateway_that_died_over_a_stop_is_aborted_when_that_i
 
 
 async def test_an_abort_that_could_not_be_stored_before_the_stop_was_over_is_stored(place, monkeypatch):
-    """And before anything else that its robot is told."""
+    """And before any other message of its robot."""
     book = place.yard.fleet._book
     await place.yard.send("before")
 

@@ -359,7 +359,7 @@ def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
     robot = pair.robot(pair.b, name)
     assert robot.hear("Abort")["emergency"]
     desk.wait_for_step(f"c-{name}", "aborted")
-    # It takes on what it is told next.
+    # It takes on its next target.
     desk.send(f"d-{name}", name, "SetPosEnd", x=24.0, y=8.0)
     assert robot.hear("SetPosEnd")["x"] == 24.0
     pair.a.start_gateway()

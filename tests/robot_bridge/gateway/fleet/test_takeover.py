@@ -115,7 +115,7 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
             {"r1"} if "r1" in {one.name for one in known.own()} else set(), set(), set(), owners
         )
 
-    ownership.refresh, ownership.note_followed = refresh, lambda _changes: None
+    ownership.refresh, ownership.note_followed = refresh, lambda: None
     await takeover.follow()
     assert {robot: known.gateway_of(robot) for robot in owners} == owners
     assert woken == [("positions", "b"), ("positions", "c")]
@@ -124,7 +124,7 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
 
 
 class OwnersTable:
-    """The owners as the database has them; who reads is told of all, or of those that have changed."""
+    """The owners as the database has them; a read returns all, or those that have changed."""
 
     def __init__(self):
         self.owners, self.changed, self.read_all = {}, set(), 0
@@ -165,7 +165,7 @@ def elsewhere(fence, gateway="b"):
 
 async def followed(owned):
     changes = await owned.refresh()
-    owned.note_followed(changes)
+    owned.note_followed()
     return changes
 
 
@@ -175,7 +175,7 @@ async def test_owners_that_have_changed_are_told_until_they_are_followed(owned, 
         changes = await owned.refresh()
         assert changes.gateways == {"r1": "a", "r2": "b"}
     assert await owned.refresh() == (set(), set(), set(), {"r1": "a", "r2": "b"}) and owned.owns("r1")
-    owned.note_followed(changes)
+    owned.note_followed()
     assert await owned.refresh() == (set(), set(), set(), {})
     table.write(r1=elsewhere(2, "c"), r2=here(5))
     assert await owned.refresh() == ({"r1"}, {"r2"}, set(), {"r1": "c", "r2": "a"})

@@ -95,7 +95,7 @@ class Side:
         ]
 
     def details(self):
-        """What is told of each robot when it has changed."""
+        """What other gateways need to know of each robot once it has changed."""
         return {
             one.name: (one.doubt, one.pose and one.pose.battery, one.pose and one.pose.status)
             for one in self.robots.own()
