@@ -33,6 +33,8 @@ log = logging.getLogger(__name__)
 
 LEASE_S, TRUST_S, RENEW_S = 5.0, 4.0, 1.0
 """seconds that a renewal is valid for in the database, that a gateway counts on it, and between two."""
+BREAK_S = LEASE_S - 2 * RENEW_S
+"""seconds between two renewals of a gateway in which the leases of others may have run out as well."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
@@ -51,9 +53,13 @@ class LeaseTrust:
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self._asked_at = -math.inf
+        self._unbroken_since = math.inf
 
     def renewed(self, asked_at: float) -> None:
         """Note that a renewal succeeded that was asked for at ``asked_at``, on the steady clock."""
+        now = self._clock.steady()
+        if now - self._asked_at > BREAK_S:
+            self._unbroken_since = now
         self._asked_at = max(self._asked_at, asked_at)
 
     def lost(self) -> None:
@@ -64,6 +70,11 @@ class LeaseTrust:
     def holds(self) -> bool:
         """Whether the lease can still be counted on."""
         return self._clock.steady() - self._asked_at < TRUST_S
+
+    @property
+    def is_unbroken(self) -> bool:
+        """Whether it has been renewed for so long that others that could not renew theirs have by now."""
+        return self._clock.steady() - self._unbroken_since >= LEASE_S
 
 
 class OwnedRobots:
@@ -125,6 +136,15 @@ def leads(me: Member, members: Sequence[Member]) -> bool:
     return bool(alive) and min(alive, key=lambda member: member.since).run == me.run
 
 
+def spared_runs(members: Sequence[Member], trust: LeaseTrust) -> list[str]:
+    """Return the runs of gateways whose robots are not claimed, whatever their leases are by now.
+
+    When the database was away for longer than a lease, all gateways seem dead to the first one that reaches
+    it again, and have their robots still.
+    """
+    return [member.run for member in members if member.alive or not trust.is_unbroken]
+
+
 # --- The gateway in the database ---
 
 LEASE_PATIENCE_S = 2.0
@@ -163,6 +183,10 @@ class Membership:
     def leads(self) -> bool:
         """Whether this gateway does what is to be done once per database, and may count on that."""
         return self.trust.holds and leads(self.me, self.members)
+
+    def spared_runs(self) -> list[str]:
+        """Return the runs of gateways whose robots are not claimed, whatever their leases are by now."""
+        return spared_runs(self.members, self.trust)
 
     def others(self) -> list[str]:
         """Return the names of the other gateways that lived at the last renewal."""

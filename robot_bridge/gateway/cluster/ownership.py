@@ -125,7 +125,8 @@ class Ownership:
         """Have the robots that no living gateway has, if this one leads; return them. Raises StoreError."""
         if not self._membership.leads:
             return []
-        got = await self._database.run(gateways.claim_left, self._membership.me)
+        spared = self._membership.spared_runs()
+        got = await self._database.run(gateways.claim_left, self._membership.me, spared)
         self._robots.gained(got)
         if got:
             log.warning("%d robots had no gateway, and have this one now", len(got))

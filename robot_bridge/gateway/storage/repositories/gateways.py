@@ -151,7 +151,8 @@ _CLAIM = text(
 _CLAIM_LEFT = text(
     f"""
     update robot_owners o set gw = :gw, run = :run, fence = o.fence + 1
-    where not exists (select 1 from gateways g where g.gw = o.gw and g.run = o.run and {_ALIVE})
+    where o.run <> all(cast(:spared as text[]))
+        and not exists (select 1 from gateways g where g.gw = o.gw and g.run = o.run and {_ALIVE})
     returning robot, fence
     """  # nosec B608 # names of ours
 )
@@ -200,14 +201,18 @@ def claim(
     return {robot: Claimed(fence, before.get(robot)) for robot, fence in {**mine, **got}.items()}
 
 
-def claim_left(connection: Connection, me: Member, now: float | None = None) -> dict[str, int]:
+def claim_left(
+    connection: Connection, me: Member, spared: Sequence[str] = (), now: float | None = None
+) -> dict[str, int]:
     """Let a gateway have all robots whose gateway lives no more, or that have none; return their fences.
+
+    Robots of the runs ``spared`` stay where they are.
 
     :raises NoMemberError: when its own lease has run out.
     """
     _check_alive(connection, me, now)
     values = {"gw": me.gw, "run": me.run}
-    left = connection.execute(_CLAIM_LEFT, {**values, "now": now}).all()
+    left = connection.execute(_CLAIM_LEFT, {**values, "spared": list(spared), "now": now}).all()
     new = connection.execute(_CLAIM_NEW, values).all()
     return dict([*left, *new])
 

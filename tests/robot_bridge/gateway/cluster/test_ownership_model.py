@@ -22,8 +22,18 @@ from hypothesis.stateful import (
 from sqlalchemy import text
 
 from robot_bridge.core.clock import ManualClock
-from robot_bridge.gateway.cluster.membership import LEASE_S, TRUST_S, LeaseTrust, OwnedRobots, leads
-from robot_bridge.gateway.storage.database import open_engine, read_address
+from robot_bridge.gateway.cluster.membership import (
+    LEASE_S,
+    RENEW_S,
+    TRUST_S,
+    LeaseTrust,
+    Membership,
+    OwnedRobots,
+    leads,
+    spared_runs,
+)
+from robot_bridge.gateway.cluster.ownership import Ownership
+from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.repositories import gateways
 from robot_bridge.gateway.storage.repositories.gateways import Member, NoMemberError
 from robot_bridge.gateway.storage.repositories.robots import CHECK_VALID_S
@@ -172,7 +182,8 @@ class Fleet(RuleBasedStateMachine):
         if process is None or not process.trust.holds or not leads(process.me, process.members):
             return
         try:
-            left = self.run(gateways.claim_left, process.me, self.now)
+            spared = spared_runs(process.members, process.trust)
+            left = self.run(gateways.claim_left, process.me, spared, self.now)
             self.claimed_at.update(dict.fromkeys(left, self.now))
             process.robots.gained(left)
         except NoMemberError:
@@ -333,6 +344,85 @@ def went_elsewhere(fleet):
     fleet.connect("r1", "a")
     fleet.check("a", "r1")
     fleet.connect("r1", "b")
+
+
+def owners(fleet):
+    return {robot: owner.gw for robot, owner in fleet.run(gateways.owners_since, None).owners.items()}
+
+
+def renew_for(fleet, seconds, *names):
+    """Renew the leases of gateways each second, and have each claim what is left if that is its task."""
+    for _ in range(round(seconds)):
+        for name in names:
+            fleet.renew(name, 0.0)
+            fleet.claim_left(name)
+        fleet.pass_time(1.0)
+
+
+@pytest.mark.parametrize("away", [4.2, 6.0, 600.0])
+def test_robots_stay_where_they_are_while_nobody_reaches_the_database(fleet, away):
+    """The first one that reaches it again takes no robots of those that come a moment later."""
+    for name, robot in (("b", "r1"), ("a", "r2")):
+        fleet.start(name)
+        fleet.connect(robot, name)
+    fleet.renew("b", 0.0)
+    renew_for(fleet, 6, "b", "a")
+    fleet.renew("a", 0.0)
+    fleet.pass_time(0.9)
+    fleet.renew("b", 0.0)
+    fleet.pass_time(away)
+    for _ in range(3):
+        fleet.renew("b", 0.0)
+        fleet.claim_left("b")
+        fleet.pass_time(1.0)
+    assert owners(fleet) == {"r1": "b", "r2": "a"}
+    renew_for(fleet, 8, "b", "a")
+    assert owners(fleet) == {"r1": "b", "r2": "a"}
+    # One that does not come back has its robots claimed.
+    fleet.kill("a")
+    renew_for(fleet, 8, "b")
+    assert owners(fleet) == {"r1": "b", "r2": "b"}
+
+
+def test_robots_are_not_claimed_by_a_look_from_before_the_database_stood_still(fleet):
+    """A statement may wait for seconds in the server, and leases run out meanwhile."""
+    fleet.start("b")
+    fleet.start("a")
+    fleet.connect("r2", "a")
+    renew_for(fleet, 6, "b", "a")
+    process = fleet.processes["b"]
+    spared = spared_runs(process.members, process.trust)
+    fleet.pass_time(6.0)
+    fleet.renew("b", 0.0)
+    assert not fleet.run(gateways.claim_left, process.me, spared, fleet.now)
+    assert fleet.run(gateways.claim_left, process.me, [], fleet.now)
+
+
+async def test_a_gateway_that_has_just_come_claims_no_robots_of_one_that_may_be_back(fleet, fleet_url):
+    fleet.run(gateways.join, Member("a", "run-a"), -1.0)
+    fleet.connection.execute(text("insert into robot_owners values ('r1', 'a', 'run-a', 1)"))
+    fleet.connection.commit()
+    database, clock = Database(fleet_url), ManualClock(uptime=100.0)
+    membership = Membership("b", database, clock)
+    ownership = Ownership(membership, database)
+    try:
+        await membership.join()
+        assert membership.leads and not await ownership.claim_left()
+        for _ in range(5):
+            clock.advance(RENEW_S)
+            await membership.renew()
+        assert await ownership.claim_left() == ["r1"]
+    finally:
+        await database.close()
+
+
+def test_robots_of_a_gateway_that_left_are_claimed_at_once(fleet):
+    fleet.start("a")
+    fleet.connect("r1", "a")
+    fleet.leave("a")
+    fleet.start("b")
+    fleet.claim_left("b")
+    assert owners(fleet) == {"r1": "b"}
 
 
 def test_the_machine_finds_a_fence_that_is_open(fleet, monkeypatch):
