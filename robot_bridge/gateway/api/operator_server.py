@@ -201,6 +201,7 @@ UNNOTED = ("hello", "subscribe", "find_robots")
 """Requests that change nothing but the connection they come from."""
 AT_ONCE = ("emergency",)
 """News that wait for no turn of the loop, which thousands of robots may have before."""
+_STOP = EmergencyStop.method.encode()
 VIEW_REST_S = 0.1
 """between frames to a desk whose view moves."""
 
@@ -231,6 +232,7 @@ class OperatorSession:
         """Serve the connection to its end."""
         self._fleet.listeners.add(self)
         self._start("news", self._push_news())
+        self._connection.handle_at_once(self._begin_stop)
         try:
             async for frame in self._connection:
                 await self._take(frame)
@@ -250,6 +252,21 @@ class OperatorSession:
                 return
         self._news[method, key] = params
         self._news_event.set()
+
+    def _begin_stop(self, frame: bytes) -> bool:
+        """Begin an emergency stop as soon as its bytes are there; answered and stored is it in its turn."""
+        if _STOP in frame:
+            with (
+                log_and_continue(log, "beginning an emergency stop"),
+                contextlib.suppress(MessageError, BridgeError, jsonrpc.FrameError),
+            ):
+                call = jsonrpc.decode(frame)
+                if isinstance(call, jsonrpc.Call) and call.method == EmergencyStop.method:
+                    request = decode_desk_request(call.method, call.params)
+                    assert isinstance(request, EmergencyStop)
+                    self._check(request)
+                    self._fleet.emergency.begin(request, self._operator)
+        return False
 
     async def _take(self, frame: str | bytes) -> None:
         call = None
@@ -326,10 +343,13 @@ class OperatorSession:
         if isinstance(request, Subscribe):
             self._subscribe(request)
             return {}
+        self._check(request)
+        return await self._handlers.answer(request, self._operator)
+
+    def _check(self, request: DeskRequest[Any]) -> None:
         role = self._gate.role(self._connection)
         override_role = Role(self._fleet.site.settings.commands.override_role)
         check_permission(request, self._operator, role, override_role)
-        return await self._handlers.answer(request, self._operator)
 
     def _hello(self, request: Hello) -> dict[str, Any]:
         if request.protocol != PROTOCOL_VERSION:

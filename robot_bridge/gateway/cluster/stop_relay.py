@@ -46,10 +46,10 @@ class LocalStops(Protocol):
     def announce(self) -> None:
         """Tell every operator how things stand."""
 
-    async def stop_elsewhere(self, stop: StopRow) -> None:
+    def stop_elsewhere(self, stop: StopRow) -> None:
         """Put a stop in force that was made at another gateway."""
 
-    async def learn(self, stop: StopRow) -> None:
+    def learn(self, stop: StopRow) -> None:
         """Take in how a stop is stored."""
 
 
@@ -80,7 +80,6 @@ class EmergencyStopRelay:
         """the other gateways that were to answer when operators were told last of those."""
         self._changed = asyncio.Event()
         self._look_now = asyncio.Event()
-        self._tasks: set[asyncio.Task[None]] = set()
         self._looked_at = clock.steady()
         self._has_company = False
         """whether there were other gateways when the database was reached last."""
@@ -143,7 +142,7 @@ class EmergencyStopRelay:
         self._has_company = bool(self._membership.others())
         # Ends last: another stop in force must hold by then.
         for stop in sorted(found, key=lambda stop: stop.cleared_at or 0.0):
-            await self._stops.learn(stop)
+            self._stops.learn(stop)
 
     def is_cut_off(self) -> bool:
         """Tell whether this gateway reaches neither the database nor any other gateway, and had others."""
@@ -168,7 +167,7 @@ class EmergencyStopRelay:
         )
         reason = "cut off from the database and from every other gateway"
         by = f"gateway {self._exchange.gateway}"
-        await self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", self._clock.time(), by, reason))
+        self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", self._clock.time(), by, reason))
 
     async def _tell(self) -> None:
         while True:
@@ -217,13 +216,7 @@ class EmergencyStopRelay:
     # --- what comes in ------------------------------------------------------------------------------------
 
     def _called(self, call: StopCall) -> None:
-        stop = StopRow(call.id, call.at, call.by, call.reason)
-        task = asyncio.create_task(self._stop(stop))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
-
-    async def _stop(self, stop: StopRow) -> None:
-        await self._stops.stop_elsewhere(stop)
+        self._stops.stop_elsewhere(StopRow(call.id, call.at, call.by, call.reason))
         self._answer()
 
     def _answered(self, seen: StopSeen) -> None:

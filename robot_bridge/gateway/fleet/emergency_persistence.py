@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import contextlib
 import errno
 import hashlib
@@ -12,7 +11,7 @@ import os
 import time
 import uuid
 from collections.abc import Awaitable, Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -82,13 +81,12 @@ class StopJournal:
             )
         self._set_room_aside()
 
-    def write(self, stops: Sequence[StopRow]) -> asyncio.Future[None]:
+    def write(self, stops: Sequence[StopRow]) -> Future[None]:
         """Write down ``stops``, and no others; done when they are on the disk.
 
         What cannot be written is told to the log: it must keep no stop from going out.
         """
-        loop = asyncio.get_running_loop()
-        return loop.run_in_executor(self._thread, self._write, list(stops))
+        return self._thread.submit(self._write, list(stops))
 
     def read(self) -> list[StopRow]:
         """Return what an earlier gateway left, oldest first.

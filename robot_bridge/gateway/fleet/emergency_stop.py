@@ -7,6 +7,7 @@ import logging
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
+from concurrent import futures
 from enum import IntEnum
 from typing import Any, Protocol
 
@@ -114,8 +115,9 @@ log = logging.getLogger(__name__)
 
 STORED_WITHIN = 1.0
 """seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
-NOTED_WITHIN = 0.1
-"""seconds for which robots wait until their stop is noted: a disk that hangs must not keep them going."""
+NOTED_WITHIN = 0.02
+"""seconds for which this gateway stands still until a stop is noted, before robots hear of it. A disk that
+hangs must not keep them going; a turn of the loop may take longer where thousands of robots have theirs."""
 MOST_FIRST = 20
 """operators who are notified of a stop before the robots: that takes a millisecond."""
 ANSWERS_TOGETHER = 0.05
@@ -263,36 +265,34 @@ class EmergencyStops:
         Returns when the stop is stored, or after a second if the database does not answer or cannot be
         written: it is in force all the same.
         """
-        if request.command not in self._seen:
-            begun = asyncio.ensure_future(
-                self._begin(StopRow(request.command, self._clock.time(), _name(operator), request.line))
-            )
-            # Goes on to its end when the operator's connection does not.
-            await asyncio.shield(begun)
+        self.begin(request, operator)
         storing = asyncio.ensure_future(self._store_and_log())
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         return self.report()
 
-    async def stop_elsewhere(self, stop: StopRow) -> None:
-        """Put a stop in force that was made at another gateway; returns when the robots here are being told.
+    def begin(self, request: EmergencyStop, operator: str) -> None:
+        """Put a stop in force and tell everybody, without a turn of the loop; :meth:`stop` stores it."""
+        if request.command not in self._seen:
+            self._begin(StopRow(request.command, self._clock.time(), _name(operator), request.line))
+
+    def stop_elsewhere(self, stop: StopRow) -> None:
+        """Put a stop in force that was made at another gateway; the robots here are being told then.
 
         It is stored from here as well: the other gateway may not come to that.
         """
-        if stop.id in self._seen:
-            return
-        # At once: it may come over several ways at the same time.
-        self._seen.add(stop.id)
-        await asyncio.shield(asyncio.ensure_future(self._begin(stop, is_own=False)))
-        self._storing = asyncio.ensure_future(self._store_and_log())
+        # It may come over several ways at the same time.
+        if stop.id not in self._seen:
+            self._begin(stop, is_own=False)
+            self._storing = asyncio.ensure_future(self._store_and_log())
 
-    async def learn(self, stop: StopRow) -> None:
+    def learn(self, stop: StopRow) -> None:
         """Take in how a stop is stored: put in force one that is new, end the one in force that was cleared.
 
         What is not stored yet stays in force, whatever others have cleared. Of one that was over before this
         gateway knew of it, the robots here are aborted as well.
         """
         if stop.cleared_at is None:
-            await self.stop_elsewhere(stop)
+            self.stop_elsewhere(stop)
             return
         is_new = stop.id not in self._seen
         self._seen.add(stop.id)
@@ -418,7 +418,7 @@ class EmergencyStops:
             )
             self._book.keep_aborts(orders_of(stop, overdue))
 
-    async def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
+    def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._put_in_force(stop)
         # Whatever goes wrong in one of these, what comes after it is done.
         for relay in self._relays if is_own else ():
@@ -432,7 +432,7 @@ class EmergencyStops:
             noting = self._note()
             # Who made one elsewhere has noted it already, and stores it.
             if noting is not None and is_own:
-                await asyncio.wait({noting}, timeout=NOTED_WITHIN)
+                futures.wait([noting], NOTED_WITHIN)
         for link in self._links:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
@@ -440,7 +440,7 @@ class EmergencyStops:
         if not operators_first:
             self.announce()
 
-    def _note(self) -> asyncio.Future[None] | None:
+    def _note(self) -> futures.Future[None] | None:
         """Have what is not stored noted on the disk."""
         if self._journal is None:
             return None

@@ -28,10 +28,10 @@ async def test_what_is_written_last_is_what_the_next_gateway_reads(file):
     assert journal.read() == []
     for stops in ([FIRST], [FIRST, SECOND], [SECOND]):
         journal.write(stops)
-    await journal.write([FIRST, SECOND])
+    journal.write([FIRST, SECOND]).result()
     assert StopJournal(file).read() == [FIRST, SECOND]
     assert file.stat().st_mode & 0o777 == 0o600
-    await journal.write([])
+    journal.write([]).result()
     assert StopJournal(file).read() == []
     rooms = {f".{file.name}.{name}" for name in ("room", "spare")}
     assert {one.name for one in file.parent.iterdir()} == rooms
@@ -48,7 +48,7 @@ def test_what_cannot_be_understood_is_a_stop_all_the_same(file, text):
 
 
 async def test_a_disk_that_takes_nothing_is_told_to_the_log_and_keeps_no_stop_back(tmp_path, caplog):
-    await StopJournal(tmp_path / "missing" / "f.stop").write([FIRST])
+    StopJournal(tmp_path / "missing" / "f.stop").write([FIRST]).result()
     assert "emergency stops cannot be noted in" in caplog.text
     assert "No such file or directory; they go out all the same" in caplog.text
 

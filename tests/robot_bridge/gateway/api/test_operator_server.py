@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 import json
+from contextlib import asynccontextmanager
 from types import SimpleNamespace
 
+from robot_bridge.core.messages.base import Role
 from robot_bridge.gateway.api.operator_server import OperatorSession
 from robot_bridge.gateway.model.events import Listeners
 
@@ -28,6 +30,9 @@ class Connection:
         self.sent.put_nowait(json.loads(frame))
         return True
 
+    def handle_at_once(self, handler):
+        self.handler = handler
+
     async def __aiter__(self):
         await self.hung_up.wait()
         return
@@ -47,6 +52,43 @@ async def test_news_that_cannot_be_told_keep_back_none_that_come_after_them(capl
     assert "news of command failed; what comes after it is done all the same" in caplog.text
     connection.hung_up.set()
     await running
+
+
+@asynccontextmanager
+async def desk_of(yard, role):
+    """Yield the connection of a desk at the gateway of a yard."""
+    connection = Connection()
+    session = OperatorSession(yard.fleet, connection, SimpleNamespace(role=lambda _: role), handlers=None)
+    running = asyncio.create_task(session.run())
+    await asyncio.sleep(0)
+    yield connection
+    connection.hung_up.set()
+    await running
+
+
+def stop_call(**params):
+    return json.dumps({"jsonrpc": "2.0", "id": 1, "method": "emergency_stop", "params": params}).encode()
+
+
+async def test_a_stop_begins_when_its_bytes_are_there(two):
+    """Without a turn of the loop; the request is answered in its turn all the same."""
+    async with desk_of(two, Role.OPERATOR) as connection:
+        for params in ({"command": "stop-number-1", "reason": "smoke"}, {"command": "stop-number-1"}):
+            assert not connection.handler(stop_call(**params))
+        news = connection.sent.get_nowait()
+        assert (news["method"], news["params"]["in_force"]) == ("emergency", True)
+        assert connection.sent.empty()
+        report = two.fleet.emergency.report()
+        assert (report.stop, report.by, report.reason) == ("stop-number-1", "Ada", "smoke")
+
+
+async def test_who_may_not_stop_robots_begins_no_stop(two, caplog):
+    async with desk_of(two, Role.VIEWER) as connection:
+        assert not connection.handler(stop_call(command="stop-number-1"))
+        for nonsense in (b'{"method": "emergency_stop"', b'"emergency_stop"', b"[emergency_stop]"):
+            assert not connection.handler(nonsense)
+        assert not two.fleet.emergency.in_force and connection.sent.empty()
+    assert not caplog.records
 
 
 async def test_news_of_a_stop_are_sent_at_once_and_behind_none_that_are_older():

@@ -34,7 +34,7 @@ def file(tmp_path):
 
 
 async def test_the_file_reads_as_gateways_before_and_after_this_one_write_it(file):
-    await StopJournal(file).write([FIRST, SECOND])
+    StopJournal(file).write([FIRST, SECOND]).result()
     assert file.read_text(encoding="ascii") == TEXT
     assert StopJournal(file).read() == [FIRST, SECOND]
 
@@ -113,7 +113,7 @@ def test_one_stop_that_cannot_be_understood_hides_no_other(file, bad):
 async def test_what_a_gateway_left_that_died_while_it_wrote_is_written_over(file):
     partial = file.with_name(".fleet.db.stop.new")
     partial.write_text("x" * 10_000, encoding="utf-8")
-    await StopJournal(file).write([FIRST, SECOND])
+    StopJournal(file).write([FIRST, SECOND]).result()
     assert file.read_text(encoding="ascii") == TEXT
     assert not partial.exists()
 
@@ -121,7 +121,7 @@ async def test_what_a_gateway_left_that_died_while_it_wrote_is_written_over(file
 async def test_nobody_else_on_this_computer_may_read_or_change_it(file):
     umask = os.umask(0)
     try:
-        await StopJournal(file).write([FIRST])
+        StopJournal(file).write([FIRST]).result()
     finally:
         os.umask(umask)
     assert stat.S_IMODE(file.stat().st_mode) == 0o600
@@ -139,7 +139,8 @@ async def test_what_is_written_later_waits_for_what_is_on_its_way(file):
     await asyncio.sleep(0.05)
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     try:
-        await asyncio.gather(*writes)
+        for write in writes:
+            await asyncio.wrap_future(write)
     finally:
         os.close(reader)
     assert order == [0, 1]
@@ -147,20 +148,20 @@ async def test_what_is_written_later_waits_for_what_is_on_its_way(file):
 
 
 async def test_to_write_nothing_where_nothing_is_is_no_trouble(file, caplog):
-    await StopJournal(file).write([])
+    StopJournal(file).write([]).result()
     assert caplog.records == []
 
 
 async def test_a_disk_that_takes_nothing_is_in_the_log_by_its_name(file, caplog, monkeypatch):
     file.with_name(".fleet.db.stop.new").mkdir()
-    await StopJournal(file).write([FIRST])
+    StopJournal(file).write([FIRST]).result()
     file.with_name(".fleet.db.stop.new").rmdir()
 
     def fail(_descriptor):
         raise OSError("the disk is gone")
 
     monkeypatch.setattr(os, "fsync", fail)
-    await StopJournal(file).write([FIRST])
+    StopJournal(file).write([FIRST]).result()
     assert [record.getMessage() for record in caplog.records] == [
         f"emergency stops cannot be noted in {file}: {why}; they go out all the same"
         for why in ("Is a directory", "the disk is gone")
@@ -180,7 +181,7 @@ async def test_a_file_system_that_cannot_write_down_a_folder_keeps_no_stop_from_
         fsync(descriptor)
 
     monkeypatch.setattr(os, "fsync", fsync_of_files)
-    await StopJournal(file).write([FIRST])
+    StopJournal(file).write([FIRST]).result()
     assert StopJournal(file).read() == [FIRST]
     assert (written, caplog.records) == ([file.parent], [])
 
@@ -191,10 +192,10 @@ def open_descriptors():
 
 async def test_no_descriptor_is_left_open(file):
     journal = StopJournal(file)
-    await journal.write([FIRST])
+    journal.write([FIRST]).result()
     before = open_descriptors()
     for _ in range(3):
-        await journal.write([FIRST, SECOND])
+        journal.write([FIRST, SECOND]).result()
     assert open_descriptors() == before
 
 
@@ -228,12 +229,12 @@ async def test_a_full_disk_takes_a_stop_and_has_room_for_the_next_one_afterwards
             journal = StopJournal(file)
             journal.check()
             disk.fill()
-            await journal.write([FIRST, SECOND])
+            journal.write([FIRST, SECOND]).result()
             assert StopJournal(file).read() == [FIRST, SECOND]
             disk.free()
-            await journal.write([])
+            journal.write([]).result()
             disk.fill()
-            await journal.write([SECOND])
+            journal.write([SECOND]).result()
             assert StopJournal(file).read() == [SECOND]
     except StageError as error:
         pytest.skip(str(error))
@@ -252,7 +253,7 @@ async def test_a_full_disk_takes_one_stop_after_the_other(tmp_path):
                 noted.append(
                     FIRST._replace(id=f"stop-000{number}", reason="x" * 900 if number == 2 else None)
                 )
-                await journal.write(noted[-3:])
+                journal.write(noted[-3:]).result()
                 assert StopJournal(file).read() == noted[-3:]
     except StageError as error:
         pytest.skip(str(error))
