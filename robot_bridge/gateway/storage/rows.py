@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
+import msgspec
 from msgspec import ValidationError
-from sqlalchemy import Column, ColumnElement, Connection, Table, delete, select
+from sqlalchemy import Column, ColumnElement, Connection, Dialect, String, Table, delete, select
 from sqlalchemy.exc import DBAPIError
 
 # --- Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are
@@ -88,13 +89,17 @@ def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]
 
 
 def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Insert ``rows``; each holds the values of the columns ``names``.
+    """Insert ``rows`` in their order; each holds the values of the columns ``names``, several no bytes.
 
     All other columns keep their default in the database.
     """
+    if len(rows) > 1 and _takes_json(connection):
+        for text in _as_json(rows):
+            connection.exec_driver_sql(_insert_json(table, tuple(names), connection.dialect), (text,))
+        return
     for some in _pieces(connection, rows):
-        text = _insert(table.name, tuple(names), len(some), _mark(connection))
-        connection.exec_driver_sql(text, tuple(value for row in some for value in row))
+        statement = _insert(table, tuple(names), len(some), connection.dialect)
+        connection.exec_driver_sql(statement, tuple(value for row in some for value in row))
 
 
 _COPY_HEAD = b"PGCOPY\n\xff\r\n\x00" + bytes(8)
@@ -133,9 +138,23 @@ def add_messages(connection: Connection, table: Table, names: Sequence[str], row
 
 
 def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Insert ``rows`` in place of those with the same value in the first of the columns ``names``."""
+    """Insert ``rows`` in place of those with the same value in the first of ``names``, all of its columns."""
+    if _takes_json(connection):
+        for text in _as_json(rows):
+            connection.exec_driver_sql(_upsert_json(table, tuple(names), connection.dialect), (text,))
+        return
     _delete_rows(connection, table, names[0], [row[0] for row in rows])
     add_rows(connection, table, names, rows)
+
+
+def change_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
+    """Write ``rows`` into those with the same value in the first of ``names``; what is not there stays so."""
+    if _takes_json(connection):
+        for text in _as_json(rows):
+            connection.exec_driver_sql(_update_json(table, tuple(names), connection.dialect), (text,))
+    elif rows:
+        statement = _update(table, tuple(names), connection.dialect)
+        connection.exec_driver_sql(statement, [(*values, key) for key, *values in rows])
 
 
 def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) -> None:
@@ -162,8 +181,7 @@ def padded_pieces(values: Sequence[T]) -> Iterator[list[T]]:
 
 def _delete_rows(connection: Connection, table: Table, name: str, values: Sequence[Any]) -> None:
     for some in _pieces(connection, values):
-        text = _delete(table.name, name, len(some), _mark(connection))
-        connection.exec_driver_sql(text, tuple(some))
+        connection.exec_driver_sql(_delete(table, name, len(some), connection.dialect), tuple(some))
 
 
 def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
@@ -180,23 +198,87 @@ def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
         begin += size
 
 
-@lru_cache
-def _insert(table: str, names: tuple[str, ...], rows: int, mark: str) -> str:
-    row = f"({_marks(mark, len(names))})"
-    return f"INSERT INTO {table} ({', '.join(names)}) VALUES {', '.join([row] * rows)}"  # nosec B608 # names
+# Statements by the names that they are made of.
 
 
 @lru_cache
-def _delete(table: str, name: str, rows: int, mark: str) -> str:
-    return f"DELETE FROM {table} WHERE {name} IN ({_marks(mark, rows)})"  # nosec B608 # names
+def _insert(table: Table, names: tuple[str, ...], rows: int, dialect: Dialect) -> str:
+    row = f"({_marks(dialect, len(names))})"
+    return f"{_into(table, names, dialect)} VALUES {', '.join([row] * rows)}"
 
 
-def _mark(connection: Connection) -> str:
-    return "?" if connection.dialect.paramstyle == "qmark" else "%s"
+@lru_cache
+def _update(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
+    key, *others = _quoted(names, dialect)
+    mark = _marks(dialect, 1)
+    values = ", ".join(f"{name} = {mark}" for name in others)
+    return f"UPDATE {table.name} SET {values} WHERE {key} = {mark}"  # nosec B608 # names
 
 
-def _marks(mark: str, number: int) -> str:
-    return ", ".join([mark] * number)
+@lru_cache
+def _delete(table: Table, name: str, rows: int, dialect: Dialect) -> str:
+    return f"DELETE FROM {table.name} WHERE {name} IN ({_marks(dialect, rows)})"  # nosec B608 # names
+
+
+def _marks(dialect: Dialect, number: int) -> str:
+    return ", ".join(["?" if dialect.paramstyle == "qmark" else "%s"] * number)
+
+
+def _into(table: Table, names: Sequence[str], dialect: Dialect) -> str:
+    return f"INSERT INTO {table.name} ({', '.join(_quoted(names, dialect))})"
+
+
+def _quoted(names: Iterable[str], dialect: Dialect) -> list[str]:
+    return [dialect.identifier_preparer.quote(name) for name in names]
+
+
+# --- Rows as one text, for PostgreSQL: its driver takes ten times as long for each value by itself ---
+
+MOST_IN_TEXT = 5000
+"""rows in one statement: a few megabytes."""
+
+
+def _takes_json(connection: Connection) -> bool:
+    return connection.dialect.name == "postgresql"
+
+
+def _as_json(rows: Sequence[Row]) -> Iterator[str]:
+    for begin in range(0, len(rows), MOST_IN_TEXT):
+        yield msgspec.json.encode(rows[begin : begin + MOST_IN_TEXT]).decode()
+
+
+@lru_cache
+def _insert_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
+    return f"{_into(table, names, dialect)} SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"
+
+
+@lru_cache
+def _upsert_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
+    key, *others = _quoted(names, dialect)
+    new = ", ".join(f"{name} = excluded.{name}" for name in others)
+    return f"{_insert_json(table, names, dialect)} ON CONFLICT ({key}) DO UPDATE SET {new}"
+
+
+@lru_cache
+def _update_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
+    key, *others = _quoted(names, dialect)
+    new = ", ".join(f"{name} = v.{name}" for name in others)
+    values = f"SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"
+    columns = ", ".join((key, *others))
+    return f"UPDATE {table.name} t SET {new} FROM ({values}) AS v ({columns}) WHERE t.{key} = v.{key}"  # nosec B608 # names
+
+
+_ELEMENTS = "json_array_elements(cast(%s AS json)) WITH ORDINALITY AS e (r, n) ORDER BY n"
+
+
+def _values(table: Table, names: Sequence[str], dialect: Dialect) -> str:
+    """Return the values of a row that is a JSON array.
+
+    Texts are of any length here: a cast to a shorter one would cut them off, where an insertion refuses them.
+    """
+    kinds = [table.columns[name].type for name in names]
+    texts = ["text" if isinstance(kind, String) else kind.compile(dialect) for kind in kinds]
+    return ", ".join(f"cast(r ->> {number} AS {text})" for number, text in enumerate(texts))
 
 
 # --- Deleting what is old: a few rows at a time, so that nobody waits for the database ---

@@ -6,30 +6,18 @@ import json
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, delete, func, insert, select, update
+from sqlalchemy import Connection, Select, bindparam, delete, func, select
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
-from ..rows import beside_the_time, delete_oldest, padded_pieces, readable
+from ..rows import Row, add_rows, beside_the_time, change_rows, delete_oldest, padded_pieces, readable
 from ..schema import command_steps, commands
 
 # --- Commands and every step of their lives ---
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
-_ADD, _ADD_STEPS = insert(commands), insert(command_steps)
-_SAVE = (
-    update(commands)
-    .where(commands.c.id == bindparam("key"))
-    .values(
-        state=bindparam("new_state"),
-        deviation=bindparam("new_deviation"),
-        stood_x=bindparam("new_x"),
-        stood_y=bindparam("new_y"),
-        stood_theta=bindparam("new_theta"),
-        driven=bindparam("new_driven"),
-        sa_id=bindparam("new_sa_id"),
-    )
-)
+_NEW = "id", "robot", "op", "params", "operator", "state", "driven", "sa_id", "created_at", "expires_at"
+_CHANGED = "id", "state", "deviation", "stood_x", "stood_y", "stood_theta", "driven", "sa_id"
 _BY_ID = select(commands).where(commands.c.id.in_(bindparam("ids", expanding=True)))
 _BY_MESSAGES = select(commands).where(
     commands.c.robot.in_(bindparam("robots", expanding=True)),
@@ -57,37 +45,27 @@ class StoredCommand(NamedTuple):
 
 def add_all(connection: Connection, new: Sequence[StoredCommand]) -> None:
     """Write new commands with their steps."""
-    if not new:
-        return
-    connection.execute(_ADD, [_row(command) for command in new])
+    add_rows(connection, commands, _NEW, [_row(command) for command in new])
     _add_steps(connection, [(c.report.command, step) for c in new for step in c.report.steps])
 
 
 def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
     """Write the newest step of each of some commands that are stored already."""
-    if not changed:
-        return
     rows = [
-        {
-            "key": c.report.command,
-            "new_state": c.report.state.value,
-            "new_deviation": c.report.deviation,
-            **dict(zip(("new_x", "new_y", "new_theta"), c.report.stood or (None,) * 3, strict=True)),
-            "new_driven": c.driven,
-            "new_sa_id": c.sa_id,
-        }
+        (
+            *(c.report.command, c.report.state.value, c.report.deviation),
+            *(c.report.stood or (None,) * 3),
+            *(c.driven, c.sa_id),
+        )
         for c in changed
     ]
-    connection.execute(_SAVE, rows)
+    change_rows(connection, commands, _CHANGED, rows)
     _add_steps(connection, [(c.report.command, c.report.steps[-1]) for c in changed])
 
 
 def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
     """Write how many metres of its path each of some commands has been driven."""
-    if driven:
-        statement = update(commands).where(commands.c.id == bindparam("key"))
-        rows = [{"key": id, "metres": metres} for id, metres in driven.items()]
-        connection.execute(statement.values(driven=bindparam("metres")), rows)
+    change_rows(connection, commands, ("id", "driven"), list(driven.items()))
 
 
 def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
@@ -153,20 +131,10 @@ def forget(connection: Connection, before: float, limit: int) -> int:
     return len(gone)
 
 
-def _row(command: StoredCommand) -> dict[str, object]:
+def _row(command: StoredCommand) -> Row:
     report = command.report
-    return {
-        "id": report.command,
-        "robot": report.robot,
-        "op": report.op,
-        "params": json.dumps(report.params),
-        "operator": report.operator,
-        "state": report.state.value,
-        "driven": command.driven,
-        "sa_id": command.sa_id,
-        "created_at": report.steps[0].at,
-        "expires_at": command.expires_at,
-    }
+    what = report.command, report.robot, report.op, json.dumps(report.params), report.operator
+    return *what, report.state.value, command.driven, command.sa_id, report.steps[0].at, command.expires_at
 
 
 def _load(
@@ -221,19 +189,8 @@ def _stood(x: float | None, y: float | None, theta: float | None) -> tuple[float
 
 
 def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]]) -> None:
-    connection.execute(
-        _ADD_STEPS,
-        [
-            {
-                "command": command,
-                "state": step.state.value,
-                "at": step.at,
-                "by": step.by,
-                "reason": step.reason,
-            }
-            for command, step in steps
-        ],
-    )
+    rows = [(command, step.state.value, step.at, step.by, step.reason) for command, step in steps]
+    add_rows(connection, command_steps, ("command", "state", "at", "by", "reason"), rows)
 
 
 # --- Where the track of a robot begins and ends, from the commands that it was given ---

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 from sqlalchemy import create_engine, event, func, select
 
+from robot_bridge.core.errors import DataRefusedError
+from robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from robot_bridge.core.messages.robots import OpAck, SendPos, SetMap
 from robot_bridge.gateway.model.robots import Robot
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.repositories import commands, requests, robots, trajectories
 from robot_bridge.gateway.storage.repositories import requests as answers
+from robot_bridge.gateway.storage.repositories.commands import StoredCommand
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
 from robot_bridge.gateway.storage.rows import TOGETHER
 from robot_bridge.gateway.storage.schema import metadata
@@ -58,6 +63,48 @@ async def test_what_is_saved_again_replaces_what_was_and_nothing_else(database):
     assert len(found) == 2 * TOGETHER
     again = {int(name[1:]) for name, one in found.items() if one.pose and one.pose.t == 7.0}
     assert again == {number for number in range(TOGETHER + 50) if number % 3}
+
+
+async def test_several_are_refused_as_one_is_for_a_text_that_has_no_room(database):
+    """A text that is cut off is another one. SQLite has room for any."""
+    too_long = replace(robot(1), link="x" * 17)
+    for known in ([too_long], [robot(0), too_long]):
+        if database.dialect.name == "sqlite":
+            await save(database, known)
+        else:
+            with pytest.raises(DataRefusedError):
+                await save(database, known)
+    assert len(await loaded(database)) == (2 if database.dialect.name == "sqlite" else 0)
+
+
+async def test_commands_are_found_as_they_were_last_written(database):
+    steps = [
+        CommandStep(CommandState.QUEUED, NOW, "Ödön"),
+        CommandStep(CommandState.FAILED, NOW + 1, "r", "a\nb"),
+    ]
+    new = [
+        StoredCommand(
+            CommandReport(
+                f"c{n}", f"r{n}", "SetPosEnd", {"x": n / 3}, "Ödön", CommandState.QUEUED, steps[:1]
+            ),
+            sa_id=n,
+            expires_at=NOW + n / 3 if n % 2 else None,
+        )
+        for n in range(2 * TOGETHER)
+    ]
+    await database.run(commands.add_all, new)
+    ended = [
+        replace(one.report, state=CommandState.FAILED, steps=steps, deviation=n / 7, stood=(1.5, n / 3, -0.5))
+        for n, one in enumerate(new)
+    ]
+    changed = [StoredCommand(report, sa_id=n, driven=n / 9) for n, report in enumerate(ended) if n % 2]
+    await database.run(commands.save_all, changed)
+    await database.run(commands.save_driven, {"c0": 1 / 3, "c1": 2 / 3, "unknown": 1.0})
+    wanted = {**{c.report.command: c.report for c in new}, **{c.report.command: c.report for c in changed}}
+    found = await database.run(commands.find_all, list(wanted))
+    assert {id: one.report for id, one in found.items()} == wanted
+    assert found["c3"].driven == 3 / 9 and (found["c0"].driven, found["c1"].driven) == (1 / 3, 2 / 3)
+    assert found["c4"].driven is None
 
 
 @pytest.mark.parametrize("size", SIZES)
