@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +27,7 @@ from qgis.core import (
 from qgis.PyQt.QtCore import QObject
 
 from ..robot_bridge.core.clock import steady_time
+from ..robot_bridge.core.messages.base import is_robot_name
 from .gateway_client.fleet_state import FleetState
 from .gateway_client.robot_states import STATES
 from .layers.road_surfaces import SurfaceStore
@@ -35,6 +37,9 @@ from .ui.errors import FleetError
 from .ui.language import tr, tr_page
 from .ui.scheduling import UpdateScheduler
 
+if TYPE_CHECKING:  # qgis_process has no window, and needs nothing of what one is made of
+    from .control.view_subscription import ViewSubscription
+
 # --- Snapshot of robots that expressions read, and its updates ---
 
 Numbers = npt.NDArray[np.float64]
@@ -42,11 +47,11 @@ Numbers = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RobotSnapshot:
-    """Every robot at ``taken`` (seconds, monotonic clock); nothing in it is changed afterwards.
+    """Robots that the desk knows at ``taken`` (seconds, monotonic clock); nothing in it is changed later.
 
     ``rows`` leads from a name to a row of the arrays: ``states`` (n) names of states, ``xy`` (n, 2) places in
     ``crs``, ``age`` (n,) seconds since the last message and ``battery`` (n,) part of a full one, NaN where
-    not known.
+    not known. Without ``is_whole`` there are other robots than these.
     """
 
     crs: QgsCoordinateReferenceSystem
@@ -56,6 +61,7 @@ class RobotSnapshot:
     age: Numbers
     battery: Numbers
     taken: float
+    is_whole: bool = True
 
     def state(self, robot: str) -> str | None:
         """Return a robot's state, None for a robot that is not known."""
@@ -84,26 +90,79 @@ class RobotSnapshot:
         return None if row is None or not np.isfinite(column[row]) else float(column[row])
 
 
+MOST_NAMED = 200
+"""Robots that the desk is told of wherever they are because expressions name them: those named last."""
+NAMED_FOR_S = 60.0
+"""Seconds for which it is told of a robot after an expression named it."""
+
+
 class SnapshotHolder:
-    """Holds the newest :class:`RobotSnapshot`, None while no gateway has told of any robot."""
+    """Holds the newest :class:`RobotSnapshot`, None while no gateway has told of any robot.
+
+    Expressions are evaluated in QGIS's threads: :meth:`read` may be called in any.
+    """
 
     def __init__(self) -> None:
         self.robots: RobotSnapshot | None = None
+        self._watched: frozenset[str] = frozenset()
+        self._named: dict[str, None] = {}
+        self._lock = threading.Lock()
 
     def replace(self, robots: RobotSnapshot | None) -> None:
         """Hold another snapshot from now on."""
         self.robots = robots
+
+    @property
+    def watched(self) -> frozenset[str]:
+        """Robots that the desk is told of wherever they are, since expressions name them."""
+        return self._watched
+
+    def watch(self, robots: Iterable[str]) -> None:
+        """Keep these robots noted as long as expressions name them, though they are known."""
+        self._watched = frozenset(robots)
+
+    def read(self, robot: str) -> RobotSnapshot | None:
+        """Return the snapshot for an expression that names ``robot``; that is noted if it is not in view."""
+        robots = self.robots
+        if robots is None or robots.is_whole:
+            return robots
+        # Who is in view needs no place among those that are told of wherever they are.
+        if robot in self._watched or (robot not in robots.rows and is_robot_name(robot)):
+            self._note(robot)
+        return robots
+
+    def _note(self, robot: str) -> None:
+        with self._lock:
+            self._named.pop(robot, None)
+            self._named[robot] = None
+            if len(self._named) > MOST_NAMED:
+                del self._named[next(iter(self._named))]
+
+    def collect_named(self) -> list[str]:
+        """Return the robots that were noted since the last call, the one that was named last at the end."""
+        if not self._named:
+            return []
+        with self._lock:
+            named, self._named = self._named, {}
+        return list(named)
 
 
 _NAMES = np.array([state.value for state in STATES], dtype=object)
 
 
 class ExpressionUpdater(QObject):
-    """Makes a new picture for expressions out of the desk's; :meth:`remove` leaves them without one."""
+    """Makes a new picture for expressions out of the desk's, and has that know the robots that they name.
 
-    def __init__(self, state: FleetState, scheduler: UpdateScheduler, fleet: SnapshotHolder):
+    :meth:`remove` leaves them without one.
+    """
+
+    def __init__(
+        self, state: FleetState, view: ViewSubscription, scheduler: UpdateScheduler, fleet: SnapshotHolder
+    ):
         super().__init__(state)
-        self._state, self._fleet = state, fleet
+        self._state, self._view, self._fleet = state, view, fleet
+        self._named: dict[str, float] = {}
+        """When expressions named robots last, the last one at the end."""
         self._turn = scheduler.turn()
         self._rows: dict[str, int] = {}
         self._arrangement = -1
@@ -134,12 +193,32 @@ class ExpressionUpdater(QObject):
             age=robots.age,
             battery=state.robots.column("battery"),
             taken=now,
+            is_whole=state.robots.fleet is None,
         )
         self._fleet.replace(snapshot)
 
     def _pulled(self) -> None:
+        self._watch_named()
         if self._turn.has_come():
             self.feed()
+
+    def _watch_named(self) -> None:
+        """Ask for the robots that expressions have named within the last minute, and for no others."""
+        now = self._state.clock.steady()
+        for name in self._fleet.collect_named():
+            self._named.pop(name, None)
+            self._named[name] = now
+        if self._state.robots.fleet is None:
+            self._named.clear()
+        while self._named:
+            oldest = next(iter(self._named))
+            if len(self._named) <= MOST_NAMED and now - self._named[oldest] < NAMED_FOR_S:
+                break
+            del self._named[oldest]
+        if self._named.keys() != self._fleet.watched:
+            self._fleet.watch(self._named)
+            # In one order: in another one they would be asked for again.
+            self._view.watch_named(sorted(self._named))
 
 
 # --- The functions, and their registration in QGIS ---
@@ -163,6 +242,11 @@ def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
 
 GROUP = tr("Fleet")
 """Where QGIS lists the functions."""
+_OUT_OF_VIEW = tr_page("""
+<p>Of more than 5 000 robots QGIS is told of those on the map. Another one is asked for when an expression
+names it, and for a minute from then on, up to 200 of them: about a second later it has its value, NULL
+until then.</p>
+""")
 DISTANCE_TO_ROBOT = "distance_to_robot"
 _DISTANCE_HELP = tr_page("""
 <h3>function distance_to_robot</h3>
@@ -213,7 +297,12 @@ class DistanceToRobot(_RobotFunction):
         parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
         # Handles NULL itself: an argument that is left out comes as NULL, too.
         super().__init__(
-            DISTANCE_TO_ROBOT, parameters, GROUP, _DISTANCE_HELP, lazyEval=False, handlesNull=True
+            DISTANCE_TO_ROBOT,
+            parameters,
+            GROUP,
+            _DISTANCE_HELP + _OUT_OF_VIEW,
+            lazyEval=False,
+            handlesNull=True,
         )
         self._fleet = fleet
 
@@ -228,9 +317,9 @@ class DistanceToRobot(_RobotFunction):
         _node: QgsExpressionNodeFunction,
     ):
         robot, geometry, crs = (None if _is_null(value) else value for value in values)
-        robots = self._fleet.robots
-        place = None if robots is None or robot is None else robots.place(str(robot))
-        if place is None:
+        robots = None if robot is None else self._fleet.read(str(robot))
+        place = None if robots is None else robots.place(str(robot))
+        if robots is None or place is None:
             return None
         if geometry is None:
             geometry = context.feature().geometry() if context is not None else None
@@ -463,18 +552,19 @@ class RobotValue(_RobotFunction):
         _parent: QgsExpression,
         _node: QgsExpressionNodeFunction,
     ):
-        robots = self._fleet.robots
-        if robots is None or values[0] is None or values[0] == NULL:
+        if values[0] is None or values[0] == NULL:
             return None
-        return self._value(robots, str(values[0]))
+        robots = self._fleet.read(str(values[0]))
+        return None if robots is None else self._value(robots, str(values[0]))
 
 
 def robot_values(fleet: SnapshotHolder) -> list[RobotValue]:
     """Return the functions; each needs to be kept as long as QGIS has it."""
+    notes = _NOTES + _OUT_OF_VIEW
     return [
-        RobotValue("robot_state", _STATE_HELP + _NOTES, fleet, RobotSnapshot.state),
-        RobotValue("robot_battery", _BATTERY_HELP + _NOTES, fleet, RobotSnapshot.charge),
-        RobotValue("robot_age", _AGE_HELP + _NOTES, fleet, RobotSnapshot.silence),
+        RobotValue("robot_state", _STATE_HELP + notes, fleet, RobotSnapshot.state),
+        RobotValue("robot_battery", _BATTERY_HELP + notes, fleet, RobotSnapshot.charge),
+        RobotValue("robot_age", _AGE_HELP + notes, fleet, RobotSnapshot.silence),
     ]
 
 

@@ -96,9 +96,9 @@ class FleetPlugin:
         alarms = self._add(WindowAlarms(iface, window, self._surfaces))
         desk, notices, connections = window.desk, window.notices, window.dock.connection_panel.menu
         for part, *needs in (
-            (ExpressionUpdater, desk.state, desk.beat, self._fleet),
+            (ExpressionUpdater, desk.state, desk.view, desk.beat, self._fleet),
             (OptionsFactory, iface, window, alarms.watch),
-            (RobotLocator, iface, self._fleet, window),
+            (RobotLocator, iface, self._fleet, desk, window),
             (SiteDropHandler, iface, project, notices),
             (HelpActions, iface, MENU, window.dock),
             (RolesAction, iface, MENU),

@@ -28,7 +28,7 @@ from .request_tracker import RequestSender, RequestTracker, RoadStatus
 from .route_queries import RouteQuery
 from .sending import CommandSender
 from .validation import TargetRoutes, ValidationRunner
-from .view_subscription import ViewSubscription
+from .view_subscription import RobotSearch, ViewSubscription
 
 STOPPED_BY = "emergency stop"
 """What a gateway's refusal holds where an emergency stop is the reason."""
@@ -105,6 +105,7 @@ class FleetController(QObject):
         self.view = ViewSubscription(
             canvas, state, self.site_to_canvas, self.drafts, self.sender, clock, self
         )
+        self.search = RobotSearch("robots", state, self.sender, self)
         self.selection.changed.connect(lambda: self.view.select(self.selection.robots))
         self._rules = CommandChecks(project, self.site_to_canvas, state, self)
         self.checks = ValidationRunner(self.drafts, self._rules.check_command, self)
@@ -114,7 +115,7 @@ class FleetController(QObject):
         self.target_ways = TargetRoutes(self.drafts, self.checks, state, self.sender, self)
         self.sending = CommandSender(self.drafts, self.checks, self.target_ways, self.orders, self)
         self._rules.changed.connect(self.sending.outgoing.begin_anew)
-        for receiver in (self.target_ways, self.preview, self.view, self.orders):
+        for receiver in (self.target_ways, self.preview, self.view, self.search, self.orders):
             self.sender.add_receiver(receiver)
         self.orders.answered.connect(lambda _: self.emergency_changed.emit())
         self._follow_state()
@@ -215,6 +216,7 @@ class FleetController(QObject):
         self.target_ways.watch()
         self.preview.watch()
         self.view.renew()
+        self.search.renew()
 
     def _emergency_reported(self) -> None:
         if not self.state.emergency.in_force:

@@ -1,19 +1,21 @@
-"""What the desk asks the gateway to be told of, where there are too many robots to be told of each."""
+"""What the desk asks the gateway to be told of, and to find, where there are too many robots to know each."""
 
 from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import Any, NamedTuple
 
 from qgis.core import QgsPointXY, QgsRectangle
 from qgis.gui import QgsMapCanvas
-from qgis.PyQt.QtCore import QObject
+from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import positions
 from ...robot_bridge.core.messages.base import is_robot_name, to_json
 from ...robot_bridge.core.messages.positions import AlarmLimits, FindRobots, PositionForm, Subscribe, View
+from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
 from ..gateway_client.protocol import VIEWS_FROM
@@ -38,8 +40,105 @@ EDGE = tuple(itertools.product((0.0, 0.25, 0.5, 0.75, 1.0), repeat=2))
 """Where the canvas is looked at: its edges may be bent in the site frame."""
 
 
+class FoundRobot(NamedTuple):
+    """A robot that the gateway found; ``heard`` is when it was heard last, on the monotonic clock."""
+
+    name: str
+    state: RobotState
+    heard: float
+
+
+class RobotSearch(QObject):
+    """Has the gateway find robots by a part of their names, while the desk is not told of every one.
+
+    ``what`` tells it from other searches.
+    """
+
+    answered = pyqtSignal()
+    """Which robots there are, or that the gateway does not say, is known of the text that was asked for."""
+
+    def __init__(self, what: str, state: FleetState, sender: RequestSender, parent: QObject | None = None):
+        super().__init__(parent)
+        self._key, self._state, self._sender = f"{FindRobots.method} {what} ", state, sender
+        self._numbers = itertools.count(1)
+        self._text = ""
+        self._asked_for = ("", "")
+        """The text that was asked for last, and the key of that request."""
+        self._asked_at = -LEAST_REST_S
+        self._answer: tuple[str, tuple[FoundRobot, ...]] = ("", ())
+        """The text that was answered last, and the robots."""
+
+    def search(self, text: str) -> None:
+        """Find robots with ``text`` in their names; none where that can be in no name."""
+        self._text = text if _can_be_in_name(text) else ""
+
+    def found(self, text: str) -> tuple[FoundRobot, ...]:
+        """Return the robots that a search for ``text`` found, none while that is not answered."""
+        return self._answer[1] if text and self._answer[0] == text else ()
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The robots that the search found."""
+        return tuple(robot.name for robot in self.found(self._text))
+
+    def awaits(self, text: str) -> bool:
+        """Tell whether there may be robots with ``text`` in their names of whom nothing is known yet."""
+        return self._is_of_use and _can_be_in_name(text) and self._answer[0] != text
+
+    @property
+    def _is_of_use(self) -> bool:
+        state = self._state
+        return state.robots.fleet is not None and state.link.phase is ConnectionPhase.CONNECTED
+
+    def renew(self) -> None:
+        """Ask for what is searched for, unless that was asked for; called all the time."""
+        if not self._is_of_use:
+            # It is asked anew on the next link; what was found stays until then, unless all are known.
+            self._asked_for = ("", "")
+            if self._state.robots.fleet is None:
+                self._answer = ("", ())
+            return
+        now = self._state.clock.steady()
+        if self._text == self._asked_for[0] or now - self._asked_at < LEAST_REST_S:
+            return
+        self._asked_for, self._asked_at = (self._text, f"{self._key}{next(self._numbers)}"), now
+        if not self._text:
+            return
+        request = OperatorRequest(
+            self._asked_for[1], FindRobots.method, to_json(FindRobots(self._text)), requested_at=now
+        )
+        try:
+            self._sender.submit(request)
+        except FleetError:
+            # The link has just gone.
+            self._asked_for = ("", "")
+
+    def accept_answer(self, answer: RequestResult) -> bool:
+        """Take in what was found; false when it is the answer to something else."""
+        if not answer.order.key.startswith(self._key):
+            return False
+        if answer.order.key == self._asked_for[1]:
+            robots = (answer.result or {}).get("robots", [])
+            self._answer = self._asked_for[0], _found_robots(robots, self._state.clock.steady())
+            self.answered.emit()
+        return True
+
+
+def _found_robots(robots: list[dict[str, Any]], now: float) -> tuple[FoundRobot, ...]:
+    try:
+        found = [FoundRobot(one["robot"], RobotState(one["state"]), now - one["age"]) for one in robots]
+        return tuple(one for one in found if is_robot_name(one.name))
+    except (KeyError, TypeError, ValueError):
+        # Not as a gateway tells of robots: nothing is known of them.
+        return ()
+
+
+def _can_be_in_name(text: str) -> bool:
+    return bool(text) and is_robot_name(f"0{text}")
+
+
 class ViewSubscription(QObject):
-    """Asks for the robots in the canvas, with those that are selected, drafted for, alarmed or searched for.
+    """Asks for the robots in the canvas, with those selected, drafted for, alarmed, searched for or named.
 
     Nothing is asked for where the fleet is small, or the gateway knows no views: all robots come then.
     """
@@ -57,14 +156,11 @@ class ViewSubscription(QObject):
         super().__init__(parent)
         self._canvas, self._state, self._site_to_canvas = canvas, state, site_to_canvas
         self._drafts, self._sender, self._clock = drafts, sender, clock
-        self._numbers = itertools.count(1)
         self._selected: tuple[str, ...] = ()
         self._alarmed: tuple[str, ...] = ()
-        self._found: tuple[str, ...] = ()
+        self._named: tuple[str, ...] = ()
         self._limits = AlarmLimits()
-        self._search = ""
-        self._asked_for = ("", "")
-        """The text that was searched for last, and the key of that request."""
+        self._search = RobotSearch("list", state, sender, self)
         self._asked: View | None = None
         self._looked_at = -LEAST_REST_S
         self._seen: tuple[QgsRectangle, Bounds] | None = None
@@ -78,12 +174,20 @@ class ViewSubscription(QObject):
         """Be told of these robots, which have alarms, and of all that get some by ``limits``."""
         self._alarmed, self._limits = tuple(itertools.islice(robots, MOST_ALARMED)), limits
 
+    def watch_named(self, robots: Iterable[str]) -> None:
+        """Be told of these robots, which expressions name, as far as there is room beside all others."""
+        self._named = tuple(robots)
+
     def search(self, text: str) -> None:
-        """Be told of robots with ``text`` in their names wherever they are, as many as a search finds."""
-        self._search = text.strip()
+        """Be told of robots with ``text`` in their names wherever they are, as many as a search finds.
+
+        Of several words, which may be of something else, it is the longest.
+        """
+        self._search.search(max(text.split(), key=len, default=""))
 
     def renew(self) -> None:
         """Ask for what the canvas shows now, unless that is what was asked for; called all the time."""
+        self._search.renew()
         site = self._state.site
         if site is None or self._state.link.phase is not ConnectionPhase.CONNECTED:
             self._asked, self._seen = None, None
@@ -97,36 +201,19 @@ class ViewSubscription(QObject):
         if now - self._looked_at < LEAST_REST_S:
             return
         self._looked_at = now
-        if fleet is not None:
-            self._find()
         if (view := self._wanted(site.bounds)) is not None:
             self._subscribe(view)
 
     def accept_answer(self, answer: RequestResult) -> bool:
         """Take in what a search found; false when it is the answer to something else."""
-        if answer.order.method != FindRobots.method:
-            return False
-        if answer.order.key == self._asked_for[1]:
-            robots = (answer.result or {}).get("robots", [])
-            self._found = tuple(str(one.get("robot")) for one in robots)
-        return True
-
-    def _find(self) -> None:
-        words = self._search.split()
-        text = max(words, key=len, default="")[:60]
-        if text == self._asked_for[0]:
-            return
-        self._found = ()
-        self._asked_for = text, f"find_robots {next(self._numbers)}"
-        if text:
-            self._submit(OperatorRequest(self._asked_for[1], FindRobots.method, to_json(FindRobots(text))))
+        return self._search.accept_answer(answer)
 
     def _wanted(self, site: Bounds) -> View | None:
         """Return the view to ask for, None where what was asked for will do."""
         canvas = self._in_site(site)
         draft = self._drafts.draft
         drafted = () if draft is None else (draft.robot,)
-        wanted = (*drafted, *self._selected, *self._found, *self._alarmed)
+        wanted = (*drafted, *self._selected, *self._search.names, *self._alarmed, *self._named)
         # A gateway refuses the whole view for a name that can be no robot's.
         always = dict.fromkeys(filter(is_robot_name, wanted))
         told = View(canvas, list(always)[: positions.MOST_ALWAYS], alarms=self._limits)
@@ -160,14 +247,12 @@ class ViewSubscription(QObject):
         self._asked = view
         # Rate and form are the connection's own.
         params = to_json(Subscribe(form=PositionForm.COLUMNS, view=view))
-        self._submit(OperatorRequest("view", Subscribe.method, params))
-
-    def _submit(self, request: OperatorRequest) -> None:
+        request = OperatorRequest("view", Subscribe.method, params, requested_at=self._clock.steady())
         try:
-            self._sender.submit(replace(request, requested_at=self._clock.steady()))
+            self._sender.submit(request)
         except FleetError:
             # The link has just gone: it is asked for again on the next one.
-            self._asked, self._asked_for = None, ("", "")
+            self._asked = None
 
 
 def _grown(bounds: Bounds) -> Bounds:

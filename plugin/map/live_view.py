@@ -30,6 +30,8 @@ EVERY_HALF = EVERY_SECOND // 2
 PART_OF_THE_WINDOW = 0.5
 """The part of the window's time that painting may take; on a slow computer frames come less often."""
 ZOOM_METRES = 30.0
+SOUGHT_FOR_S = 5.0
+"""Seconds for which the gateway is waited for, to tell where a robot is that was out of view."""
 NEW_PLANS = 50
 """Plans that are made for one frame: a desk that connects is told of a thousand at once."""
 
@@ -50,6 +52,8 @@ class LiveView(QObject):
         self._plans = TaskPaths()
         self._trails = Trails()
         self.following = FollowMode.NOBODY
+        self._sought: tuple[str, float] | None = None
+        """A robot to be shown once it is known where it is, and until when."""
         self._by_layer = False
         self.layer_every = EVERY_SECOND
         """After how many pulls the layer of robots is written again."""
@@ -118,16 +122,42 @@ class LiveView(QObject):
         self._frame.start()
 
     def zoom_to(self, *robots: str) -> None:
-        """Show ``robots`` and their surroundings."""
-        views = [self._desk.state.robots.view(robot, self._desk.clock.steady()) for robot in robots]
+        """Show ``robots`` and their surroundings; a selected one out of view as soon as it is known."""
+        self._sought = None
+        now = self._desk.clock.steady()
+        views = [self._desk.state.robots.view(robot, now) for robot in robots]
         placed = [view for view in views if view is not None and view.has_pose]
         if not placed:
             for robot in robots[:1]:
-                self._desk.complained.emit(
-                    tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
-                )
+                if self._is_asked_for(robot):
+                    self._sought = robot, now + SOUGHT_FOR_S
+                else:
+                    self._complain_of_no_place(robot)
             return
         self._show(np.array([(view.report.x, view.report.y) for view in placed]))
+
+    def _is_asked_for(self, robot: str) -> bool:
+        """Tell whether the gateway will say where a robot is that the desk does not know."""
+        robots = self._desk.state.robots
+        is_out_of_view = robots.fleet is not None and robots.row(robot) is None
+        return is_out_of_view and robot in self._desk.selection.robots
+
+    def _show_sought(self) -> None:
+        if self._sought is None:
+            return
+        robot, until = self._sought
+        if robot not in self._desk.selection.robots:
+            self._sought = None
+        elif not self._is_asked_for(robot):
+            self.zoom_to(robot)
+        elif self._desk.clock.steady() > until:
+            self._sought = None
+            self._complain_of_no_place(robot)
+
+    def _complain_of_no_place(self, robot: str) -> None:
+        self._desk.complained.emit(
+            tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
+        )
 
     def show_place(self, x: float, y: float) -> None:
         """Show a place and its surroundings, metres in the site frame."""
@@ -156,6 +186,7 @@ class LiveView(QObject):
         self._pulls += 1
         # In a piece of its own: the lists that look at the news are painted in this one.
         self._after_pull.start(0)
+        self._show_sought()
 
     def _show_pulled(self) -> None:
         picture = self._desk.state.robots

@@ -1644,6 +1644,11 @@
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />
+            <source>&lt;p&gt;Of more than 5 000 robots QGIS is told of those on the map. Another one is asked for when an expression names it, and for a minute from then on, up to 200 of them: about a second later it has its value, NULL until then.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Amb més de 5 000 robots, el QGIS rep dades dels que són al mapa. Un altre es demana quan una expressió l'anomena, i durant un minut des de llavors, fins a 200: al cap d'un segon aproximadament té el seu valor; fins aleshores, NULL.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>

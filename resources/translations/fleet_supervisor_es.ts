@@ -1644,6 +1644,11 @@
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />
+            <source>&lt;p&gt;Of more than 5 000 robots QGIS is told of those on the map. Another one is asked for when an expression names it, and for a minute from then on, up to 200 of them: about a second later it has its value, NULL until then.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;Con más de 5 000 robots, QGIS recibe datos de los que están en el mapa. Otro se pide cuando una expresión lo nombra, y durante un minuto desde entonces, hasta 200: aproximadamente un segundo después tiene su valor; hasta entonces, NULL.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flota</translation>
         </message>

@@ -1636,6 +1636,11 @@
         </message>
         <message>
             <location filename="../../plugin/expressions.py" />
+            <source>&lt;p&gt;Of more than 5 000 robots QGIS is told of those on the map. Another one is asked for when an expression names it, and for a minute from then on, up to 200 of them: about a second later it has its value, NULL until then.&lt;/p&gt;</source>
+            <translation>&lt;p&gt;5 000-nél több robot közül a QGIS azokról értesül, amelyek a térképen vannak. Egy másikat akkor kér le, amikor egy kifejezés megnevezi, és onnantól egy percig, legfeljebb 200-at: körülbelül egy másodperccel később van értéke, addig NULL.&lt;/p&gt;</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/expressions.py" />
             <source>Fleet</source>
             <translation>Flotta</translation>
         </message>

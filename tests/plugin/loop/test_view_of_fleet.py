@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
 from fleet_supervisor.plugin.control import view_subscription
 from fleet_supervisor.plugin.gateway_client import protocol
+from qgis.core import NULL, QgsExpression
+from qgis.gui import QgsLocatorWidget
+from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QLabel, QLineEdit
 
 from tests.support.bridge.bridge_programs import wait_until
@@ -11,6 +16,23 @@ from tests.support.operators import ask
 
 SECONDS = 15
 CRS = "EPSG:32633"
+
+
+@pytest.fixture
+def iface(iface):
+    """A window with QGIS's locator in it."""
+    widget = QgsLocatorWidget(iface)
+    widget.show()
+    iface.locator = widget.locator()
+    return iface
+
+
+@pytest.fixture
+def is_large(monkeypatch):
+    """Two robots are as many as 5 000."""
+    monkeypatch.setattr(protocol, "VIEWS_FROM", 1)
+    monkeypatch.setattr(view_subscription, "VIEWS_FROM", 1)
+    monkeypatch.setattr(view_subscription, "VIEWS_UNTIL", 0)
 
 
 def show(operator, x_min, y_min, x_max, y_max):
@@ -23,11 +45,8 @@ def sees(operator, *robots):
 
 
 def test_the_desk_knows_who_is_on_the_map_searched_for_or_selected_and_stops_all(
-    loop, operator, plugin, iface, monkeypatch
+    is_large, loop, operator, plugin
 ):
-    monkeypatch.setattr(protocol, "VIEWS_FROM", 1)
-    monkeypatch.setattr(view_subscription, "VIEWS_FROM", 1)
-    monkeypatch.setattr(view_subscription, "VIEWS_UNTIL", 0)
     loop.start_robot("r1", (20, 8, 0))
     loop.start_robot("van2", (150, 120, 0))
     wait_until(lambda: placed(loop) == {"r1", "van2"})
@@ -55,6 +74,33 @@ def test_the_desk_knows_who_is_on_the_map_searched_for_or_selected_and_stops_all
     )
     show(operator, 120, 100, 180, 140)
     sees(operator, "van2")
+
+
+def test_locator_and_expressions_reach_who_is_not_on_the_map(is_large, loop, operator, plugin, iface):
+    loop.start_robot("r1", (20, 8, 0))
+    loop.start_robot("van2", (150, 120, 0))
+    wait_until(lambda: placed(loop) == {"r1", "van2"})
+    operator.connect(f"{loop.address}/desk", "anna")
+    operator.wait("the site", lambda: operator.desk.state.site, SECONDS)
+    show(operator, 0, 0, 60, 40)
+    sees(operator, "r1")
+    e, n = operator.desk.state.site.origin
+    field = iface.findChild(QgsLocatorWidget).findChild(QLineEdit)
+    listed = []
+    iface.locator.foundResult.connect(lambda result: listed.append(result.displayString))
+    field.setFocus()
+    QTest.keyClicks(field, "rb VAN")
+    operator.wait("the robot in the locator", lambda: listed == ["van2"], SECONDS)
+    sees(operator, "r1")
+    QTest.keyClick(field, Qt.Key.Key_Return)
+    operator.wait("the map there", lambda: abs(iface.canvas.center().x() - e - 150) < 1, SECONDS)
+    assert operator.desk.selection.robots == ("van2",)
+    operator.desk.selection.select(None)
+    sees(operator, "van2")
+    far = QgsExpression(f"distance_to_robot('r1', make_point({e}, {n}), '{CRS}')")
+    operator.wait("r1 out of what expressions know", lambda: far.evaluate() == NULL, SECONDS)
+    operator.wait("its distance", lambda: far.evaluate() != NULL, SECONDS)
+    assert far.evaluate() == pytest.approx(21.5, abs=0.5)
 
 
 def placed(loop):

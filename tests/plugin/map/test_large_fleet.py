@@ -85,7 +85,14 @@ def test_selected_robots_are_asked_for_wherever_they_are(desk, gateway, wait):
 
 def test_the_search_brings_robots_from_anywhere(desk, gateway, wait):
     gateway.answers["find_robots"] = lambda params: {
-        "result": {"t": 1.0, "robots": [{"robot": f"x-{params['text']}"}, {"robot": "no name"}], "count": 2}
+        "result": {
+            "t": 1.0,
+            "robots": [
+                {"robot": f"x-{params['text']}", "state": "fresh", "age": 0.1},
+                {"robot": "no name", "state": "fresh", "age": 0.1},
+            ],
+            "count": 2,
+        }
     }
     desk.dock.robots._search.setText("van 17")
     assert asks(gateway, wait, lambda one: one["always"])["always"] == ["x-van"]
