@@ -14,7 +14,14 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import positions
 from ...robot_bridge.core.messages.base import is_robot_name, to_json
-from ...robot_bridge.core.messages.positions import AlarmLimits, FindRobots, PositionForm, Subscribe, View
+from ...robot_bridge.core.messages.positions import (
+    LONGEST_SEARCH,
+    AlarmLimits,
+    FindRobots,
+    PositionForm,
+    Subscribe,
+    View,
+)
 from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.connection_status import ConnectionPhase
 from ..gateway_client.fleet_state import FleetState, OperatorRequest, RequestResult
@@ -67,6 +74,8 @@ class RobotSearch(QObject):
         self._asked_at = -LEAST_REST_S
         self._answer: tuple[str, tuple[FoundRobot, ...]] = ("", ())
         """The text that was answered last, and the robots."""
+        self._page: tuple[FoundRobot, ...] = ()
+        """The robots that were found so far of what was asked for."""
 
     def search(self, text: str) -> None:
         """Find robots with ``text`` in their names; none where that can be in no name."""
@@ -101,14 +110,18 @@ class RobotSearch(QObject):
         now = self._state.clock.steady()
         if self._text == self._asked_for[0] or now - self._asked_at < LEAST_REST_S:
             return
-        self._asked_for, self._asked_at = (self._text, f"{self._key}{next(self._numbers)}"), now
-        if not self._text:
+        self._asked_at, self._page = now, ()
+        self._ask(FindRobots(self._text))
+
+    def _ask(self, request: FindRobots) -> None:
+        self._asked_for = request.text, f"{self._key}{next(self._numbers)}"
+        if not request.text:
             return
-        request = OperatorRequest(
-            self._asked_for[1], FindRobots.method, to_json(FindRobots(self._text)), requested_at=now
-        )
+        now = self._state.clock.steady()
         try:
-            self._sender.submit(request)
+            self._sender.submit(
+                OperatorRequest(self._asked_for[1], request.method, to_json(request), requested_at=now)
+            )
         except FleetError:
             # The link has just gone.
             self._asked_for = ("", "")
@@ -117,11 +130,23 @@ class RobotSearch(QObject):
         """Take in what was found; false when it is the answer to something else."""
         if not answer.order.key.startswith(self._key):
             return False
-        if answer.order.key == self._asked_for[1]:
-            robots = (answer.result or {}).get("robots", [])
-            self._answer = self._asked_for[0], _found_robots(robots, self._state.clock.steady())
-            self.answered.emit()
+        text, key = self._asked_for
+        if answer.order.key != key:
+            return True
+        result, is_first = answer.result or {}, not self._page
+        self._page += _found_robots(result.get("robots", []), self._state.clock.steady())
+        if is_first and result.get("count", 0) > len(self._page) > 0 and self._page[-1].name < text:
+            # The gateway tells of the first by name: the very one may come after them, as 17 does after 1017.
+            self._ask(FindRobots(text, after=_before(text), limit=1))
+            return True
+        self._answer = text, self._page
+        self.answered.emit()
         return True
+
+
+def _before(text: str) -> str:
+    """Return what comes after all names before ``text``, by the order of names."""
+    return f"{text[:-1]}{chr(ord(text[-1]) - 1)}{'~' * LONGEST_SEARCH}"[:LONGEST_SEARCH]
 
 
 def _found_robots(robots: list[dict[str, Any]], now: float) -> tuple[FoundRobot, ...]:

@@ -60,8 +60,9 @@ def has_robots(gateway, *names):
 
     def find(params):
         answers.wait(5)
-        found = [{"robot": name, **FRESH} for name in names if params["text"].lower() in name.lower()]
-        return {"result": {"t": 1.0, "robots": found, "count": len(found)}}
+        found = sorted(name for name in names if params["text"].lower() in name.lower())
+        told = [{"robot": name, **FRESH} for name in found if name > params.get("after", "")]
+        return {"result": {"t": 1.0, "robots": told[: params.get("limit", 50)], "count": len(found)}}
 
     gateway.answers["find_robots"] = find
     return answers
@@ -139,6 +140,14 @@ def test_a_robot_that_the_gateway_found_is_listed_selected_and_shown(
     assert iface.texts() == []
     tell(gateway, make_robot("van2", 150, 120))
     wait(lambda: abs(iface.canvas.center().x() - 488150) < 1, what="the map where it is")
+
+
+def test_the_very_name_is_found_behind_many_that_hold_it(locator, gateway, wait):
+    has_robots(gateway, "17", *(f"1{number}17" for number in range(10, 70)), "1700").set()
+    locator.type("rb 17")
+    wait(lambda: "17" in locator.rows(), what="what the gateway found")
+    assert locator.marked() == "17"
+    assert len(gateway.requests_of("find_robots")) == 2
 
 
 def test_nothing_is_waited_for_in_the_windows_thread(locator, gateway, wait):
