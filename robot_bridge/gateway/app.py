@@ -313,7 +313,6 @@ def request_handlers(
         fleet.roads,
         fleet.roads.closures,
         fleet.roads.traffic,
-        fleet.snapshots,
         fleet.views,
         fleet.observations,
         fleet.maps,

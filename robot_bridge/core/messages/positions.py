@@ -262,10 +262,11 @@ class Subscribe(DeskRequest[Done]):
 
 @dataclass(frozen=True)
 class GetPositions(DeskRequest[Positions]):
-    """Ask for the position of every robot (the second paper's ``get_positions``)."""
+    """Ask for the position of every robot (the second paper's ``get_positions``), or of those in a view."""
 
     method = "get_positions"
     least_role = Role.VIEWER
+    view: View | None = None
 
 
 @dataclass(frozen=True)

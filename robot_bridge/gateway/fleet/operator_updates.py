@@ -18,13 +18,10 @@ from ...core.messages.positions import (
     PLACE_COLUMNS,
     POSITION_ALWAYS,
     POSITION_TEXTS,
-    GetPositions,
     PositionForm,
-    Positions,
     RobotReport,
 )
 from ...core.position_frame import METHOD, PLACE_VALUE, POSITION_VALUE, packed_frame
-from ..model.events import Encoded, handles
 from ..model.robots import Robot, Robots
 
 # --- Robots as reports, an object for each; no I/O ---
@@ -259,12 +256,6 @@ class Snapshots:
         if len(self._made) > MOST_RATES:
             del self._made[next(iter(self._made))]
         return made[form, revision]
-
-    @handles(GetPositions)
-    async def now(self) -> Encoded[Positions]:
-        """Return where every robot is now."""
-        rows = reports_of(self._robots.changed(EVERYTHING), self._clock.time(), ReportRow)
-        return Encoded(positions(rows, everything=True))
 
     def _make(self, revision: int, form: PositionForm) -> Snapshot:
         return Snapshot(self._encoded(revision, form), self._robots.revision)

@@ -31,7 +31,9 @@ from ...core.messages.positions import (
     FindRobots,
     FleetView,
     FoundRobots,
+    GetPositions,
     PositionForm,
+    Positions,
     View,
 )
 from ..model.events import Encoded, handles
@@ -328,6 +330,14 @@ class FleetViews:
             self._due_at = now + max(PLACES_EVERY_S, took / PLACES_PART)
         return self._places
 
+    @handles(GetPositions)
+    async def now(self, request: GetPositions) -> Encoded[Positions]:
+        """Return where every robot is now, or what there is to be told by a view."""
+        if request.view is not None:
+            return Encoded(ViewWatch(self, request.view, 1.0, PositionForm.ROWS).everything())
+        rows = reports_of(self.robots.changed(EVERYTHING), self.clock.time(), ReportRow)
+        return Encoded(positions(rows, everything=True))
+
     @handles(FindRobots)
     async def find(self, request: FindRobots) -> Encoded[FoundRobots]:
         """Return the robots whose names hold a text, by name."""
@@ -372,11 +382,18 @@ class ViewWatch:
         if untracked := sorted(told - self._told - set(removed)):
             news["untracked"] = untracked
         if fleet != self._seen_view:
-            news["view"] = {name: value for name, value in vars(fleet).items() if value is not None}
+            news["view"] = _told(fleet)
         self._seen, self._seen_view = robots.revision, fleet
         if not (fresh or removed or news):
             return None
         return self._encoded(fresh, removed, news, everything=seen == EVERYTHING)
+
+    def everything(self) -> dict[str, Any]:
+        """Return all that there is to be told now, as the result of ``get_positions``."""
+        fleet = self._choose()
+        there = self._views.robots.known(self._chosen)
+        rows = reports_of(there, self._views.clock.time(), ReportRow)
+        return {**positions(rows, everything=True), "view": _told(fleet)}
 
     def _choose(self) -> FleetView:
         """Choose whom to tell of, where everybody was looked up anew or the view is another one."""
@@ -409,3 +426,7 @@ class ViewWatch:
         names = [robot.name for robot in robots]
         news = {"removed": list(removed), "everything": everything, **news}
         return packed_table(t, names, columns, words, self.form, **news)
+
+
+def _told(fleet: FleetView) -> dict[str, Any]:
+    return {name: value for name, value in vars(fleet).items() if value is not None}

@@ -17,6 +17,7 @@ from robot_bridge.core.messages.positions import (
     MOST_CELLS,
     AlarmLimits,
     FindRobots,
+    GetPositions,
     PositionForm,
     View,
 )
@@ -386,6 +387,31 @@ def in_words(columns, words):
         name: [None if v != v else words[int(v)] if name in texts else v for v in values.tolist()]
         for name, values in columns.items()
     }
+
+
+# --- asked for once ---------------------------------------------------------------------------------------
+
+
+def asked_once(fleet, view):
+    result = asyncio.run(fleet.views.now(GetPositions(view))).values
+    return {robot.robot for robot in result["robots"]}, result
+
+
+def test_who_asks_once_is_told_what_a_desk_is_told_at_first_by_the_same_view():
+    fleet = Fleet(a=(1, 1), b=(50, 50), c=(10, 0), d=(99, 99), e=(70, 70))
+    fleet.put("e", 70, 70, battery=0.1)
+    names, result = asked_once(fleet, View(NEAR, always=["d", "gone"], alarms=LIMITS))
+    desk = fleet.desk(always=["d", "gone"], alarms=LIMITS)
+    desk.listen()
+    assert names == set(desk.at) == {"a", "c", "d", "e"}
+    assert (result["everything"], result["view"]) == (True, desk.view)
+    names, result = asked_once(fleet, View(NEAR, always=["d"], most=1))
+    assert names == {"d"} and sum(result["view"]["density"].fresh) == result["view"]["inside"] == 2
+
+
+def test_without_a_view_every_robot_is_told():
+    names, result = asked_once(Fleet(a=(1, 1), b=(50, 50)), None)
+    assert names == {"a", "b"} and "view" not in result
 
 
 # --- the search -------------------------------------------------------------------------------------------
