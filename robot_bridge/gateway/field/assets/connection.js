@@ -8,6 +8,8 @@ const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
 /** Close codes that say that the token, or the session, does not hold any more. */
 const ENDED = new Set([4003, 4004]);
+/** The rate of a subscription cannot be 0: so seldom, and of next to nobody, where positions are asked for. */
+const QUIET = { rate: 0.01, form: "places", view: { bounds: [0, 0, 1, 1], most: 1 } };
 
 /** An error that the gateway answered with, or the absence of an answer (`silent`). */
 export class AnswerError extends Error {
@@ -51,7 +53,8 @@ function openSocket(token) {
 
 /**
  * Events: `up` (detail: the answer to hello), `down`, `ended` (detail: why the session is over), `notice`
- * (detail: {method, params}), `positions` (detail: {robots: rows by name, everything, removed}).
+ * (detail: {method, params}), `positions` (detail: {robots: rows by name, everything, removed,
+ * view: null where nothing is new of it}; removed also names those that the page is told of no more).
  */
 export class Connection extends EventTarget {
   constructor() {
@@ -131,20 +134,30 @@ export class Connection extends EventTarget {
     });
   }
 
-  /** Choose how positions come: told when they change, or asked for every 600 ms. */
-  choosePositions(byPolling, rate, form) {
+  /** Choose how positions come: told when they change, or asked for every 600 ms; of all robots, or by a view. */
+  choosePositions(byPolling, rate, form, view) {
     this.byPolling = byPolling;
-    clearInterval(this._polling);
+    this._wantedView = view ? { view } : {};
     if (!this.isUp) return;
     if (!byPolling) {
-      this.ask("subscribe", { rate, form }).catch(() => {});
-      return;
+      this._endPolling();
+      this.ask("subscribe", { rate, form, ...this._wantedView }).catch(() => {});
+    } else if (!this._polling) {
+      this.ask("subscribe", QUIET).catch(() => {});
+      this._polling = setInterval(() => this._poll(), 600);
     }
-    // The rate of a subscription cannot be 0: one in a hundred seconds, and the rest is asked for.
-    this.ask("subscribe", { rate: 0.01, form: "places" }).catch(() => {});
-    this._polling = setInterval(() => {
-      this.ask("get_positions", {}).then((answer) => this._tell("positions", rowsOf(answer)), () => {});
-    }, 600);
+  }
+
+  _poll() {
+    const asked = this._wantedView;
+    // What comes of an earlier view, or after positions are told again, is not what is wanted.
+    const isWanted = () => this.byPolling && asked === this._wantedView;
+    this.ask("get_positions", asked).then((answer) => isWanted() && this._tell("positions", rowsOf(answer)), () => {});
+  }
+
+  _endPolling() {
+    clearInterval(this._polling);
+    this._polling = null;
   }
 
   _open() {
@@ -170,13 +183,12 @@ export class Connection extends EventTarget {
     this.received += data.byteLength ?? data.length;
     if (typeof data !== "string") {
       this.positionsReceived += data.byteLength;
-      this._tell("positions", tableOf(data));
+      if (!this.byPolling) this._tell("positions", tableOf(data));
       return;
     }
     const message = JSON.parse(data);
     if (message.id === undefined || message.id === null) {
-      if (message.method === "positions") this._tell("positions", rowsOf(message.params));
-      else if (message.method) this._tell("notice", message);
+      if (message.method) this._tell("notice", message);
       return;
     }
     const one = this._waiting.get(message.id);
@@ -204,7 +216,7 @@ export class Connection extends EventTarget {
     const socket = this._socket, wasUp = this.isUp;
     this._socket = null;
     this.isUp = false;
-    clearInterval(this._polling);
+    this._endPolling();
     for (const { reject, timer } of this._waiting.values()) {
       clearTimeout(timer);
       reject(new AnswerError("no answer", { silent: true }));
@@ -245,7 +257,11 @@ export class Connection extends EventTarget {
 /** Read positions that came as rows. */
 function rowsOf(params) {
   const robots = new Map(params.robots.map((one) => [one.robot, one]));
-  return { robots, everything: params.everything === true, removed: params.removed ?? [] };
+  return { robots, ...newsOf(params) };
+}
+
+function newsOf({ everything, removed, untracked, view }) {
+  return { everything: everything === true, removed: [...(removed ?? []), ...(untracked ?? [])], view: view ?? null };
 }
 
 const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities"]);
@@ -268,5 +284,5 @@ export function tableOf(buffer) {
     });
     robots.set(robot, found);
   });
-  return { robots, everything: head.everything === true, removed: head.removed ?? [] };
+  return { robots, ...newsOf(head) };
 }

@@ -5,9 +5,14 @@ import { Connection, newId, otherPages, SILENT_AFTER_MS } from "/field/connectio
 import { SiteMap } from "/field/map.js";
 import { EmergencyStop } from "/field/stop.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
+import { ViewChoice } from "/field/view.js";
 
 const TOKEN = "fleet-field-token", LANGUAGE = "fleet-field-language";
 const LISTED = 50;
+/** Milliseconds that the map has to be still before the gateway is asked for what it shows, and keys before a search. */
+const STILL_MS = 250;
+/** Milliseconds after which a list that stays open is asked for again. */
+const LISTED_FOR_MS = 5000;
 const by = (id) => document.getElementById(id);
 
 class Field {
@@ -22,6 +27,10 @@ class Field {
     this.site = null;
     this.traffic = [];
     this.budget = new PositionBudget();
+    this.views = new ViewChoice();
+    /** How the gateway counts the fleet, null where all robots are told. */
+    this.fleet = null;
+    this.found = { robots: new Map(), count: 0, at: -Infinity };
     this.connection = new Connection();
     this.map = new SiteMap(by("map"));
     this.stop = new EmergencyStop(
@@ -99,6 +108,8 @@ class Field {
     this.site = site;
     by("site").textContent = document.title = site.name;
     this.map.showSite(site);
+    this.views.restart();
+    this._renewView();
     if (site.left_out.length) this._banner("left-out", tr("Too much to draw: {what} are not all shown.", { what: site.left_out.join(", ") }));
     const mine = document.querySelector('meta[name="gateway"]').content;
     if (site.gateway !== mine) this._offerReload(mine, site.gateway);
@@ -122,7 +133,10 @@ class Field {
       // The site may be another publication, or the gateway another version, than before the link was lost.
       this._newSite();
     });
-    on("hello", (hello) => this._greeted(hello));
+    on("hello", (hello) => {
+      this._greeted(hello);
+      this._renewView();
+    });
     on("down", () => this._tick());
     on("ended", (reason) => this._signOut(reason));
     on("refused", (reason) => this._banner("refused", reason));
@@ -134,6 +148,8 @@ class Field {
     const before = this.account?.role;
     this.account = { name: hello.operator, role: hello.role };
     this.others = otherPages(hello.gateways);
+    this.bounds = hello.site.bounds;
+    this.views.count(hello.robots);
     this._banner("refused", "");
     this.stop.update(hello.emergency);
     by("account").textContent = tr("{name}, {role}", this.account);
@@ -141,8 +157,9 @@ class Field {
     this._setConnection("up");
   }
 
-  _positions({ robots, everything, removed }) {
+  _positions({ robots, everything, removed, view }) {
     if (everything) this.robots.clear();
+    if (everything || view) this.fleet = view;
     for (const name of removed) this.robots.delete(name);
     const at = performance.now();
     for (const [name, one] of robots) this.robots.set(name, { ...one, at });
@@ -220,12 +237,29 @@ class Field {
 
   _choosePositions() {
     this.budget.restart();
+    this._chooseView();
     this._subscribe();
   }
 
   _subscribe() {
     const { rate, form } = this.budget.step;
-    this.connection.choosePositions(by("updates").value === "poll", rate, form);
+    this.connection.choosePositions(by("updates").value === "poll", rate, form, this.views.view);
+  }
+
+  /** Return whether the view to ask for is another one now. A site that cannot be drawn is seen as a whole. */
+  _chooseView() {
+    return this.views.renew(this.map.seen ?? this.bounds, this.selected);
+  }
+
+  /** Ask for what the map shows of a large fleet, unless that is what was asked for. */
+  _renewView() {
+    clearTimeout(this._moving);
+    if (this.connection.isUp && this._chooseView()) this._subscribe();
+  }
+
+  _moved() {
+    clearTimeout(this._moving);
+    this._moving = setTimeout(() => this._renewView(), STILL_MS);
   }
 
   _setConnection(state) {
@@ -242,18 +276,45 @@ class Field {
   }
 
   _draw() {
-    this.map.showRobots(this.robots.values(), this.selected, !this.connection.isUp);
+    this.map.showRobots(this.robots.values(), this.fleet?.density, this.selected, !this.connection.isUp);
     if (!by("menu").hidden) this._list();
     this._showAlarms();
   }
 
+  /** Say how many robots of a large fleet are in view. */
+  _count(shown) {
+    const language = document.documentElement.lang, values = { n: shown.toLocaleString(language), all: this.fleet?.robots.toLocaleString(language) };
+    by("count").hidden = this.fleet === null;
+    by("count").textContent = !this.fleet
+      ? ""
+      : this.fleet.density && shown
+        ? tr("Robots here: {n} of {all}. Zoom in to see each.", values)
+        : tr("Robots here: {n} of {all}.", values);
+  }
+
+  /** Search at the gateway, which knows robots that the page is not told of. */
+  async _find() {
+    clearTimeout(this._typing);
+    const text = by("search").value.trim();
+    this.found.at = performance.now();
+    const asked = (this._asked = { text, limit: LISTED });
+    const answer = await this.connection.ask("find_robots", asked).catch(() => null);
+    // Another text was typed meanwhile, or there was no answer: it is asked for again.
+    if (answer === null || asked !== this._asked) return;
+    const at = performance.now(), robots = new Map(answer.robots.map((one) => [one.robot, { ...one, at }]));
+    this.found = { robots, count: answer.count, at };
+    this._list();
+  }
+
   _list() {
     const wanted = by("search").value.trim().toLowerCase();
-    const names = [...this.robots.keys()].filter((name) => name.toLowerCase().includes(wanted)).sort();
-    const shown = names.slice(0, LISTED), list = by("robots");
+    if (this.fleet && performance.now() - this.found.at > LISTED_FOR_MS) this._find();
+    const known = this.fleet ? this.found.robots : this.robots, list = by("robots");
+    const names = [...known.keys()].filter((name) => name.toLowerCase().includes(wanted)).sort();
+    const shown = names.slice(0, LISTED);
     while (list.children.length > shown.length) list.lastChild.remove();
     shown.forEach((name, k) => {
-      const one = this.robots.get(name);
+      const one = this.robots.get(name) ?? known.get(name);
       let button = list.children[k]?.firstChild;
       if (!button) {
         button = element("button");
@@ -267,20 +328,23 @@ class Field {
       const text = `${name}: ${tr(one.state)}`;
       if (button.textContent !== text) button.textContent = text;
     });
-    const more = names.length - shown.length;
+    const more = (this.fleet ? this.found.count : names.length) - shown.length;
     by("robots-more").textContent = more > 0 ? tr("{n} more: search for them", { n: more }) : names.length ? "" : tr("no robots");
   }
 
   _showAlarms() {
     const { geofence, nearness, links, suspensions } = this.alarms;
+    const lost = [...this.robots.values()].filter((one) => one.state === "lost");
     const texts = [
-      ...[...this.robots.values()].filter((one) => one.state === "lost").map(({ robot }) => tr("{robot} is lost", { robot })),
+      ...lost.map(({ robot }) => tr("{robot} is lost", { robot })),
       ...geofence.map((one) => tr("{robot} is in {name}", one)),
       ...nearness.map((one) => tr("{seen} is {m} m from {robot}", { ...one, m: one.metres.toFixed(1) })),
       ...links.map((one) => tr("link {link}: {text}", one)),
       ...suspensions.map((one) => tr("robot {robot} is kept out: {text}", { robot: one.robot, text: one.reason })),
     ];
-    const text = texts.length ? `${tr("Menu")} (${texts.length} !)` : tr("Menu");
+    // Of a large fleet the first thousand that are lost are named.
+    const alarms = texts.length + Math.max((this.fleet?.lost ?? 0) - lost.length, 0);
+    const text = alarms ? `${tr("Menu")} (${alarms} !)` : tr("Menu");
     if (by("menu").hidden && by("menu-button").textContent !== text) by("menu-button").textContent = text;
     const list = by("alarms"), said = texts.length ? texts.slice(0, LISTED) : [tr("none")];
     if (list.dataset.said === said.join("\n")) return;
@@ -296,12 +360,15 @@ class Field {
     this._endTarget();
     if (close) this._close("menu");
     by("robot").hidden = name === null;
+    const found = this.found.robots.get(name);
+    if (found && !this.robots.has(name)) this.robots.set(name, found);
+    this._draw();
     if (name !== null) {
       this._showRobot();
       this.map.lookAt(name, by("robot").offsetHeight);
       if (close) by("robot-close").focus();
     }
-    this._draw();
+    this._renewView();
   }
 
   _showRobot() {
@@ -429,7 +496,7 @@ class Field {
   _listenToPage() {
     const on = (id, type, act) => by(id).addEventListener(type, act);
     on("menu-button", "click", () => (by("menu").hidden ? this._openMenu() : this._close("menu")));
-    on("search", "input", () => this._list());
+    on("search", "input", () => this._typed());
     on("robot-close", "click", () => this._select(null));
     on("abort", "click", () => this._do("abort", { command: newId(), robot: this.selected, reason: "field page" }));
     on("pause", "click", () => this._do("pause_robot", { robot: this.selected, reason: "field page" }));
@@ -452,6 +519,8 @@ class Field {
     });
     this.map.addEventListener("robot", ({ detail }) => this._select(detail));
     this.map.addEventListener("place", ({ detail }) => this._choose(detail));
+    this.map.addEventListener("moved", () => this._moved());
+    this.map.addEventListener("drawn", ({ detail }) => this._count(detail));
     this.map.addEventListener("tiles-failed", () => this._banner("tiles", tr("The background map does not answer; everything else works.")));
     this.map.addEventListener("tiles-came", () => this._banner("tiles", ""));
     new ResizeObserver(() => this.map.resized()).observe(by("map"));
@@ -464,7 +533,14 @@ class Field {
     }
   }
 
+  _typed() {
+    this._list();
+    clearTimeout(this._typing);
+    if (this.fleet) this._typing = setTimeout(() => this._find(), STILL_MS);
+  }
+
   _openMenu() {
+    this.found.at = -Infinity;
     by("menu").hidden = false;
     by("menu-button").textContent = tr("Map");
     by("menu-button").setAttribute("aria-expanded", "true");

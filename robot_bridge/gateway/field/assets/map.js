@@ -1,4 +1,6 @@
-/** The map: the site on a Web Mercator map, and the robots on one canvas above it. */
+/** The map: the site on a Web Mercator map, and the robots, or how many are where, on one canvas above it. */
+
+import { cellsOf, grouped } from "/field/view.js";
 
 const STATES = {
   fresh: { fill: "#136b2c", text: "" },
@@ -12,6 +14,10 @@ const NAMED_AT_MOST = 80;
 const FINGER = 28;
 const SURFACES = "#c9c2b2", ROADS = "#7a6f5d", KEEPOUTS = "#b00020", OBSTACLES = "#4a4f55", BOUNDS = "#0b57a4";
 const LARGEST_ZOOM = 24;
+/** Pixels that circles of a density are apart, at least: room for a number, and for a finger. */
+const APART = 62;
+const RING = 5, CLOSER = 2;
+const COUNTED = [STATES.fresh.fill, STATES.lost.fill, STATES.offline.fill];
 
 /** Return the way from metres in the site frame to [lat, lon], by the polynomials of site.json. */
 export function earthOf({ centre, scale, lon, lat }) {
@@ -29,6 +35,25 @@ export function earthOf({ centre, scale, lon, lat }) {
   };
 }
 
+/** Return the way from [lat, lon] to metres in the site frame; beyond the site it is the straight one. */
+export function siteOf(polynomials) {
+  const { centre, scale, lon, lat } = polynomials, toEarth = earthOf(polynomials);
+  const [lonU, lonV, latU, latV] = [lon[4], lon[1], lat[4], lat[1]], area = lonU * latV - lonV * latU;
+  const inside = (value) => Math.min(Math.max(value, -1), 1);
+  return (latitude, longitude) => {
+    let u = 0, v = 0;
+    // Nearly linear as it is, each time leaves a hundredth of the error.
+    for (let k = 0; k < 6; k++) {
+      const du = u - inside(u), dv = v - inside(v);
+      const [north, east] = toEarth(centre[0] + scale * (u - du), centre[1] + scale * (v - dv));
+      const toEast = longitude - east - lonU * du - lonV * dv, toNorth = latitude - north - latU * du - latV * dv;
+      u += (toEast * latV - toNorth * lonV) / area;
+      v += (toNorth * lonU - toEast * latU) / area;
+    }
+    return [centre[0] + scale * u, centre[1] + scale * v];
+  };
+}
+
 const swapped = (ring) => ring.map(([lon, lat]) => [lat, lon]);
 
 const RobotLayer = L.Layer.extend({
@@ -43,8 +68,9 @@ const RobotLayer = L.Layer.extend({
     map.off("move moveend zoomend resize viewreset", this.draw, this);
     this._canvas.remove();
   },
-  show(robots, selected, asLastSeen) {
+  show(robots, density, selected, asLastSeen) {
     this._robots = robots;
+    this._density = density;
     this._selected = selected;
     this._asLastSeen = asLastSeen;
     this.draw();
@@ -74,8 +100,10 @@ const RobotLayer = L.Layer.extend({
       if (at.x < -SIZE || at.y < -SIZE || at.x > size.x + SIZE || at.y > size.y + SIZE) continue;
       inView.push([one, at]);
     }
-    this.drawn = inView.length;
+    this.circles = this._density ? this._circles(context, size) : [];
+    const counted = this.circles.reduce((sum, { robots }) => sum + robots, 0);
     for (const [one, at] of inView) this._robot(context, one, at);
+    this.fire("drawn", { robots: this._density ? counted : inView.length });
     if (inView.length > NAMED_AT_MOST) return;
     context.font = "600 13px system-ui, sans-serif";
     context.lineWidth = 3;
@@ -85,6 +113,44 @@ const RobotLayer = L.Layer.extend({
       context.fillStyle = "#14181c";
       context.fillText(one.robot, at.x + SIZE, at.y - SIZE / 2);
     }
+  },
+  /** Draw circles with how many robots are about there; return those that are in view. */
+  _circles(context, size) {
+    const { cells, edge } = this._density, [a, b] = edge.map((place) => this._map.latLngToContainerPoint(place));
+    // Cells that are as large as a world are not grouped for ever.
+    let together = 1;
+    while (together < 64 && a.distanceTo(b) * together < APART) together *= 2;
+    const placed = cells.map((one) => ({ ...one, at: this._map.latLngToContainerPoint(one.place) }));
+    const circles = grouped(placed, together).filter(({ x, y }) => x >= 0 && y >= 0 && x <= size.x && y <= size.y);
+    const words = new Intl.NumberFormat(document.documentElement.lang, { notation: "compact", maximumSignificantDigits: 2 });
+    for (const one of circles) {
+      one.radius = Math.min(15 + 4 * Math.log10(one.robots), APART / 2 - 1);
+      this._circle(context, one, one.robots < 1000 ? String(one.robots) : words.format(one.robots));
+    }
+    return circles;
+  },
+  _circle(context, { x, y, radius, robots, counts }, text) {
+    context.beginPath();
+    context.arc(x, y, radius, 0, 2 * Math.PI);
+    context.fillStyle = "#ffffff";
+    context.fill();
+    context.lineWidth = RING;
+    let from = -Math.PI / 2;
+    counts.forEach((count, k) => {
+      const to = from + (2 * Math.PI * count) / robots;
+      context.beginPath();
+      context.arc(x, y, radius - RING / 2, from, to);
+      context.strokeStyle = this._asLastSeen ? AS_LAST_SEEN : COUNTED[k];
+      if (count) context.stroke();
+      from = to;
+    });
+    context.font = "700 13px system-ui, sans-serif";
+    context.fillStyle = "#14181c";
+    context.textAlign = "center";
+    context.textBaseline = "middle";
+    context.fillText(text, x, y);
+    context.textAlign = "start";
+    context.textBaseline = "alphabetic";
   },
   _robot(context, one, at) {
     const look = STATES[one.state] ?? STATES.offline;
@@ -122,7 +188,10 @@ const RobotLayer = L.Layer.extend({
   },
 });
 
-/** Events: `robot` (detail: name, or null beside all), `place` (detail: {lat, lng}), `tiles-failed`, `tiles-came`. */
+/**
+ * Events: `robot` (detail: name, or null beside all), `place` (detail: {lat, lng}), `moved` (it shows something else),
+ * `drawn` (detail: how many robots are in view), `tiles-failed`, `tiles-came`.
+ */
 export class SiteMap extends EventTarget {
   constructor(element) {
     super();
@@ -132,8 +201,11 @@ export class SiteMap extends EventTarget {
     this._site = L.layerGroup().addTo(this._map);
     this._layer = new RobotLayer().addTo(this._map);
     this._robots = [];
-    this._toEarth = null;
+    this._density = null;
+    this._toEarth = this._toSite = null;
     this.isChoosing = false;
+    this._layer.on("drawn", ({ robots }) => this.dispatchEvent(new CustomEvent("drawn", { detail: robots })));
+    this._map.on("moveend", () => this.dispatchEvent(new Event("moved")));
     this._map.on("click", (event) => this._tapped(event));
   }
 
@@ -141,6 +213,8 @@ export class SiteMap extends EventTarget {
   showSite(site) {
     this._site.clearLayers();
     this._toEarth = earthOf(site.to_earth);
+    this._toSite = siteOf(site.to_earth);
+    this._density = null;
     if (site.tiles) this._addTiles(site.tiles);
     const plain = { interactive: false };
     for (const one of site.surfaces) {
@@ -160,20 +234,39 @@ export class SiteMap extends EventTarget {
     if (this._bounds) this._map.fitBounds(this._bounds, { padding: [10, 10], animate: false });
   }
 
-  /** Show robots: each with x, y, theta in the site frame, state; those without a place are nowhere. */
-  showRobots(robots, selected, asLastSeen) {
+  /** What the map shows, as x_min, y_min, x_max, y_max in the site frame; null before a site is shown. */
+  get seen() {
+    if (!this._toSite) return null;
+    const rim = this._map.getBounds();
+    const corners = [rim.getNorthWest(), rim.getNorthEast(), rim.getSouthEast(), rim.getSouthWest()];
+    const places = corners.map(({ lat, lng }) => this._toSite(lat, lng)), xs = places.map(([x]) => x), ys = places.map(([, y]) => y);
+    return [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+  }
+
+  /**
+   * Show robots: each with x, y, theta in the site frame, state; those without a place are nowhere. With a density they
+   * are besides those that it counts.
+   */
+  showRobots(robots, density, selected, asLastSeen) {
     if (!this._toEarth) return;
     this._robots = [];
     for (const one of robots) {
       if (one.x === undefined || one.y === undefined) continue;
       this._robots.push({ robot: one.robot, state: one.state, place: this._toEarth(one.x, one.y), bearing: this._bearing(one) });
     }
-    this._layer.show(this._robots, selected, asLastSeen);
+    // Hundreds with an alarm would hide the numbers, which have them in red.
+    if (density && this._robots.length > NAMED_AT_MOST) this._robots = this._robots.filter(({ robot }) => robot === selected);
+    this._layer.show(this._robots, density && this._placed(density), selected, asLastSeen);
   }
 
-  /** How many robots were drawn last, being in view. */
-  get drawn() {
-    return this._layer.drawn ?? 0;
+  /** Return the cells of a density with their places on the earth, and the two ends of a cell's edge. */
+  _placed(density) {
+    if (this._density?.of !== density) {
+      const cells = cellsOf(density).map((one) => ({ ...one, place: this._toEarth(one.x, one.y) }));
+      const edge = [0, density.cell].map((along) => this._toEarth(density.x + along, density.y));
+      this._density = { of: density, cells, edge };
+    }
+    return this._density;
   }
 
   /** Put a robot into the middle of what is seen above a sheet that covers so many pixels of the map. */
@@ -232,7 +325,9 @@ export class SiteMap extends EventTarget {
       const away = this._map.latLngToContainerPoint(one.place).distanceTo(containerPoint);
       if (away < least) [nearest, least] = [one.robot, away];
     }
-    this.dispatchEvent(new CustomEvent("robot", { detail: nearest }));
+    const circle = this._layer.circles?.find(({ x, y, radius }) => containerPoint.distanceTo([x, y]) < Math.max(radius, FINGER));
+    if (nearest === null && circle) this._map.setZoomAround(L.point(circle.x, circle.y), this._map.getZoom() + CLOSER);
+    else this.dispatchEvent(new CustomEvent("robot", { detail: nearest }));
   }
 }
 

@@ -118,6 +118,12 @@ const TEXTS = {
   "y (northing), metres": ["y (észak), méter", "y (nord), metres", "y (norte), metros"],
   "{text} is not a number": ["{text} nem szám", "{text} no és un nombre", "{text} no es un número"],
   "{n} more: search for them": ["még {n}: keressen rájuk", "{n} més: cerqueu-los", "{n} más: búsquelos"],
+  "Robots here: {n} of {all}.": ["Robotok itt: {n}, összesen {all}.", "Robots aquí: {n} de {all}.", "Robots aquí: {n} de {all}."],
+  "Robots here: {n} of {all}. Zoom in to see each.": [
+    "Robotok itt: {n}, összesen {all}. Nagyítson, hogy mindegyik látható legyen.",
+    "Robots aquí: {n} de {all}. Amplieu el mapa per veure'ls un a un.",
+    "Robots aquí: {n} de {all}. Amplíe el mapa para verlos uno a uno.",
+  ],
   "no robots": ["nincs robot", "cap robot", "ningún robot"],
   "none": ["nincs", "cap", "ninguna"],
   "{robot} is lost": ["{robot} elveszett", "{robot} s'ha perdut", "{robot} se ha perdido"],

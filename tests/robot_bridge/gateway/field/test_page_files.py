@@ -25,6 +25,7 @@ FILES = (
     "/leaflet.js",
     "/leaflet.css",
     "/leaflet-LICENSE.txt",
+    "/view.js",
     "/icon.svg",
 )
 TILES = "https://maps.example.org:8443/wmts/{z}/{y}/{x}.png"
