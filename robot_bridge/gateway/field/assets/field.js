@@ -135,7 +135,7 @@ class Field {
     });
     on("hello", (hello) => {
       this._greeted(hello);
-      this._renewView();
+      if (this.views.isDue) this._renewView();
     });
     on("down", () => this._tick());
     on("ended", (reason) => this._signOut(reason));

@@ -21,6 +21,15 @@ export class ViewChoice {
     return this._view;
   }
 
+  /** Whether the fleet has become large, or small again, since the view was chosen. */
+  get isDue() {
+    return this._isLarge !== (this._view !== null);
+  }
+
+  get _isLarge() {
+    return this._robots > (this._view ? VIEWS_UNTIL : VIEWS_FROM);
+  }
+
   /** Take in how many robots there are. */
   count(robots) {
     this._robots = robots;
@@ -37,7 +46,7 @@ export class ViewChoice {
    */
   renew(seen, selected) {
     const before = this._view, always = selected === null ? [] : [selected];
-    if (this._robots <= (before ? VIEWS_UNTIL : VIEWS_FROM)) this._view = null;
+    if (!this._isLarge) this._view = null;
     else if (before === null || !willDo(before.bounds, seen)) this._view = { bounds: grown(seen), always, most: MOST };
     else if (before.always[0] !== always[0]) this._view = { ...before, always };
     return this._view !== before;

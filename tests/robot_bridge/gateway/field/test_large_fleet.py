@@ -155,16 +155,17 @@ def middle(page):
     return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
 
 
-def pan(page, dx, dy):
-    """Drag the map as a finger does, in steps."""
-    x, y = middle(page)
-    session = page.context.new_cdp_session(page)
-    for step in range(8):
-        kind = "touchMove" if step else "touchStart"
-        point = {"x": x + dx * step / 7, "y": y + dy * step / 7, "id": 1}
-        session.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
-        page.wait_for_timeout(20)
-    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+PAN = """async () => {
+  const map = document.querySelector("#map"), { left, top } = map.getBoundingClientRect();
+  const at = (x) => ({ clientX: left + x, clientY: top + 100, button: 0, bubbles: true });
+  for (let k = 0; k < 10; k++) {
+    map.dispatchEvent(new MouseEvent("mousedown", at(100)));
+    for (const x of [140, 190]) map.dispatchEvent(new MouseEvent("mousemove", at(x)));
+    map.dispatchEvent(new MouseEvent("mouseup", at(190)));
+    await new Promise((resolve) => setTimeout(resolve, 30));
+  }
+}"""
+"""Drag the map to the right ten times, one after the other."""
 
 
 def select(page, text, robot):
@@ -198,13 +199,14 @@ def test_a_map_that_is_panned_asks_once_it_is_still(phone):
     zoom_in(page, 3)
     text_is(page, "#count", rf"of {ALL}\.$")
     before = len(wire.of("subscribe"))
-    for _ in range(4):
-        pan(page, 150, 0)
+    page.evaluate(PAN)
     wait_for(page, lambda: len(wire.of("subscribe")) > before)
     page.wait_for_timeout(600)
     asked = [one["view"]["bounds"] for one in wire.of("subscribe")]
-    assert 1 <= len(asked) - before <= 4
-    assert asked[-1][0] < asked[before - 1][0]
+    # More than one where the machine stood still for as long as the page takes for the end of it.
+    assert 1 <= len(asked) - before <= 3
+    # Nine hundred points, of a map of 393, and what it glides on.
+    assert asked[-1][2] < asked[before - 1][0]
 
 
 def test_a_robot_is_found_at_the_gateway_and_followed_wherever_the_map_is(phone, desk):
@@ -223,7 +225,8 @@ def test_a_robot_is_found_at_the_gateway_and_followed_wherever_the_map_is(phone,
     shot = page.evaluate(
         """([x, y]) => { const c = document.querySelector('#map .leaflet-marker-pane canvas');
         const d = c.getContext('2d').getImageData(2 * x - 80, 2 * y - 80, 160, 160).data;
-        let n = 0; for (let k = 0; k < d.length; k += 4) n += d[k] === 0x0b && d[k + 1] === 0x57 && d[k + 2] === 0xa4;
+        let n = 0;
+        for (let k = 0; k < d.length; k += 4) n += d[k] === 0x0b && d[k + 1] === 0x57 && d[k + 2] === 0xa4;
         return n; }""",
         [box["width"] / 2, (sheet["y"] - box["y"]) / 2],
     )
@@ -277,7 +280,7 @@ THERE_AND_BACK = """async () => {
     }
     worst.push(Math.max(...off));
   }
-  const [, , west, east] = [...siteOf(to_earth)(-60, -170), siteOf(to_earth)(46, -170)[0], siteOf(to_earth)(46, 170)[0]];
+  const [[west], [east]] = [-170, 170].map((longitude) => siteOf(to_earth)(46, longitude));
   return [...worst, west, east];
 }"""
 
