@@ -1,4 +1,4 @@
-"""Pictures of docs/field-page.md: ``python -m tools.field_pictures``; a gateway with three robots."""
+"""Pictures of docs/field-page.md: ``python -m tools.field_pictures``; a gateway with robots, few and many."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from tests.support.bridge.bridge_programs import Bridge
+from tests.support.bridge.link_crowd import Crowd
 from tests.support.phone import PHONE, chromium
 from tests.support.processes import Processes
 from tools.plugin_files import ROOT
 
 IMAGES = ROOT / "docs" / "images"
 POSES = {"r1": (20.0, 8.0, 0.0), "r2": (100.0, 60.0, 1.5), "r3": (150.0, 120.0, 3.0)}
+
+MANY = 1100
 
 
 def main() -> None:
@@ -33,7 +36,20 @@ def main() -> None:
                 page.wait_for_timeout(1500)
                 _walk(page, "" if scheme == "light" else "-dark")
                 desk.ask("clear_emergency_stop", {"reason": "the picture is drawn"})
+            _count_many(bridge, browser)
         bridge.end()
+
+
+def _count_many(bridge: Bridge, browser: Any) -> None:
+    crowd = Crowd(bridge.address, MANY)
+    try:
+        page = browser.new_context(**PHONE).new_page()
+        page.goto(f"http://127.0.0.1:{bridge.port}/field")
+        page.locator("#count", has_text="Zoom in").wait_for()
+        page.wait_for_timeout(3000)
+        page.screenshot(path=IMAGES / "field-many.png")
+    finally:
+        crowd.end()
 
 
 def _walk(page: Any, kind: str) -> None:

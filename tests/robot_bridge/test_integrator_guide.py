@@ -326,6 +326,9 @@ def test_a_view_is_asked_for_and_told_as_it_is_told(bridge):
     desk.until(lambda: desk.snapshots)
     assert shape(desk.snapshots[0]) == shape(wanted["params"])
     assert desk.snapshots[0]["view"] == wanted["params"]["view"]
+    ((_, once),) = blocks("desk-asks-view-once")
+    assert accepts("desk/get_positions.json", once["params"])
+    assert shape(desk.ask("get_positions", once["params"])) == shape(wanted["params"])
     view = {**asked["params"]["view"], "most": 1}
     other = bridge.robot("r9")
     other.plug_in(9)

@@ -4,57 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-import threading
 
 import numpy as np
 import pytest
-from websockets.sync.client import connect
 
-from robot_bridge.core.position_frame import packed_frame
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.link_crowd import RUNNER, Crowd
 from tests.support.patience import BUSY
 
 SLOW = BUSY * 15_000
 CROWD, ALL = 1100, "1,101"
-RUNNER = "van-7"
 MOST = 300
-
-
-class Crowd:
-    """Robots in rows all over the site on one link, and one that drives to and fro in its corner."""
-
-    def __init__(self, address):
-        self.names = [f"load-{n:04}" for n in range(CROWD)] + [RUNNER]
-        self._link, self._over = connect(f"{address}/link", max_size=None), threading.Event()
-        self._call("hello", {"protocol": 1, "kind": "crowd"}, 0)
-        for number, name in enumerate(self.names, 1):
-            self._call("Ready", {"robot": name, "magic": number, "abilities": ["targets", "paths"]}, number)
-        self._threads = [threading.Thread(target=work) for work in (self._drive, self._drain)]
-        for thread in self._threads:
-            thread.start()
-
-    def end(self):
-        self._over.set()
-        self._threads[0].join()
-        self._link.close()
-        self._threads[1].join()
-
-    def _call(self, method, params, number):
-        self._link.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
-
-    def _drain(self):
-        for _ in self._link:
-            pass
-
-    def _drive(self):
-        rows, columns = np.divmod(np.arange(CROWD), 40)
-        x, y, steps = 5 + 4.8 * columns, 5 + 5.4 * rows, 0
-        params = {"robots": self.names, "columns": ["x", "y", "theta", "v"], "words": []}
-        head = json.dumps({"jsonrpc": "2.0", "method": "positions", "params": params}).encode()
-        while not self._over.wait(0.5):
-            steps += 1
-            table = [np.append(x, 190 + steps % 10), np.append(y, 155.0), np.zeros(CROWD + 1)]
-            self._link.send(packed_frame(head, [*table, np.zeros(CROWD + 1)]))
 
 
 @pytest.fixture(scope="module")
@@ -65,7 +25,7 @@ def bridge(start_bridge, sample_site):
 @pytest.fixture(scope="module")
 def desk(bridge):
     """A desk without positions, once the whole crowd has said where it is."""
-    crowd = Crowd(bridge.address)
+    crowd = Crowd(bridge.address, CROWD)
     everywhere = {"view": {"bounds": [0, 0, 200, 160], "most": 1}}
     desk = bridge.desk()
     wait_until(lambda: desk.ask("get_positions", everywhere)["view"]["inside"] == CROWD + 1)
