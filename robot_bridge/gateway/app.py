@@ -104,6 +104,7 @@ async def _close(connection: ServerConnection) -> None:
 log = logging.getLogger(__name__)
 
 AGE_INTERVAL = 0.25
+LATENCY_INTERVAL = 1.0
 SAVE_INTERVAL = 1.0
 GARBAGE_INTERVAL = 1.0
 STUCK_INTERVAL = 5.0
@@ -185,6 +186,7 @@ class Gateway:
         fleet, tally = self._fleet, self._fleet.tally
         works: dict[str, Work] = {
             "sql link": SqlInterface(fleet, fleet.database).run,
+            "latencies": lambda: every(LATENCY_INTERVAL, self._measure, "latencies", tally),
             "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
             "queues": fleet.driving.run,
             "maps": fleet.maps.run,
@@ -216,6 +218,9 @@ class Gateway:
     async def _clear_away(self) -> None:
         self._leavings.clear_away(self._gate.gone)
         self._fleet.repeated.summarise()
+
+    async def _measure(self) -> None:
+        self.robots.measure()
 
     async def _age(self) -> None:
         if (step := self._clock_watch.measure_step()) is not None:

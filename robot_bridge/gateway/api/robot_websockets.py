@@ -409,10 +409,13 @@ class WebSocketInterface:
         ]
 
     def update(self) -> None:
-        """Note the latency of every robot's connection, and let go what links may not speak for any more."""
+        """Let go what links may not speak for any more."""
         for link in list(self._links):
             with log_and_continue(log, f"looking after link {link.name}"):
                 link.update()
+
+    def measure(self) -> None:
+        """Note the latency of every robot's connection."""
         for session in self._holders:
             session.measure()
 

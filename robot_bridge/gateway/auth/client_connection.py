@@ -7,10 +7,9 @@ import contextlib
 import logging
 import socket
 import time
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Callable
 from dataclasses import dataclass
-from functools import partial
-from typing import Any, Protocol, cast
+from typing import Any, Protocol
 
 from websockets.asyncio.server import ServerConnection
 from websockets.frames import CloseCode, Frame, Opcode
@@ -198,6 +197,7 @@ NEVER_REFUSED = "emergency_stop"
 """Who has talked too much may stop the fleet all the same."""
 CLOSE_WITHIN = 0.5
 """Seconds that a client that is shown the door has for a close in good order."""
+_PING = b"gateway"
 _OF_MESSAGES = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
@@ -234,6 +234,9 @@ class ClientConnection(ServerConnection):
         self._limits = door.limits
         self._stuck: asyncio.TimerHandle | None = None
         self._silence: asyncio.TimerHandle | None = None
+        self._next_ping: asyncio.TimerHandle | None = None
+        self._pinged_at: float | None = None
+        """when a ping was sent that was not answered yet."""
         self._last_received_at = 0.0
         self._expelled = False
         self.is_gone = False
@@ -257,7 +260,7 @@ class ClientConnection(ServerConnection):
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Note that the connection is gone."""
-        for timer in (self._stuck, self._silence):
+        for timer in (self._stuck, self._silence, self._next_ping):
             if timer is not None:
                 timer.cancel()
         super().connection_lost(exc)
@@ -349,16 +352,25 @@ class ClientConnection(ServerConnection):
                 return
             self.short_cut.on_the_long_way -= 1
 
-    async def ping(self, data: Any = None) -> Awaitable[float]:
-        """Send a ping and take its time, since some event loops count in whole milliseconds."""
-        sent = time.perf_counter()
-        pong = cast("asyncio.Future[float]", await super().ping(data))
-        pong.add_done_callback(partial(self._answered, sent))
-        return pong
+    def start_keepalive(self) -> None:
+        """Begin to ping: by a timer, since a task and a future for each ping take three times as long."""
+        if self.ping_interval is not None:
+            self._next_ping = self.loop.call_later(self.ping_interval, self._keep_alive)
 
-    def _answered(self, sent: float, pong: asyncio.Future[float]) -> None:
-        if not pong.cancelled() and pong.exception() is None:
-            self.round_trip = time.perf_counter() - sent
+    def _keep_alive(self) -> None:
+        assert self.ping_interval is not None
+        if self.protocol.state is not OPEN:
+            return
+        now = time.perf_counter()
+        if self._pinged_at is None:
+            self._pinged_at = now
+            self.protocol.send_ping(_PING)
+            self.send_data()
+        elif self.ping_timeout is not None and now - self._pinged_at >= self.ping_timeout:
+            log.info("%s from %s answers no ping; cut off", self.who, self.address)
+            self.transport.abort()
+            return
+        self._next_ping = self.loop.call_later(self.ping_interval, self._keep_alive)
 
     def process_event(self, event: Any) -> None:
         """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""
@@ -368,6 +380,9 @@ class ClientConnection(ServerConnection):
             return
         if isinstance(event, Frame) and event.fin and event.opcode in _OF_MESSAGES:
             self.short_cut.on_the_long_way += 1
+        if self._pinged_at is not None and _is_answer(event):
+            # By a clock that counts finer than some event loops do.
+            self.round_trip, self._pinged_at = time.perf_counter() - self._pinged_at, None
         super().process_event(event)
 
     @property
@@ -426,6 +441,10 @@ class ClientConnection(ServerConnection):
     def _give_up(self) -> None:
         log.warning("%s from %s takes nothing of what it is sent; cut off", self.who, self.address)
         self.transport.abort()
+
+
+def _is_answer(event: Any) -> bool:
+    return isinstance(event, Frame) and event.opcode is Opcode.PONG and event.data == _PING
 
 
 def _is_idle_talk(frame: Frame) -> bool:

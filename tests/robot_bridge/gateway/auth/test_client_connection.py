@@ -38,6 +38,7 @@ class Host:
         visitor.let_in(Identity(TokenKind.ROBOT, "r", None, "s"), 10_000)
 
     async def serve(self, visitor):
+        self.visitor = visitor
         visitor.handle_at_once(self._at_once)
         async for message in visitor:
             if message == "wait":
@@ -64,11 +65,34 @@ async def host():
 @pytest.fixture
 async def client(host):
     options = {"create_connection": partial(ClientConnection, OpenDoor()), "compression": None}
+    options |= {"ping_interval": 0.05, "ping_timeout": 0.5}
     async with serve(host.serve, "127.0.0.1", 0, process_request=host.let_in, **options) as server:
         port = server.sockets[0].getsockname()[1]
         async with connect(f"ws://127.0.0.1:{port}", compression=None) as wire:
             await wire.ping()
             yield wire
+
+
+async def until(holds):
+    async with asyncio.timeout(20):
+        while not holds():
+            await asyncio.sleep(0.005)
+
+
+async def test_who_answers_pings_is_measured_and_stays(host, client):
+    first = await client.ping()
+    await first
+    await until(lambda: host.visitor.round_trip is not None)
+    assert 0 < host.visitor.round_trip < 10
+    host.visitor.round_trip = None
+    await asyncio.sleep(1.0)
+    await until(lambda: host.visitor.round_trip is not None)
+    assert not host.visitor.is_gone
+
+
+async def test_who_answers_no_ping_is_cut_off(host, client):
+    client.transport.pause_reading()
+    await until(lambda: host.visitor.is_gone)
 
 
 async def test_positions_go_past_the_queue(host, client):
