@@ -133,7 +133,11 @@ class RobotSearch(QObject):
         text, key = self._asked_for
         if answer.order.key != key:
             return True
-        result, is_first = answer.result or {}, not self._page
+        if answer.result is None:
+            # Refused, as where too much was asked in a second: it is asked again.
+            self._asked_for = ("", "")
+            return True
+        result, is_first = answer.result, not self._page
         self._page += _found_robots(result.get("robots", []), self._state.clock.steady())
         if is_first and result.get("count", 0) > len(self._page) > 0 and self._page[-1].name < text:
             # The gateway tells of the first by name: the very one may come after them, as 17 does after 1017.

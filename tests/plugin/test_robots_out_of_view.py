@@ -150,6 +150,22 @@ def test_the_very_name_is_found_behind_many_that_hold_it(locator, gateway, wait)
     assert len(gateway.requests_of("find_robots")) == 2
 
 
+def test_a_search_that_is_refused_is_made_again(locator, gateway, wait):
+    has_robots(gateway, "van1").set()
+    find, refused = gateway.answers["find_robots"], []
+
+    def refuse_first(params):
+        if refused:
+            return find(params)
+        refused.append(params)
+        return {"error": {"code": -32001, "message": "too many messages; wait"}}
+
+    gateway.answers["find_robots"] = refuse_first
+    locator.type("rb van")
+    wait(lambda: locator.rows() == ["van1"], what="what the gateway found")
+    assert refused
+
+
 def test_nothing_is_waited_for_in_the_windows_thread(locator, gateway, wait):
     answers = has_robots(gateway, "van1")
     locator.type("rb van1")

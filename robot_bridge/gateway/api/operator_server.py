@@ -80,6 +80,12 @@ class RequestScheduler:
         self._turn = _Lane(settle)
         self._aside = _Lane(settle)
         self._stopping: set[asyncio.Task[None]] = set()
+        self._late: list[ScheduledRequest] = []
+        """what a stop has overtaken that has not had its own turn yet."""
+
+    def overtake(self, stop: DeskRequest[Any]) -> None:
+        """Have nothing begun any more that ``stop``, which has come and not had its turn yet, overtakes."""
+        self._late += self._turn.withdraw(lambda waiting: _is_overtaken(waiting, stop))
 
     async def submit(self, scheduled: ScheduledRequest) -> None:
         """See to a request; returns at once, or when one that cannot be taken has been refused."""
@@ -103,7 +109,9 @@ class RequestScheduler:
         task = asyncio.create_task(self._settle(scheduled, None))
         self._stopping.add(task)
         task.add_done_callback(self._stopping.discard)
-        for late in self._turn.withdraw(lambda waiting: _is_overtaken(waiting, scheduled)):
+        self.overtake(scheduled.request)
+        overtaken, self._late = self._late, []
+        for late in overtaken:
             await self._settle(late, _overtaken(late, scheduled))
         while emergency and len(self._stopping) >= MOST_STOPPING + MOST_EMERGENCIES:
             await asyncio.wait(self._stopping, return_when=asyncio.FIRST_COMPLETED)
@@ -156,11 +164,11 @@ class _Lane:
             await self._settle(self._waiting.popleft(), None)
 
 
-def _is_overtaken(waiting: ScheduledRequest, stop: ScheduledRequest) -> bool:
+def _is_overtaken(waiting: ScheduledRequest, stop: DeskRequest[Any]) -> bool:
     """Tell whether a request would set a robot in motion that ``stop``, which came after it, is to stop."""
     if waiting.request.priority not in MOVING:
         return False
-    one, other = getattr(stop.request, "robot", None), getattr(waiting.request, "robot", None)
+    one, other = getattr(stop, "robot", None), getattr(waiting.request, "robot", None)
     several = waiting.request.priority is Priority.MOVE_SEVERAL
     return several or one is None or other is None or one == other
 
@@ -254,19 +262,28 @@ class OperatorSession:
         self._news_event.set()
 
     def _begin_stop(self, frame: bytes) -> bool:
-        """Begin an emergency stop as soon as its bytes are there; answered and stored is it in its turn."""
+        """Begin an emergency stop as soon as its bytes are there; it is answered and stored in its turn."""
         if _STOP in frame:
-            with (
-                log_and_continue(log, "beginning an emergency stop"),
-                contextlib.suppress(MessageError, BridgeError, jsonrpc.FrameError),
-            ):
-                call = jsonrpc.decode(frame)
-                if isinstance(call, jsonrpc.Call) and call.method == EmergencyStop.method:
-                    request = decode_desk_request(call.method, call.params)
-                    assert isinstance(request, EmergencyStop)
-                    self._check(request)
-                    self._fleet.emergency.begin(request, self._operator)
+            with log_and_continue(log, "beginning an emergency stop"):
+                if (stop := self._permitted_stop(frame)) is not None:
+                    self._lanes.overtake(stop)
+                    self._fleet.emergency.begin(stop, self._operator)
         return False
+
+    def _permitted_stop(self, frame: bytes) -> EmergencyStop | None:
+        """Return the stop in a message that this operator may make; None for what is decoded in its turn."""
+        try:
+            call = jsonrpc.decode(frame)
+            if not (isinstance(call, jsonrpc.Call) and call.method == EmergencyStop.method):
+                return None
+            # One without an id is given one by whoever decodes it, and would be another one each time.
+            if not isinstance(call.params, dict) or call.params.get("command") is None:
+                return None
+            request = decode_desk_request(call.method, call.params)
+            self._check(request)
+        except (MessageError, BridgeError, jsonrpc.FrameError):
+            return None
+        return request if isinstance(request, EmergencyStop) else None
 
     async def _take(self, frame: str | bytes) -> None:
         call = None

@@ -135,7 +135,9 @@ class LinkConnection:
         """
         for place in self._places.values():
             place.session.outdate()
-        self._begin(self.send(jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))))
+        frame = jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))
+        if not self.send_at_once(frame):
+            self._begin(self.send(frame))
 
     def update(self) -> None:
         """Let go the robots that it may not speak for any more."""

@@ -54,7 +54,8 @@ class ConnectionRegistry:
     @property
     def sessions(self) -> dict[str, ClientConnection]:
         """The desks by their sessions' ids."""
-        return {i.session: visitor for visitor, i in self._inside.items() if i.kind is TokenKind.OPERATOR}
+        operator = TokenKind.OPERATOR
+        return {i.session: visitor for visitor, i in self._inside.items() if i.kind is operator}
 
     def arrived(self, visitor: ClientConnection) -> None:
         """Count a connection that has not said yet what it wants; with one too many the oldest ends."""
@@ -239,8 +240,10 @@ class AuthGate:
     async def refresh(self) -> None:
         """Take over changed accounts, and end what does not hold any more; raises StoreError."""
         await self.book.refresh()
+        without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
         for visitor, identity in self._guests:
-            if (fault := self._fault(identity)) is not None:
+            fault = without_token[identity.kind] if identity.token is None else self._fault(identity)
+            if fault is not None:
                 self._guests.end(visitor, REVOKED, fault)
         desks = self._guests.sessions
         ended = await self._database.read(audit.ended_sessions, list(desks))
@@ -385,11 +388,14 @@ class AuthGate:
 
     def _fault(self, identity: Identity) -> str | None:
         if identity.token is None:
-            return None if self._is_open(identity.kind) else "accounts are in use now: connect with a token"
+            return self._fault_without_token(identity.kind)
         grant = self.book.grant(identity.token)
         if grant is None or (identity.kind is TokenKind.OPERATOR and grant.role is None):
             return "this token is not known any more"
         return grant.fault(self._clock.time())
+
+    def _fault_without_token(self, kind: TokenKind) -> str | None:
+        return None if self._is_open(kind) else "accounts are in use now: connect with a token"
 
     def _note_login(self, visitor: ClientConnection, identity: Identity) -> None:
         if identity.token is not None:

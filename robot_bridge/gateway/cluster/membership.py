@@ -33,7 +33,7 @@ log = logging.getLogger(__name__)
 
 LEASE_S, TRUST_S, RENEW_S = 5.0, 4.0, 1.0
 """seconds that a renewal is valid for in the database, that a gateway counts on it, and between two."""
-BREAK_S = LEASE_S - 2 * RENEW_S
+BREAK_S = LEASE_S - 1.5 * RENEW_S
 """seconds between two renewals of a gateway in which the leases of others may have run out as well."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
@@ -53,13 +53,15 @@ class LeaseTrust:
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
         self._asked_at = -math.inf
+        self._succeeded_at = -math.inf
         self._unbroken_since = math.inf
 
     def renewed(self, asked_at: float) -> None:
         """Note that a renewal succeeded that was asked for at ``asked_at``, on the steady clock."""
         now = self._clock.steady()
-        if now - self._asked_at > BREAK_S:
+        if now - self._succeeded_at > BREAK_S:
             self._unbroken_since = now
+        self._succeeded_at = now
         self._asked_at = max(self._asked_at, asked_at)
 
     def lost(self) -> None:

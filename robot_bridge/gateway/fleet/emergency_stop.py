@@ -400,7 +400,8 @@ class EmergencyStops:
         self._seen.add(stop.id)
         self._stop = stop
         self._unstored.append(stop)
-        self._tally.begin(self._robots.commanded())
+        with log_and_continue(log, "counting who is told of an emergency stop"):
+            self._tally.begin(self._robots.commanded())
 
     def _abort_overdue(self, stop: StopRow | None, robots: Iterable[str]) -> None:
         """Have robots aborted that drive since before a stop that is over: its Abort was stored for none.
@@ -420,7 +421,11 @@ class EmergencyStops:
 
     def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._put_in_force(stop)
+        noting = None
         # Whatever goes wrong in one of these, what comes after it is done.
+        with log_and_continue(log, "noting an emergency stop"):
+            # The disk works while others are told.
+            noting = self._note()
         for relay in self._relays if is_own else ():
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
@@ -428,8 +433,7 @@ class EmergencyStops:
         with log_and_continue(log, "telling operators of an emergency stop"):
             if operators_first := len(self._listeners) <= MOST_FIRST:
                 self.announce()
-        with log_and_continue(log, "noting an emergency stop"):
-            noting = self._note()
+        with log_and_continue(log, "waiting for the note of an emergency stop"):
             # Who made one elsewhere has noted it already, and stores it.
             if noting is not None and is_own:
                 futures.wait([noting], NOTED_WITHIN)

@@ -25,7 +25,7 @@ from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
 from ..commands.requests import CommandRequests
 from ..model.events import Listeners
-from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, X, Y
+from ..model.robot_columns import DOUBTED, FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
@@ -279,11 +279,12 @@ class GeofenceWatch:
         """Return what operators are told."""
         now = self._clock.time()
         stays = sorted(self._stays, key=lambda stay: -stay.since)
-        unjudged = self._unjudged(now)
+        places = self._robots.places()
+        unjudged = self._unjudged(places, now)
         fenced = self._fenced
         return Geofence(
             t=now,
-            alarms=self._alarms(stays[:MOST_ALARMS]),
+            alarms=_alarms(stays[:MOST_ALARMS], places),
             more=max(len(stays) - MOST_ALARMS, 0),
             keepouts=0 if fenced is None else len(fenced.keepouts),
             obstacles=0 if fenced is None else len(fenced.obstacles) + len(fenced.observed),
@@ -396,34 +397,34 @@ class GeofenceWatch:
             self._last_report = time.monotonic(), report
             self._listeners.announce("geofence", "geofence", to_json(report))
 
-    def _alarms(self, stays: Sequence[Stay]) -> list[FenceAlarm]:
-        placed = {
-            robot.name for robot in self._robots.known({stay.robot for stay in stays}) if robot.is_placed
-        }
-        return [self._alarm(stay, is_placed=stay.robot in placed) for stay in stays]
-
-    def _alarm(self, stay: Stay, *, is_placed: bool) -> FenceAlarm:
-        return FenceAlarm(
-            stay.robot,
-            stay.kind,
-            stay.name,
-            round(stay.since, 1),
-            round(stay.place[0], 2),
-            round(stay.place[1], 2),
-            stay.action,
-            stay.outcome,
-            stay.reason,
-            is_placed,
-        )
-
-    def _unjudged(self, now: float) -> list[str]:
+    def _unjudged(self, places: RobotPlaces, now: float) -> list[str]:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
         lost_after = self._site.settings.liveness.lost_after_s
-        places = self._robots.places()
         is_recent = now - places.table[POSE_AT] < lost_after
         seen = (places.states == FRESH) & ((places.flags & LOCATED) > 0) & is_recent
         rows = np.flatnonzero((places.states != OFFLINE) & ~seen)
         return sorted(places.names[row] for row in rows.tolist())
+
+
+def _alarms(stays: Sequence[Stay], places: RobotPlaces) -> list[FenceAlarm]:
+    is_placed = (places.states == FRESH) & ((places.flags & (LOCATED | DOUBTED)) == LOCATED)
+    placed = {places.names[row] for row in np.flatnonzero(is_placed).tolist()} if stays else set()
+    return [_alarm(stay, is_placed=stay.robot in placed) for stay in stays]
+
+
+def _alarm(stay: Stay, *, is_placed: bool) -> FenceAlarm:
+    return FenceAlarm(
+        stay.robot,
+        stay.kind,
+        stay.name,
+        round(stay.since, 1),
+        round(stay.place[0], 2),
+        round(stay.place[1], 2),
+        stay.action,
+        stay.outcome,
+        stay.reason,
+        is_placed,
+    )
 
 
 def _placed(robots: Robots, since: int) -> tuple[list[str], Points]:

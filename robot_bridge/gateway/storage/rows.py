@@ -11,9 +11,12 @@ from functools import lru_cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import msgspec
+import numpy as np
 from msgspec import ValidationError
 from sqlalchemy import Column, ColumnElement, Connection, Dialect, String, Table, delete, select
 from sqlalchemy.exc import DBAPIError
+
+from ...core.errors import DataRefusedError
 
 # --- Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are
 
@@ -140,7 +143,7 @@ def add_messages(connection: Connection, table: Table, names: Sequence[str], row
 def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
     """Insert ``rows`` in place of those with the same value in the first of ``names``, all of its columns."""
     if _takes_json(connection):
-        for text in _as_json(rows):
+        for text in _as_json(_last_of_each(rows)):
             connection.exec_driver_sql(_upsert_json(table, tuple(names), connection.dialect), (text,))
         return
     _delete_rows(connection, table, names[0], [row[0] for row in rows])
@@ -150,7 +153,7 @@ def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: S
 def change_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
     """Write ``rows`` into those with the same value in the first of ``names``; what is not there stays so."""
     if _takes_json(connection):
-        for text in _as_json(rows):
+        for text in _as_json(_last_of_each(rows)):
             connection.exec_driver_sql(_update_json(table, tuple(names), connection.dialect), (text,))
     elif rows:
         statement = _update(table, tuple(names), connection.dialect)
@@ -242,9 +245,21 @@ def _takes_json(connection: Connection) -> bool:
     return connection.dialect.name == "postgresql"
 
 
+def _last_of_each(rows: Sequence[Row]) -> list[Row]:
+    """Return of rows with the same first value the last: one statement writes each row once."""
+    return list({row[0]: row for row in rows}.values())
+
+
 def _as_json(rows: Sequence[Row]) -> Iterator[str]:
     for begin in range(0, len(rows), MOST_IN_TEXT):
-        yield msgspec.json.encode(rows[begin : begin + MOST_IN_TEXT]).decode()
+        yield msgspec.json.encode(rows[begin : begin + MOST_IN_TEXT], enc_hook=_number).decode()
+
+
+def _number(value: object) -> object:
+    """Return a number of NumPy as one of Python."""
+    if isinstance(value, np.generic):
+        return value.item()
+    raise DataRefusedError(f"{type(value).__name__} cannot be stored")
 
 
 @lru_cache

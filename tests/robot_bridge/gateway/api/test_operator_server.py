@@ -82,6 +82,22 @@ async def test_a_stop_begins_when_its_bytes_are_there(two):
         assert (report.stop, report.by, report.reason) == ("stop-number-1", "Ada", "smoke")
 
 
+async def test_a_stop_without_an_id_is_begun_in_its_turn(two):
+    """Whoever decodes it gives it one: begun here as well it would be two stops."""
+    async with desk_of(two, Role.OPERATOR) as connection:
+        assert not connection.handler(stop_call(reason="smoke"))
+        assert not two.fleet.emergency.in_force
+
+
+async def test_a_stop_that_cannot_count_the_robots_is_told_to_them_all_the_same(two, monkeypatch):
+    told = []
+    two.fleet.emergency.reach(told.append)
+    monkeypatch.setattr(two.fleet.robots, "commanded", lambda: 1 / 0)
+    async with desk_of(two, Role.OPERATOR) as connection:
+        connection.handler(stop_call(command="stop-number-1"))
+        assert told == ["emergency-stop-number-1"]
+
+
 async def test_who_may_not_stop_robots_begins_no_stop(two, caplog):
     async with desk_of(two, Role.VIEWER) as connection:
         assert not connection.handler(stop_call(command="stop-number-1"))

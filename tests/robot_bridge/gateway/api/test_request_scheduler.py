@@ -11,7 +11,7 @@ from robot_bridge.core.messages.commands import AbortAll, AbortTask, Send, SetPo
 from robot_bridge.core.messages.queues import GetQueue, PauseRobot, ResumeQueue, Share, TakeOver
 from robot_bridge.core.messages.records import GetImage
 from robot_bridge.core.messages.roads import GetRoute, ResolveConflict
-from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
 from robot_bridge.gateway.api import operator_server
 from robot_bridge.gateway.api.operator_server import (
     MOST_ASIDE,
@@ -139,6 +139,18 @@ async def test_a_stop_overtakes_what_may_set_its_robot_in_motion(waiting, stop, 
 
 
 # --- too much of it -----------------------------------------------------------------------------------------
+
+
+async def test_what_a_stop_overtakes_is_not_begun_before_that_has_its_turn():
+    operator, clear = Operator(), ClearEmergencyStop()
+    await operator.ask(QUESTION, clear, QUESTION)
+    stop = EmergencyStop("stop-number-1")
+    operator.lanes.overtake(stop)
+    operator.may.set()
+    await rest()
+    assert operator.done == [QUESTION, QUESTION] and not operator.refused
+    await operator.ask(stop)
+    assert [request for request, _ in operator.refused] == [clear] and stop in operator.done
 
 
 async def test_an_emergency_stop_is_never_one_too_many_and_any_other_stop_is():

@@ -35,9 +35,12 @@ class Connection:
 
     def __init__(self):
         self.sent = []
+        self.is_sending = False
 
-    def write_at_once(self, _frame):
-        return False
+    def write_at_once(self, frame):
+        if not self.is_sending:
+            self.sent.append(json.loads(frame))
+        return not self.is_sending
 
     async def send(self, frame):
         self.sent.append(json.loads(frame))
@@ -254,10 +257,16 @@ async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(
     for name in ("r1", "r2"):
         session = SimpleNamespace(outdate=lambda name=name: outdated.append(name))
         link._places[name] = SimpleNamespace(session=session)
+    stop = {"call": "emergency-stop-0001", "emergency": True}
     link.stop_all("emergency-stop-0001")
-    assert (outdated, connection.sent) == (["r1", "r2"], [])
+    # Without a turn of the loop.
+    assert outdated == ["r1", "r2"] and [frame["params"] for frame in connection.sent] == [stop]
+    # While another message is being sent in pieces it comes after that.
+    connection.is_sending = True
+    link.stop_all("emergency-stop-0001")
+    assert len(connection.sent) == 1
     await asyncio.gather(*link._tasks)
-    assert connection.sent[0]["params"] == {"call": "emergency-stop-0001", "emergency": True}
+    assert [frame["params"] for frame in connection.sent] == [stop, stop]
 
 
 async def test_what_stops_a_linked_robot_waits_for_no_turn_and_all_else_does(link):

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import socket
 from types import SimpleNamespace
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -224,6 +226,57 @@ async def test_each_hears_what_is_for_all_and_what_is_for_itself(pair):
     await until(lambda: len(heard) >= 4)
     assert {subject for subject, _ in heard} == {STOP, EVERYBODY, POSITIONS, "wake.b"}
     assert all(content.decode() == subject for subject, content in heard)
+
+
+def read_until(connection, wanted):
+    """Read what a server sends until it has said what is wanted."""
+    content = b""
+    while wanted not in content:
+        content += connection.recv(4096)
+    return content
+
+
+async def test_a_stop_is_on_its_way_before_the_loop_has_a_turn(nats):
+    """Thousands of robots may have theirs before."""
+    bus = NatsBus([nats.url], "a", "fleet.f5")
+    task = asyncio.create_task(bus.run(lambda *_: None))
+    await until(lambda: bus.connected)
+    with socket.create_connection(("127.0.0.1", urlsplit(nats.url).port), timeout=10 * BUSY) as other:
+        other.sendall(b'CONNECT {"verbose": false}\r\nSUB fleet.f5.> 1\r\nPING\r\n')
+        read_until(other, b"PONG")
+        assert bus.publish(STOP, b"a stop") and bus.publish(EVERYBODY, b"a wake")
+        # The loop stands still meanwhile.
+        assert b"a wake" not in read_until(other, b"a stop")
+        await until(lambda: not bus._outgoing._others)
+        read_until(other, b"a wake")
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_stop_that_cannot_be_written_at_once_is_sent_in_its_turn(nats, monkeypatch):
+    heard = []
+    bus = NatsBus([nats.url], "a", "fleet.f6")
+    task = asyncio.create_task(bus.run(lambda *message: heard.append(message)))
+    await until(lambda: bus.connected)
+    for fails in ("_transport", "publish"):
+        heard.clear()
+        with monkeypatch.context() as patch:
+            patch.setattr(bus._client, fails, Fails(), raising=True)
+            assert bus.publish(STOP, b"a stop")
+        await until(lambda: heard)
+        assert heard == [(STOP, b"a stop")]
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+class Fails:
+    """A part of the client that is not what it was."""
+
+    def writelines(self, _lines):
+        raise AttributeError("writelines")
+
+    async def __call__(self, *_arguments):
+        raise AttributeError("publish")
 
 
 async def test_what_is_said_while_the_server_is_away_is_not_sent_when_it_is_back(nats, caplog):

@@ -278,6 +278,22 @@ def test_a_gateway_stops_counting_on_its_lease_a_second_before_it_runs_out():
     assert not trust.holds
 
 
+@pytest.mark.parametrize("seconds", [0.01, 0.7, 1.2])
+def test_a_slow_database_keeps_no_lease_from_counting_as_unbroken(seconds):
+    """A renewal is followed by a look at the others and a rest."""
+    clock = ManualClock(uptime=0.0)
+    trust = LeaseTrust(clock)
+    for _ in range(9):
+        asked_at = clock.steady()
+        clock.advance(seconds)
+        trust.renewed(asked_at)
+        clock.advance(seconds + RENEW_S)
+    assert trust.is_unbroken
+    clock.advance(LEASE_S)
+    trust.renewed(clock.steady())
+    assert not trust.is_unbroken
+
+
 def test_a_gateway_of_the_version_before_is_a_member_without_an_address(engine):
     """While a fleet is upgraded both serve it: what that writes names no address."""
     old, new = Member("old", "run-1"), Member("new", "run-2", address="ws://127.0.0.1:8765")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from sqlalchemy import create_engine, event, func, select
 
@@ -105,6 +106,16 @@ async def test_commands_are_found_as_they_were_last_written(database):
     assert {id: one.report for id, one in found.items()} == wanted
     assert found["c3"].driven == 3 / 9 and (found["c0"].driven, found["c1"].driven) == (1 / 3, 2 / 3)
     assert found["c4"].driven is None
+
+
+async def test_of_several_steps_of_a_command_at_once_the_last_counts(database):
+    steps = [CommandStep(CommandState.QUEUED, NOW, "Ada"), CommandStep(CommandState.FAILED, NOW + 1, "r")]
+    first = CommandReport("c1", "r1", "SetPosEnd", {}, "Ada", CommandState.QUEUED, steps[:1])
+    last = replace(first, state=CommandState.FAILED, steps=steps, deviation=np.float64(0.5))
+    await database.run(commands.add_all, [StoredCommand(first, sa_id=1)])
+    await database.run(commands.save_all, [StoredCommand(first, 1), StoredCommand(last, np.int64(1))])
+    found = await database.run(commands.find, "c1")
+    assert (found.state, found.deviation) == (CommandState.FAILED, 0.5)
 
 
 @pytest.mark.parametrize("size", SIZES)
