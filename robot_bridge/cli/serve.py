@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 HOST, PORT = "127.0.0.1", 8765
+SWITCH_INTERVAL_S = 0.0005
 LAST_MOMENT = 4.7
 """seconds after which a gateway that was told to end does so whatever it waits for."""
 
@@ -117,6 +118,9 @@ def serve(
     # All of that stays. To look again and again for what does not took a seventh of the start.
     gc.freeze()
     gc.enable()
+    # Each write to a connection lets the database's thread have a turn, which is as long as this (5 ms unless
+    # set): a stop of a thousand robots would wait for a thousand of them.
+    sys.setswitchinterval(SWITCH_INTERVAL_S)
     set_up_log(log_format, log_level)
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
     cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)

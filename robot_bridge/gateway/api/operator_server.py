@@ -210,6 +210,8 @@ UNNOTED = ("hello", "subscribe", "find_robots")
 AT_ONCE = ("emergency",)
 """News that wait for no turn of the loop, which thousands of robots may have before."""
 _STOP = EmergencyStop.method.encode()
+NEWS_CHARACTERS = 32_768
+"""of news that are sent together: a stop of thousands of robots is news of each of them."""
 VIEW_REST_S = 0.1
 """between frames to a desk whose view moves."""
 
@@ -455,13 +457,24 @@ class OperatorSession:
                 await self._news_event.wait()
                 self._news_event.clear()
                 while self._news:
-                    method, key = next(iter(self._news))
-                    params = self._news.pop((method, key))
-                    # What cannot be told of one robot must not keep back what is told of others.
-                    with log_and_continue(log, f"news of {method}", except_for=ConnectionClosed):
-                        await self._connection.send(jsonrpc.call(method, params))
+                    await self._connection.send_together(self._next_news())
+                    # To a client that takes all at once this would go on: robots are to have their turn.
+                    await asyncio.sleep(0)
         except ConnectionClosed:
             return
+
+    def _next_news(self) -> list[str]:
+        """Return the oldest news that wait, as many as are sent together."""
+        frames: list[str] = []
+        size = 0
+        while self._news and size < NEWS_CHARACTERS:
+            method, key = next(iter(self._news))
+            params = self._news.pop((method, key))
+            # What cannot be told of one robot must not keep back what is told of others.
+            with log_and_continue(log, "news of %s", method):
+                frames.append(jsonrpc.call(method, params))
+                size += len(frames[-1])
+        return frames
 
 
 def _data_of(error: Exception) -> dict[str, Any] | None:

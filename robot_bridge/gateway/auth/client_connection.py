@@ -7,7 +7,7 @@ import contextlib
 import logging
 import socket
 import time
-from collections.abc import AsyncIterator, Callable
+from collections.abc import AsyncIterator, Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -304,6 +304,17 @@ class ClientConnection(ServerConnection):
         self.protocol.send_text(text.encode())
         self.send_data()
         return True
+
+    async def send_together(self, texts: Sequence[str]) -> None:
+        """Send short messages, in one piece where that can be; raises ConnectionClosed."""
+        if self.protocol.state is OPEN and self.send_in_progress is None:
+            for text in texts:
+                self.protocol.send_text(text.encode())
+            self.send_data()
+            await self.drain()
+        else:
+            for text in texts:
+                await self.send(text)
 
     async def expel(self, code: int, reason: str) -> None:
         """End the connection, whether the client agrees or not; what still comes in is passed over."""

@@ -152,7 +152,8 @@ def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: S
 
 def change_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
     """Write ``rows`` into those with the same value in the first of ``names``; what is not there stays so."""
-    if _takes_json(connection):
+    # For a few PostgreSQL would read the whole table, as for the hundred that it expects in any text.
+    if len(rows) >= FEW and _takes_json(connection):
         for text in _as_json(_last_of_each(rows)):
             connection.exec_driver_sql(_update_json(table, tuple(names), connection.dialect), (text,))
     elif rows:
@@ -237,6 +238,7 @@ def _quoted(names: Iterable[str], dialect: Dialect) -> list[str]:
 
 # --- Rows as one text, for PostgreSQL: its driver takes ten times as long for each value by itself ---
 
+FEW = 16
 MOST_IN_TEXT = 5000
 """rows in one statement: a few megabytes."""
 

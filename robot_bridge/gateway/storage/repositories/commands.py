@@ -3,10 +3,23 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
-from sqlalchemy import Connection, Select, bindparam, delete, func, select
+from sqlalchemy import (
+    ARRAY,
+    BigInteger,
+    Connection,
+    Select,
+    Text,
+    and_,
+    bindparam,
+    cast,
+    delete,
+    func,
+    select,
+    true,
+)
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
@@ -28,6 +41,22 @@ _STEPS = (
     .where(command_steps.c.command.in_(bindparam("commands", expanding=True)))
     .order_by(command_steps.c.id)
 )
+
+
+# On PostgreSQL each is looked up by an index, whatever the server knows of the tables by now: it may take a
+# list for most rows, and of two lists it looks for every pair.
+_IDS = func.unnest(cast(bindparam("ids"), ARRAY(Text))).table_valued("id").render_derived()
+_WANTED = (
+    func.unnest(cast(bindparam("robots"), ARRAY(Text)), cast(bindparam("messages"), ARRAY(BigInteger)))
+    .table_valued("robot", "message")
+    .render_derived()
+)
+_EACH_OF_IDS = select(commands).join(_IDS, commands.c.id == _IDS.c.id)
+_EACH_OF_MESSAGES = select(commands).join(
+    _WANTED, and_(commands.c.robot == _WANTED.c.robot, commands.c.sa_id == _WANTED.c.message)
+)
+_OF_ONE = select(command_steps).where(command_steps.c.command == _IDS.c.id).offset(0).lateral()
+_EACH_OF_STEPS = select(_OF_ONE).select_from(_IDS.join(_OF_ONE, true())).order_by(_OF_ONE.c.id)
 
 
 class StoredCommand(NamedTuple):
@@ -70,10 +99,12 @@ def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
 
 def find_all(connection: Connection, ids: Sequence[str]) -> dict[str, StoredCommand]:
     """Return those of some commands that are stored, by their ids."""
+    at_once = connection.dialect.name == "postgresql"
+    query = _EACH_OF_IDS if at_once else _BY_ID
     return {
         command.report.command: command
-        for some in padded_pieces(ids)
-        for command in _load(connection, _BY_ID, {"ids": some})
+        for some in ([list(ids)] if at_once else padded_pieces(ids))
+        for command in _load(connection, query, {"ids": some})
     }
 
 
@@ -89,10 +120,12 @@ def find_messages(
     """Return the commands of robots whose ``messages`` are, or were, those rows of SA, by robot and id."""
     wanted = set(messages)
     found: dict[tuple[str, int], StoredCommand] = {}
-    for some in padded_pieces(messages):
-        robots, ids = map(list, zip(*some, strict=True))
+    at_once = connection.dialect.name == "postgresql"
+    for some in [messages] if at_once else padded_pieces(messages):
+        robots, ids = ([one[n] for one in some] for n in range(2))
         # By the index of both, which also finds a robot's command that has another one's number.
-        for command in _load(connection, _BY_MESSAGES, {"robots": robots, "messages": ids}):
+        query = _EACH_OF_MESSAGES if at_once else _BY_MESSAGES
+        for command in _load(connection, query, {"robots": robots, "messages": ids}):
             if (key := (command.report.robot, command.sa_id)) in wanted:
                 found[key] = command
     return found
@@ -142,16 +175,21 @@ def _load(
 ) -> list[StoredCommand]:
     rows = connection.execute(query, values).mappings().all()
     steps: dict[str, list[CommandStep]] = {row["id"]: [] for row in rows}
-    found = (
-        row
-        for some in padded_pieces(list(steps))
-        for row in connection.execute(_STEPS, {"commands": some}).mappings()
-    )
-    for command, step in readable(found, _step, lambda row: f"a step of command {row['command']}"):
+    for command, step in readable(
+        _steps(connection, list(steps)), _step, lambda row: f"a step of command {row['command']}"
+    ):
         steps[command].append(step)
     return list(
         readable(rows, lambda row: _stored(row, steps[row["id"]]), lambda row: f"command {row['id']}")
     )
+
+
+def _steps(connection: Connection, commands: Sequence[str]) -> Iterator[Mapping[Any, Any]]:
+    if connection.dialect.name == "postgresql":
+        yield from connection.execute(_EACH_OF_STEPS, {"ids": list(commands)}).mappings()
+        return
+    for some in padded_pieces(commands):
+        yield from connection.execute(_STEPS, {"commands": some}).mappings()
 
 
 def _stored(row: Mapping[Any, Any], steps: list[CommandStep]) -> StoredCommand:

@@ -26,6 +26,10 @@ class Connection:
     async def send(self, frame, text=None):
         await self.sent.put(json.loads(frame))
 
+    async def send_together(self, frames):
+        for frame in frames:
+            await self.send(frame)
+
     def write_at_once(self, frame):
         self.sent.put_nowait(json.loads(frame))
         return True

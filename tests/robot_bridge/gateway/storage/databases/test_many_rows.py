@@ -113,7 +113,8 @@ async def test_of_several_steps_of_a_command_at_once_the_last_counts(database):
     first = CommandReport("c1", "r1", "SetPosEnd", {}, "Ada", CommandState.QUEUED, steps[:1])
     last = replace(first, state=CommandState.FAILED, steps=steps, deviation=np.float64(0.5))
     await database.run(commands.add_all, [StoredCommand(first, sa_id=1)])
-    await database.run(commands.save_all, [StoredCommand(first, 1), StoredCommand(last, np.int64(1))])
+    many = [StoredCommand(first, 1)] * 20
+    await database.run(commands.save_all, [*many, StoredCommand(last, np.int64(1))])
     found = await database.run(commands.find, "c1")
     assert (found.state, found.deviation) == (CommandState.FAILED, 0.5)
 
