@@ -208,7 +208,7 @@ def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
 @lru_cache
 def _insert(table: Table, names: tuple[str, ...], rows: int, dialect: Dialect) -> str:
     row = f"({_marks(dialect, len(names))})"
-    return f"{_into(table, names, dialect)} VALUES {', '.join([row] * rows)}"
+    return f"{_into(table, names, dialect)} VALUES {', '.join([row] * rows)}"  # nosec B608 # names of ours
 
 
 @lru_cache
@@ -216,12 +216,12 @@ def _update(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
     key, *others = _quoted(names, dialect)
     mark = _marks(dialect, 1)
     values = ", ".join(f"{name} = {mark}" for name in others)
-    return f"UPDATE {table.name} SET {values} WHERE {key} = {mark}"  # nosec B608 # names
+    return f"UPDATE {table.name} SET {values} WHERE {key} = {mark}"  # nosec B608 # names of ours
 
 
 @lru_cache
 def _delete(table: Table, name: str, rows: int, dialect: Dialect) -> str:
-    return f"DELETE FROM {table.name} WHERE {name} IN ({_marks(dialect, rows)})"  # nosec B608 # names
+    return f"DELETE FROM {table.name} WHERE {name} IN ({_marks(dialect, rows)})"  # nosec B608 # names of ours
 
 
 def _marks(dialect: Dialect, number: int) -> str:
@@ -266,23 +266,23 @@ def _number(value: object) -> object:
 
 @lru_cache
 def _insert_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
-    return f"{_into(table, names, dialect)} SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"
+    return f"{_into(table, names, dialect)} SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"  # nosec B608 # names of ours
 
 
 @lru_cache
 def _upsert_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
     key, *others = _quoted(names, dialect)
     new = ", ".join(f"{name} = excluded.{name}" for name in others)
-    return f"{_insert_json(table, names, dialect)} ON CONFLICT ({key}) DO UPDATE SET {new}"
+    return f"{_insert_json(table, names, dialect)} ON CONFLICT ({key}) DO UPDATE SET {new}"  # nosec B608 # names of ours
 
 
 @lru_cache
 def _update_json(table: Table, names: tuple[str, ...], dialect: Dialect) -> str:
     key, *others = _quoted(names, dialect)
     new = ", ".join(f"{name} = v.{name}" for name in others)
-    values = f"SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"
+    values = f"SELECT {_values(table, names, dialect)} FROM {_ELEMENTS}"  # nosec B608 # names of ours
     columns = ", ".join((key, *others))
-    return f"UPDATE {table.name} t SET {new} FROM ({values}) AS v ({columns}) WHERE t.{key} = v.{key}"  # nosec B608 # names
+    return f"UPDATE {table.name} t SET {new} FROM ({values}) AS v ({columns}) WHERE t.{key} = v.{key}"  # nosec B608 # names of ours
 
 
 _ELEMENTS = "json_array_elements(cast(%s AS json)) WITH ORDINALITY AS e (r, n) ORDER BY n"

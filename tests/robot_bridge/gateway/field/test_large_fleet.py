@@ -92,6 +92,19 @@ def text_is(page, selector, pattern):
         raise AssertionError(f"{selector} says {found.all_inner_texts()}, not {pattern}") from error
 
 
+def ring_points(page):
+    """Return how many points of the ring around a selected robot are amid the map that the sheet leaves."""
+    sheet, box = page.locator("#robot").bounding_box(), page.locator("#map").bounding_box()
+    return page.evaluate(
+        """([x, y]) => { const c = document.querySelector('#map .leaflet-marker-pane canvas');
+        const d = c.getContext('2d').getImageData(2 * x - 80, 2 * y - 80, 160, 160).data;
+        let n = 0;
+        for (let k = 0; k < d.length; k += 4) n += d[k] === 0x0b && d[k + 1] === 0x57 && d[k + 2] === 0xa4;
+        return n; }""",
+        [box["width"] / 2, (sheet["y"] - box["y"]) / 2],
+    )
+
+
 def coloured(page):
     """Return how many points of the robots' canvas are as green as a fresh robot, and how many white."""
     return page.evaluate(
@@ -181,16 +194,7 @@ def test_a_robot_is_found_at_the_gateway_and_followed_wherever_the_map_is(phone,
     text_is(page, "#robot-facts", "fresh")
     wait_for(page, lambda: RUNNER in wire.at)
     # It is shown in the middle of what the sheet leaves of the map: the ring around it is there.
-    sheet, box = page.locator("#robot").bounding_box(), page.locator("#map").bounding_box()
-    shot = page.evaluate(
-        """([x, y]) => { const c = document.querySelector('#map .leaflet-marker-pane canvas');
-        const d = c.getContext('2d').getImageData(2 * x - 80, 2 * y - 80, 160, 160).data;
-        let n = 0;
-        for (let k = 0; k < d.length; k += 4) n += d[k] === 0x0b && d[k + 1] === 0x57 && d[k + 2] === 0xa4;
-        return n; }""",
-        [box["width"] / 2, (sheet["y"] - box["y"]) / 2],
-    )
-    assert shot > 100
+    wait_for(page, lambda: ring_points(page) > 100)
     page.locator("#whole").tap()
     zoom_in(page, 3)
     seen = wire.at[RUNNER]

@@ -12,6 +12,7 @@ import pytest
 
 from robot_bridge.core.errors import RefusedError
 from robot_bridge.core.messages.commands import GetCommands, Send, SetPositions, TargetPosition
+from robot_bridge.core.messages.positions import GetPositions
 from robot_bridge.core.messages.queues import GetQueue, PauseRobot, QueueState, QueueTask, SetQueue, TaskKind
 from robot_bridge.core.messages.records import GetPlacements
 from robot_bridge.core.messages.roads import CloseRoad, ResolveConflict
@@ -132,7 +133,7 @@ async def test_what_robots_declare_is_told_and_forgotten_when_they_declare_nothi
     ):
         await roads.ready(**declared)
         assert [report.paths for report in roads.fleet.reports()] == [told]
-        (row,) = (await roads.fleet.snapshots.now()).values["robots"]
+        (row,) = (await roads.fleet.views.now(GetPositions())).values["robots"]
         assert row.paths == told
 
 
