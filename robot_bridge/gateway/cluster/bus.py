@@ -9,11 +9,14 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import os
 import random
+import socket
 from base64 import b64decode, b64encode
 from binascii import Error as Base64Error
 from collections import deque
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, Protocol
 from urllib.parse import urlsplit
 
@@ -24,7 +27,7 @@ from ...core.logs import log_unforeseen
 from ..monitoring import wait_at_most
 
 if TYPE_CHECKING:
-    from psycopg import AsyncConnection
+    from psycopg import AsyncConnection, Connection
 
 log = logging.getLogger(__name__)
 
@@ -105,13 +108,20 @@ CHANNEL = "fleet"
 LARGEST_NOTIFICATION = 5900
 """bytes of a message: PostgreSQL takes 8000 characters, and base64 makes four of three bytes."""
 SENT_WITHIN_S = 2.0
+_NOTIFY = "select pg_notify(%s, %s)"
 
 
 class NotifyBus:
-    """One connection that listens, one that notifies; both are opened anew when one of them fails."""
+    """One connection that listens, one that notifies, and one that notifies of stops alone.
+
+    All are opened anew when one of the first two fails. Stops have a thread of their own: a turn of the
+    loop comes after those of thousands of robots, and a notification takes several.
+    """
 
     def __init__(self, url: URL, gateway: str) -> None:
         self._url = url
+        self._stopping: Connection[Any] | None = None
+        self._thread = ThreadPoolExecutor(1, "notifications of stops")
         self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
         self._outgoing = OutgoingMessages()
         self._connected = False
@@ -126,7 +136,11 @@ class NotifyBus:
         """Send a message; false while there is no connection, and for one that is too long to be notified."""
         if not self._connected or len(content) > LARGEST_NOTIFICATION:
             return False
-        self._outgoing.add(subject, content)
+        if subject == STOP and self._stopping is not None:
+            loop = asyncio.get_running_loop()
+            self._thread.submit(self._notify_of_stop, self._stopping, content, loop)
+        else:
+            self._outgoing.add(subject, content)
         return True
 
     async def run(self, receive: Receive) -> None:
@@ -150,6 +164,8 @@ class NotifyBus:
         async with contextlib.AsyncExitStack() as stack:
             listening = await stack.enter_async_context(await self._connect())
             sending = await stack.enter_async_context(await self._connect())
+            self._stopping = await asyncio.to_thread(self._connect_for_stops)
+            stack.callback(self._end_stopping)
             for subject in self._subjects:
                 await listening.execute(f'listen "{CHANNEL}.{subject}"'.encode())
             self._connected, self._said = True, ""
@@ -168,13 +184,41 @@ class NotifyBus:
     async def _connect(self) -> AsyncConnection[Any]:
         import psycopg
 
+        arguments, options = self._arguments()
+        return await psycopg.AsyncConnection.connect(*arguments, **options)
+
+    def _connect_for_stops(self) -> Connection[Any]:
+        import psycopg
+
+        arguments, options = self._arguments()
+        return psycopg.connect(*arguments, **options)
+
+    def _arguments(self) -> tuple[Any, dict[str, Any]]:
         from ..storage.dialects import CONNECT_ARGUMENTS
 
         engine = create_engine(self._url.set(drivername="postgresql+psycopg"))
         arguments, options = engine.dialect.create_connect_args(engine.url)
-        return await psycopg.AsyncConnection.connect(
-            *arguments, **{**options, **CONNECT_ARGUMENTS, "autocommit": True}
-        )
+        return arguments, {**options, **CONNECT_ARGUMENTS, "autocommit": True}
+
+    def _notify_of_stop(
+        self, connection: Connection[Any], content: bytes, loop: asyncio.AbstractEventLoop
+    ) -> None:
+        """Notify in the thread of stops; where that fails the loop does it in its turn."""
+        try:
+            connection.execute(_NOTIFY, _notification(STOP, content))
+        except Exception as error:
+            log.debug("a stop is notified of in its turn: %s", error)
+            with contextlib.suppress(RuntimeError):
+                loop.call_soon_threadsafe(self._outgoing.add, STOP, content)
+
+    def _end_stopping(self) -> None:
+        connection, self._stopping = self._stopping, None
+        if connection is None:
+            return
+        with contextlib.suppress(Exception), socket.socket(fileno=os.dup(connection.fileno())) as own:
+            # The thread may wait for a server that hangs: it is to wait no more.
+            own.shutdown(socket.SHUT_RDWR)
+        self._thread.submit(connection.close)
 
     async def _hear(self, connection: AsyncConnection[Any], receive: Receive) -> None:
         async for notification in connection.notifies():
@@ -187,9 +231,12 @@ class NotifyBus:
     async def _send(self, connection: AsyncConnection[Any]) -> None:
         while True:
             subject, content = await self._outgoing.next()
-            values = (f"{CHANNEL}.{subject}", b64encode(content).decode("ascii"))
             async with asyncio.timeout(SENT_WITHIN_S):
-                await connection.execute("select pg_notify(%s, %s)", values)
+                await connection.execute(_NOTIFY, _notification(subject, content))
+
+
+def _notification(subject: str, content: bytes) -> tuple[str, str]:
+    return f"{CHANNEL}.{subject}", b64encode(content).decode("ascii")
 
 
 # --- NATS: for any number of gateways ---

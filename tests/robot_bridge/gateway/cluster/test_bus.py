@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import signal
 import socket
+from base64 import b64decode
 from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import numpy as np
+import psycopg
 import pytest
 
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster import bus
 from robot_bridge.gateway.cluster.bus import (
+    CHANNEL,
     EVERYBODY,
     LARGEST_NOTIFICATION,
     MOST_WAITING,
@@ -251,6 +256,43 @@ async def test_a_stop_is_on_its_way_before_the_loop_has_a_turn(nats):
         read_until(other, b"a wake")
     task.cancel()
     await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_stop_is_notified_of_while_the_loop_has_no_turn(fleet_url):
+    address = read_address(fleet_url)
+    bus, heard = NotifyBus(address, "a"), []
+    task = asyncio.create_task(bus.run(lambda *message: heard.append(message)))
+    await until(lambda: bus.connected)
+    url = address.set(drivername="postgresql").render_as_string(False)
+    with psycopg.connect(url, autocommit=True) as other:
+        other.execute(f'listen "{CHANNEL}.{STOP}"')
+        assert bus.publish(STOP, b"a stop")
+        # The loop stands still meanwhile.
+        (notification,) = other.notifies(timeout=10 * BUSY, stop_after=1)
+        assert b64decode(notification.payload) == b"a stop"
+    await until(lambda: heard == [(STOP, b"a stop")])
+    # Without that connection it goes out in its turn.
+    bus._stopping.close()
+    assert bus.publish(STOP, b"another")
+    await until(lambda: heard[1:] == [(STOP, b"another")])
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_a_bus_ends_while_the_server_hangs(postgresql_server, fleet_url):
+    bus = NotifyBus(read_address(fleet_url), "a")
+    task = asyncio.create_task(bus.run(lambda *_: None))
+    await until(lambda: bus.connected)
+    pid = bus._stopping.info.backend_pid
+    os.kill(pid, signal.SIGSTOP)
+    try:
+        assert bus.publish(STOP, b"a stop")
+        await asyncio.sleep(0.1)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+        await asyncio.wait_for(asyncio.to_thread(bus._thread.shutdown), 20 * BUSY)
+    finally:
+        os.kill(pid, signal.SIGCONT)
 
 
 async def test_a_stop_that_cannot_be_written_at_once_is_sent_in_its_turn(nats, monkeypatch):
