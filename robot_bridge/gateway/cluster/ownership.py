@@ -58,6 +58,7 @@ class Ownership:
         self._database = database
         self._robots = OwnedRobots()
         self._waiting: dict[str, asyncio.Future[bool]] = {}
+        self._being_claimed: frozenset[str] = frozenset()
         self._claiming: asyncio.Task[None] | None = None
         self._mark: str | None = None
         self._owners: dict[str, Owner] = {}
@@ -145,7 +146,8 @@ class Ownership:
         await self._read_owners()
         lost, new = self._robots.compare(self._mine)
         self._robots.forget(lost)
-        # A claim of which nobody knew whether it was stored.
+        # A claim of which nobody knew whether it was stored; whoever waits for one takes its robots up.
+        new -= self._being_claimed
         self._robots.gained({robot: self._mine[robot] for robot in new})
         changed = [robot for robot in self._changed | lost if robot in self._owners]
         owners = {robot: self._owners[robot].gw for robot in changed}
@@ -196,6 +198,7 @@ class Ownership:
             some = dict(list(self._waiting.items())[:BATCH])
             for robot in some:
                 del self._waiting[robot]
+            self._being_claimed = frozenset(some)
             try:
                 claims: dict[str, Claimed] = await to_its_end(
                     self._database.run(gateways.claim, self._membership.me, sorted(some))
@@ -203,6 +206,8 @@ class Ownership:
             except Exception as error:
                 _fail(some.values(), error)
                 continue
+            finally:
+                self._being_claimed = frozenset()
             unknown = self._robots.claimed(self._membership.me, claims)
             for robot, waiting in some.items():
                 if not waiting.done():

@@ -81,10 +81,10 @@ class CommandService(CommandReader):
             if self._fence.owns(stored.report.robot):
                 self._open.add(self._restored(stored))
 
-    async def take_up(self, robots: Sequence[str]) -> None:
-        """Take up the commands of robots that another gateway had; raises StoreError."""
-        for stored in await self._database.run(commands.still_open, robots):
-            self._open.add(self._restored(stored))
+    def take_up(self, stored: Iterable[StoredCommand]) -> None:
+        """Take up commands of robots that another gateway had."""
+        for command in stored:
+            self._open.add(self._restored(command))
 
     def drop(self, robots: Iterable[str]) -> None:
         """Know nothing more of the commands of robots that another gateway has."""

@@ -314,12 +314,12 @@ class EmergencyStops:
         )
         self.announce()
 
-    async def take_over(self, robots: Sequence[str]) -> None:
+    def take_over(self, robots: Sequence[str], newest: StopRow | None) -> None:
         """Count robots that another gateway had; those that were sent no Abort yet are owed one.
 
-        That one may have died before it had stored theirs, and the stop may be over. Raises StoreError.
+        That one may have died before it had stored theirs, and the stop may be over: ``newest`` is the stop
+        that was stored last, from after these robots were read.
         """
-        newest = None if self.in_force else await self._database.run(emergency_stops.newest)
         stop = self._stop
         if stop is None or not self.in_force:
             self._abort_overdue(newest, robots)

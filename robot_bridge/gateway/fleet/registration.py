@@ -6,7 +6,9 @@ import asyncio
 import logging
 from collections.abc import Collection, Iterable, Sequence
 from functools import partial
-from typing import Protocol
+from typing import NamedTuple, Protocol
+
+from sqlalchemy import Connection
 
 from ...core.clock import Clock
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
@@ -19,12 +21,17 @@ from ..cluster.ownership import NameClaims, Ownership
 from ..commands.service import CommandService
 from ..model.events import EventBus, RobotLeft, RobotsTakenUp, handles
 from ..model.robots import AWAY, Robot, Robots
+from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask
 from ..queues.registry import QueueRegistry
 from ..queues.requests import QueueEditor
 from ..site.places import ServedSite
 from ..storage.database import Database
-from ..storage.repositories import metadata
+from ..storage.repositories import commands as stored_commands
+from ..storage.repositories import emergency_stops, metadata
+from ..storage.repositories import queues as stored_queues
 from ..storage.repositories import robots as stored_robots
+from ..storage.repositories.commands import StoredCommand
+from ..storage.repositories.emergency_stops import StopRow
 from ..traffic.yielding import YieldManager
 from ..trajectories.recording import TrajectoryWriter
 from .emergency_stop import EmergencyStops
@@ -35,7 +42,29 @@ log = logging.getLogger(__name__)
 # --- Robots that this gateway gets or loses: what is known of them is taken up, and dropped ---
 
 AT_ONCE = 500
-"""robots whose commands and queues are read in one piece."""
+"""robots of which what is stored is read in one piece."""
+
+
+class StoredState(NamedTuple):
+    """What is stored of some robots, queues with their newest tasks that ended, and the newest stop."""
+
+    robots: list[Robot]
+    commands: list[StoredCommand]
+    queues: list[tuple[Queue, list[QueuedTask]]]
+    stop: StopRow | None
+
+
+def _load(connection: Connection, robots: Sequence[str]) -> StoredState:
+    """Return what is stored of some robots: one piece of work, since each waits for its turn.
+
+    The stop is read last: one that ended motions which were read before is among what is known.
+    """
+    return StoredState(
+        stored_robots.load(connection, robots),
+        stored_commands.still_open(connection, robots),
+        stored_queues.load_with_ended(connection, robots, REPORTED_ENDED),
+        emergency_stops.newest(connection),
+    )
 
 
 class Takeover:
@@ -165,8 +194,9 @@ class Takeover:
     async def _read(self, some: Sequence[str]) -> None:
         self._commands.drop(some)
         self._queues.drop(some)
-        known = await self._database.run(stored_robots.load, some)
-        await self._commands.take_up(some)
+        stored = await self._database.run(_load, some)
+        known = stored.robots
+        self._commands.take_up(stored.commands)
         for robot in known:
             self._robots.restore(robot, self._clock.time())
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
@@ -174,8 +204,8 @@ class Takeover:
         for name in set(some) - {robot.name for robot in known}:
             self._robots.remove(name)
         self._saving.begin([robot.name for robot in known])
-        await self._queues.take_up(some)
-        await self._emergency.take_over([robot.name for robot in known if robot.abilities != ""])
+        self._queues.take_up(stored.queues)
+        self._emergency.take_over([robot.name for robot in known if robot.abilities != ""], stored.stop)
         self._events.publish(RobotsTakenUp(tuple(some)))
 
     def _drop(self, robot: str, gateway: str | None) -> None:

@@ -93,12 +93,12 @@ class QueueRegistry:
         for robot in self.names():
             self._events.publish(QueueChanged(robot))
 
-    async def take_up(self, robots: Sequence[str]) -> None:
-        """Take up the queues of robots that another gateway had; raises StoreError."""
-        for robot, queue in (await self._database.run(queues.load, robots)).items():
-            self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
-            self._queues[robot] = queue
-            self._events.publish(QueueChanged(robot))
+    def take_up(self, stored: Iterable[tuple[Queue, list[QueuedTask]]]) -> None:
+        """Take up queues of robots that another gateway had, each with its newest tasks that ended."""
+        for queue, ended in stored:
+            self._ended[queue.robot] = ended
+            self._queues[queue.robot] = queue
+            self._events.publish(QueueChanged(queue.robot))
 
     def drop(self, robots: Iterable[str]) -> None:
         """Know nothing more of the queues of robots that another gateway has."""

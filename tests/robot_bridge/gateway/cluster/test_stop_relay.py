@@ -285,7 +285,7 @@ async def test_a_robot_of_a_gateway_that_died_over_a_stop_is_aborted_when_that_i
         await place.yard.send(f"before-{robot}", robot=robot)
     place.yard.now += 10.0
     await place.store(over_at(place.yard.now - 5.0))
-    await place.stops.take_over(["r1"])
+    place.stops.take_over(["r1"], over_at(place.yard.now - 5.0))
     await place.yard.fleet.save()
     assert (place.yard.waiting("r1"), place.yard.waiting("r2")) == (["Abort"], ["SetPosEnd"])
     await place.yard.restart()

@@ -13,7 +13,7 @@ from robot_bridge.gateway.cluster.ownership import OwnerChanges
 from robot_bridge.gateway.fleet.registration import Takeover
 from robot_bridge.gateway.model.events import EventBus
 from robot_bridge.gateway.model.robots import Robots
-from robot_bridge.gateway.storage.repositories.gateways import Member, Owner, OwnersRead
+from robot_bridge.gateway.storage.repositories.gateways import Claimed, Member, Owner, OwnersRead
 
 ROBOTS = ["r1", "r2", "r3", "r4"]
 
@@ -124,10 +124,20 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
 
 
 class OwnersTable:
-    """The owners as the database has them; a read returns all, or those that have changed."""
+    """The owners as the database has them; a read returns all, or those that have changed.
+
+    What is ``run`` on it are claims: they are made at once, and ``answering`` lets who asked know of them.
+    """
 
     def __init__(self):
         self.owners, self.changed, self.read_all = {}, set(), 0
+        self.answering = asyncio.Event()
+
+    async def run(self, _work, me, robots):
+        before = {robot: self.owners.get(robot) for robot in robots}
+        self.write(**{robot: Owner(me.gw, me.run, 7) for robot in robots})
+        await self.answering.wait()
+        return {robot: Claimed(7, before[robot]) for robot in robots}
 
     def write(self, **owners):
         self.owners.update(owners)
@@ -187,6 +197,18 @@ async def test_a_robot_that_is_let_go_here_alone_turns_out_to_be_this_ones_again
     assert (await followed(owned)).new == {"r1"}
     owned.forget(["r1"])
     assert (await followed(owned)).new == {"r1"}
+
+
+async def test_a_robot_whose_claim_is_under_way_is_taken_up_by_who_waits_for_that_alone(owned, table):
+    table.write(r1=elsewhere(1))
+    await followed(owned)
+    claim = asyncio.create_task(owned.claim("r1"))
+    while table.owners["r1"] != here(7):
+        await asyncio.sleep(0.001)
+    assert (await followed(owned)).new == set() and not owned.owns("r1")
+    table.answering.set()
+    assert await claim and owned.owns("r1")
+    assert (await followed(owned)).new == set()
 
 
 async def test_robots_that_are_not_stored_are_named_each_time(owned, table):
