@@ -25,8 +25,9 @@ class FleetGateways:
 class Pace:
     """How patient who connects is, in seconds.
 
-    Waits between two attempts are ``first_wait`` long, twice as long with each round in which no gateway
-    answered, and ``longest_wait`` at most. A gateway has ``alone`` to take a connection where there is no
+    A round, in which each gateway is tried, begins after ``first_wait``, twice as long after each one in
+    which none answered, and ``longest_wait`` at most; within a round the next gateway is tried after
+    ``between``. A gateway has ``alone`` to take a connection where there is no
     other one to go to, else ``of_several``, twice as long with each round, up to ``alone``. A computer
     without power closes no connection: it is pinged every ``ping_interval``, and has ``ping_timeout`` to
     answer. ``given_first``: whether after a connection that was lost the gateway that was given is tried
@@ -34,6 +35,7 @@ class Pace:
     """
 
     first_wait: float
+    between: float
     longest_wait: float
     alone: float
     of_several: float
@@ -42,9 +44,9 @@ class Pace:
     given_first: bool = False
 
 
-ROBOT_PACE = Pace(0.5, 10.0, 10.0, 5.0, 5.0, 10.0)
+ROBOT_PACE = Pace(0.5, 0.1, 10.0, 10.0, 5.0, 5.0, 10.0)
 """To change the gateway for each hole in a radio network would be work for all."""
-DESK_PACE = Pace(0.25, 4.0, 5.0, 1.5, 2.0, 2.5, given_first=True)
+DESK_PACE = Pace(0.25, 0.1, 4.0, 5.0, 1.5, 2.0, 2.5, given_first=True)
 """An operator who wants to stop robots is at a gateway that lives within two seconds; a cable that is pulled
 out shows before the operator wonders."""
 
@@ -145,9 +147,11 @@ class GatewayAddresses:
         is_worth_it = self._given not in self._refusing and not (ends and lost == self._given)
         if pace.given_first and not self._failures and is_worth_it:
             self._current = self._given
-        self._round = self._failures // len(self._ring)
+        self._round, tried = divmod(self._failures, len(self._ring))
         self._failures += 1
         wait = min(pace.first_wait * 2.0 ** min(self._round, 10), pace.longest_wait)
+        if tried:
+            wait = pace.between
         return wait * self._random.uniform(1 - SPREAD, 1 + SPREAD)
 
     def _go_on(self) -> None:
