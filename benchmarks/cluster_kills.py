@@ -14,9 +14,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.clock import spread, table
-from benchmarks.cluster_crowd import JITTER_S
-from benchmarks.cluster_crowd import Plan as CrowdPlan
-from benchmarks.cluster_gateways import Gateways
+from benchmarks.cluster_onlookers import HEARD_WITHIN
+from benchmarks.cluster_onlookers import Plan as Onlookers
+from benchmarks.cluster_positions import Fleet
 from benchmarks.page import Part, goal
 from benchmarks.trial import size
 from tests.support.databases.postgresql import PostgreSql
@@ -41,9 +41,10 @@ KILLS = {GATEWAY_KILLED: size(60, 2), NATS_KILLED: size(20, 1), DATABASE_KILLED:
 WORK_S = 0.5, 3.0
 AFTERWARDS_S = 1.5
 LONGEST_SEED = 10**6
-MANY, MANY_RATE = size(5000, 80), 0.5
-BACK_S, ROOM = 5.0, 20_000
-"""seconds within which all robots of a gateway that died are to be heard again; connections let in."""
+MANY, MANY_RATE, DESK_RATE = size(1250, 20), 0.5, 2.0
+"""robots of each gateway, how often each says where it is in a second, and frames that a desk has of all."""
+BACK_S, SETTLE_S = 5.0, size(12.0, 4.0)
+"""seconds within which all robots of a gateway that died are to be heard again, and those before it dies."""
 
 TEXT = """\
 {gateways} gateways of one fleet on PostgreSQL, which waits for its disk, and three NATS servers as a
@@ -67,7 +68,9 @@ nowhere.
 Wrong in all of this: {wrong} ({goal}).
 
 {many} robots, dealt out evenly over {gateways} gateways and one NATS server, say where they are {rate:g}
-times a second; one gateway is killed, and its robots go to the next one within {jitter:g} s. {back}
+times a second, whatever happens; one gateway is killed, and its robots go on at the others as the reference
+robot does: after half a second they try theirs once more, and a tenth of a second later one of the others.
+{back}
 """
 
 
@@ -120,16 +123,20 @@ def _kill_all(seed: int) -> Killed:
 
 def _lose_one_of_many() -> float:
     """Return the seconds until all robots of a gateway that was killed are heard again at another one."""
-    with PostgreSql(durable=True) as database, Gateways(database, GATEWAYS, ROOM) as gateways:
-        plan = CrowdPlan(gateways.addresses, MANY, MANY_RATE, 2.0)
-        crowd = gateways.begin("benchmarks.cluster_crowd", asdict(plan))
-        crowd.line()
-        # As many positions as it takes for every robot to have been heard.
-        time.sleep(2 / MANY_RATE)
+    with PostgreSql(durable=True) as database, Fleet(database, GATEWAYS, MANY, follow=True) as fleet:
+        plan = Onlookers(fleet.addresses[:1], [{"rate": DESK_RATE, "form": "columns"}])
+        desks = fleet.begin("benchmarks.cluster_onlookers", asdict(plan))
+        desks.line()
+        begin = time.monotonic() + 0.5
+        wall = time.time() + begin - time.monotonic()
+        for crowd in fleet.crowds:
+            crowd.tell(begin=begin, seconds=SETTLE_S + HEARD_WITHIN, rate=MANY_RATE, measured=SETTLE_S)
+        time.sleep(begin + SETTLE_S - time.monotonic())
         since = time.time()
-        gateways.kill(GATEWAYS - 1)
-        crowd.tell(do="heard", since=since, desk=0, homes=[GATEWAYS - 1])
-        return float(crowd.line())
+        fleet.kill(GATEWAYS - 1)
+        schedule = {"crowds": GATEWAYS, "robots": MANY, "rate": MANY_RATE, "begin": wall}
+        desks.tell(schedule=schedule, heard={"home": GATEWAYS - 1, "since": since})
+        return float(desks.line())
 
 
 def part(seed: int, killed: Killed, back: float | None) -> Part:
@@ -143,8 +150,8 @@ def part(seed: int, killed: Killed, back: float | None) -> Part:
             "least": WORK_S[0],
             "most": WORK_S[1],
         },
-        **{"again": STARTED_AGAIN_S, "seed": seed, "figures": _figures(killed), "many": MANY},
-        **{"rate": MANY_RATE, "jitter": JITTER_S, "back": _back(back)},
+        **{"again": STARTED_AGAIN_S, "seed": seed, "figures": _figures(killed), "many": GATEWAYS * MANY},
+        **{"rate": MANY_RATE, "back": _back(back)},
         wrong=len(wrong) or "nothing",
         goal=goal("nothing", not wrong),
     )

@@ -1,7 +1,7 @@
 """Desks of several gateways that see a part of a large fleet: ``python cluster_onlookers.py PLAN``.
 
 It prints ``ready`` when all have subscribed, and for each window that comes as a line of JSON the delays of
-what desks were told in it.
+what desks were told in it, or how long it took until the first desk had heard of all robots of a gateway.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Any
 from benchmarks.cluster_crowd import Desk
 from benchmarks.cluster_swarm import NAME, Schedule
 
-ARRIVED_WITHIN = 60.0
+ARRIVED_WITHIN, HEARD_WITHIN = 60.0, 30.0
 
 
 @dataclass(frozen=True)
@@ -40,6 +40,22 @@ class Times:
             yield from self.schedule.times(frame)
 
 
+async def heard(desk: Desk, schedule: Schedule, home: int, since: float) -> float:
+    """Return the seconds from ``since`` until a desk was told what all robots of a gateway said later."""
+    names = [f"{NAME}{number * schedule.crowds + home}" for number in range(schedule.robots)]
+    missing = dict.fromkeys(names)
+    last = since
+    async with asyncio.timeout(HEARD_WITHIN):
+        while missing:
+            for name in list(missing):
+                said, at = desk.newest.get(name, (0.0, 0.0))
+                if said > since:
+                    last = max(last, at)
+                    del missing[name]
+            await asyncio.sleep(0.01)
+    return last - since
+
+
 async def run(plan: Plan) -> None:
     """Do what is said on standard input until that ends."""
     times, loop = Times(), asyncio.get_running_loop()
@@ -55,7 +71,10 @@ async def run(plan: Plan) -> None:
     print("ready", flush=True)
     while line := await loop.run_in_executor(None, sys.stdin.readline):
         window = json.loads(line)
-        times.schedule = Schedule(len(plan.addresses), **window["schedule"])
+        times.schedule = Schedule(**window["schedule"])
+        if "heard" in window:
+            print(json.dumps(await heard(desks[0], times.schedule, **window["heard"])), flush=True)
+            continue
         await asyncio.sleep(window["begin"] - time.time())
         for desk in desks:
             desk.delays = []

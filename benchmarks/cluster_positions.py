@@ -106,18 +106,22 @@ def measure(_data: Path) -> Part:
 
 
 class Fleet(Gateways):
-    """Gateways, each with ``robots`` of its own."""
+    """Gateways, each with ``robots`` of its own, which go on at another one where they ``follow``."""
 
-    def __init__(self, database: PostgreSql, count: int, robots: int) -> None:
-        self._robots = robots
+    def __init__(self, database: PostgreSql, count: int, robots: int, *, follow: bool = False) -> None:
+        self._robots, self._follow = robots, follow
         super().__init__(database, count, 2 * count * robots)
 
     def start(self, count: int, room: int) -> None:
         """Start the gateways, and their robots; return when every robot has its map."""
         super().start(count, room)
         plan = {"host": "127.0.0.1", "robots": self._robots, "stride": count}
+        others = self.addresses if self._follow else []
         self.crowds = [
-            self.begin("benchmarks.cluster_swarm", {**plan, "port": one.port, "first": number})
+            self.begin(
+                "benchmarks.cluster_swarm",
+                {**plan, "port": one.port, "first": number, "gateways": [one.address, *others]},
+            )
             for number, one in enumerate(self.gateways)
         ]
         for crowd in self.crowds:
@@ -142,7 +146,7 @@ def _watched(database: PostgreSql, count: int) -> Run:
         wall = time.time() + begin - time.monotonic()
         for crowd in fleet.crowds:
             crowd.tell(begin=begin, seconds=SETTLE + SECONDS, rate=RATE, measured=SETTLE)
-        schedule = {"robots": ROBOTS, "rate": RATE, "begin": wall}
+        schedule = {"crowds": count, "robots": ROBOTS, "rate": RATE, "begin": wall}
         desks.tell(schedule=schedule, begin=wall + SETTLE, seconds=SECONDS)
         time.sleep(begin + SETTLE - time.monotonic())
         before = fleet.cpu_seconds(), _of_the_bus(fleet)

@@ -6,17 +6,20 @@ A robot moves on by a millimetre with each message, so that a place says when it
 
 from __future__ import annotations
 
+import heapq
 import json
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 
-from benchmarks.raw_websocket import frame
+from benchmarks.raw_websocket import call, frame
 from benchmarks.raw_websocket import result as call_result
 from benchmarks.swarm_robots import Robot, Robots, serve
+from robot_bridge.core.gateway_addresses import GatewayAddresses
 from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
 from robot_bridge.gateway.fleet.emergency_stop import NAME_PREFIX
 
@@ -69,14 +72,24 @@ class RowRobot(Robot):
         self.stops: dict[str, float] = {}
         """When it heard of each stop first, by the id of the call."""
 
+    def opened(self) -> None:
+        """Say Ready again, under the number of before."""
+        self.send(call("Ready", {"magic": self.number}, 1))
+
     def tell(self) -> bool:
-        """Send a position; return false when the socket takes no more."""
+        """Send a position; return false when the socket takes no more, or there is no gateway."""
         self._step += 1
+        if not self.arrived:
+            return False
         message = frame(
             f'{{"jsonrpc":"2.0","method":"SendPos","params":{{"x":{self._x + self._step / 1000:.3f},'
             f'"y":{self._y:.3f},"theta":0.5,"v":0.1,"t":{time.time():.6f}}}}}'
         )
-        return self.offer(message)
+        try:
+            return self.offer(message)
+        except ConnectionError:
+            # Seen when it is read.
+            return False
 
     def take_text(self, payload: bytes) -> None:
         """Take in a message; note when a stop came, and acknowledge it."""
@@ -88,7 +101,40 @@ class RowRobot(Robot):
 
 
 class RowRobots(Robots[RowRobot]):
-    """Those of one gateway: each ``stride``-th from the ``first`` on."""
+    """Those of one gateway: each ``stride``-th from the ``first`` on.
+
+    Where there are other ``gateways`` they go on there when theirs has died, as the reference robot does.
+    """
+
+    def __init__(self, plan: dict[str, Any]) -> None:
+        self._gateways = plan["gateways"]
+        self._due: list[tuple[float, int, RowRobot]] = []
+        super().__init__(plan)
+        self._addresses = {robot: GatewayAddresses(self._gateways[0]) for robot in self.robots}
+        for addresses in self._addresses.values():
+            addresses.learn(self._gateways)
+
+    def lost(self, robot: RowRobot, error: ConnectionError) -> None:
+        """Have a robot connect again, to its gateway and then to others."""
+        if len(self._gateways) == 1:
+            raise error
+        robot.sock.close()
+        robot.arrived = False
+        due = time.monotonic() + self._addresses[robot].next_wait()
+        heapq.heappush(self._due, (due, robot.number, robot))
+
+    def hear(self, seconds: float) -> None:
+        """Connect those whose time has come, and take in what comes for that long."""
+        while self._due and self._due[0][0] <= time.monotonic():
+            robot = heapq.heappop(self._due)[-1]
+            address = urlsplit(self._addresses[robot].current)
+            try:
+                robot.begin_open(str(address.hostname), int(address.port or 0))
+            except ConnectionError as error:
+                self.lost(robot, error)
+            else:
+                self.watch(robot)
+        super().hear(seconds)
 
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Do what is asked: drive, or say how many robots heard of a stop, and when the last one did."""

@@ -10,6 +10,8 @@ import socket
 import struct
 
 BINARY, CLOSE, PING, TEXT = 2, 8, 9, 1
+END = b"\r\n\r\n"
+"""of the answer to a handshake."""
 
 
 def frame(text: str | bytes, opcode: int = TEXT) -> bytes:
@@ -36,8 +38,8 @@ def result(id: int) -> bytes:
     return frame(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
 
 
-def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
-    """Return a socket on which the handshake is done."""
+def begin(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
+    """Return a socket on which the handshake is asked for."""
     sock = socket.socket()
     if receive_buffer:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
@@ -48,17 +50,28 @@ def connect(host: str, port: int, path: str, receive_buffer: int | None = None) 
         f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
         f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
     )
+    return sock
+
+
+def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
+    """Return a socket on which the handshake is done."""
+    sock = begin(host, port, path, receive_buffer)
     answer = b""
-    while not answer.endswith(b"\r\n\r\n"):
+    while not answer.endswith(END):
         # Byte by byte: what comes behind the answer belongs to whoever reads frames.
         byte = sock.recv(1)
         if not byte:
             raise ConnectionError(f"{path}: the server closed: {answer.decode(errors='replace')}")
         answer += byte
-    if b" 101 " not in answer.splitlines()[0]:
-        raise ConnectionError(f"{path}: {answer.decode(errors='replace')}")
+    check(path, answer)
     sock.setblocking(False)
     return sock
+
+
+def check(path: str, answer: bytes) -> None:
+    """Raise ConnectionError for the answer of a server that does not take a connection."""
+    if b" 101 " not in answer.splitlines()[0]:
+        raise ConnectionError(f"{path}: {answer.decode(errors='replace')}")
 
 
 class Inbox:
@@ -99,6 +112,7 @@ class Peer:
 
     def __init__(self, host: str, port: int, path: str) -> None:
         self._where = host, port, path
+        self._answer: bytes | None = None
         self.open()
 
     def open(self) -> None:
@@ -109,6 +123,19 @@ class Peer:
         self.sock = connect(*self._where)
         self._inbox = Inbox()
         self._left = b""
+
+    def begin_open(self, host: str, port: int) -> None:
+        """Ask a server for a connection; :meth:`opened` is called once it has agreed.
+
+        :raises ConnectionError: when nobody listens there.
+        """
+        self._where = host, port, self._where[2]
+        self.sock = begin(*self._where)
+        self.sock.setblocking(False)
+        self._inbox, self._left, self._answer = Inbox(), b"", b""
+
+    def opened(self) -> None:
+        """Do what comes first on a connection that was asked for."""
 
     def send(self, message: bytes = b"") -> None:
         """Send a frame; what the socket does not take now goes first the next time."""
@@ -139,6 +166,14 @@ class Peer:
         data = self.sock.recv(1 << 16)
         if not data:
             raise ConnectionError(f"{self._where[2]}: the server closed")
+        if self._answer is not None:
+            answer, end, data = (self._answer + data).partition(END)
+            if not end:
+                self._answer = answer
+                return []
+            check(self._where[2], answer)
+            self._answer = None
+            self.opened()
         frames = self._inbox.take(data)
         for opcode, payload in frames:
             if opcode == PING:

@@ -44,7 +44,7 @@ class Robot(Peer):
     def __init__(self, host: str, port: int, number: int, *, rpc: bool) -> None:
         super().__init__(host, port, f"/robot?robot=load-{number}")
         self._x, self._step = 10.0 + number % 30, 0
-        self._number = number
+        self.number = number
         self.arrived = not rpc
         if rpc:
             self.send(call("Ready", {"magic": number}, 1))
@@ -54,7 +54,7 @@ class Robot(Peer):
         self._step += 1
         message = frame(
             f'{{"jsonrpc":"2.0","method":"SendPos","params":{{"x":{self._x + self._step % 50 * 0.1:.3f},'
-            f'"y":{20 + self._number / 1000:.3f},"theta":0.5,"v":1.0,"t":{time.time():.6f}}}}}'
+            f'"y":{20 + self.number / 1000:.3f},"theta":0.5,"v":1.0,"t":{time.time():.6f}}}}}'
         )
         return self.offer(message)
 
@@ -89,8 +89,7 @@ class Robots(ABC, Generic[Kind]):
         self._poll = select.epoll()
         for robot in self.make(plan):
             self.robots.append(robot)
-            self._by_file[robot.sock.fileno()] = robot
-            self._poll.register(robot.sock.fileno(), select.EPOLLIN)
+            self.watch(robot)
             if len(self.robots) % BETWEEN == 0:
                 # Who answers no pings is cut off before thousands have come.
                 while self._take_in(0.0):
@@ -118,8 +117,21 @@ class Robots(ABC, Generic[Kind]):
         """Take in what has come, or is the first to come in that time; tell whether anything did."""
         found = self._poll.poll(seconds)
         for file, _ in found:
-            self._by_file[file].hear()
+            robot = self._by_file[file]
+            try:
+                robot.hear()
+            except ConnectionError as error:
+                self.lost(robot, error)
         return bool(found)
+
+    def lost(self, robot: Kind, error: ConnectionError) -> None:
+        """Deal with a connection that was lost; raises ``error`` where nobody is to lose one."""
+        raise error
+
+    def watch(self, robot: Kind) -> None:
+        """Hear what comes on the connection that a robot has now."""
+        self._by_file[robot.sock.fileno()] = robot
+        self._poll.register(robot.sock.fileno(), select.EPOLLIN)
 
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Do what is asked: drive."""
