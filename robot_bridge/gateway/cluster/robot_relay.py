@@ -66,7 +66,7 @@ NAMES_AGAIN_S = 1.0
 """seconds between two times that a gateway is asked to name its robots."""
 POSITION_ALL_S = 10.0
 """seconds after which robots that say nothing new are told again: a message may have been lost. A gateway
-that comes, or learns that another one has a robot now, asks for all."""
+that comes, learns that another one has a robot now, or misses a name, asks for all with their names."""
 
 
 class PositionRelay:
@@ -107,13 +107,13 @@ class PositionRelay:
             self._was_cut_off = False
             self._exchange.wake("positions")
         now = self._membership.database_time()
-        everything = now - self._sent_all_at >= POSITION_ALL_S
+        is_asked, everything = self._sent_all_at == -math.inf, now - self._sent_all_at >= POSITION_ALL_S
         since, self._revision = (-1 if everything else self._revision), self._robots.revision
         if everything:
             self._sent_all_at = now
         mine = self._robots.own_places(since)
         if mine.names:
-            for batch in position_batches(self._batch(mine, now, name_all=everything), self._largest):
+            for batch in position_batches(self._batch(mine, now, name_all=is_asked), self._largest):
                 self._exchange.send(POSITIONS, batch)
 
     def _batch(self, robots: RobotPlaces, now: float, *, name_all: bool) -> PositionBatch:
@@ -165,7 +165,7 @@ class PositionRelay:
 
 DETAIL_TICK_S = 1.0
 """seconds between two messages."""
-DETAIL_ALL_S = 30.0
+DETAIL_ALL_S = 60.0
 """seconds after which all is told again: a message may have been lost."""
 DETAIL_ALL_AGAIN_S = 5.0
 """seconds between two times that all is sent, whoever asks for it: gateways of a fleet start together."""

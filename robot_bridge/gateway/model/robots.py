@@ -396,6 +396,16 @@ class Robots:
         robot = self._elsewhere.get(name)
         if robot is None or robot.gateway != gateway:
             return
+        known = (
+            *self._details.get(name, (None, None)),
+            robot.doubt,
+            robot.latency,
+            robot.paths,
+            robot.abilities,
+        )
+        if (*known, None if said.magic is None else robot.magic) == said:
+            # Said again in case that a message was lost: nobody has to look at the robot for that.
+            return
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
         robot.magic = robot.magic if said.magic is None else said.magic

@@ -13,6 +13,7 @@ from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch
 from robot_bridge.gateway.cluster.robot_relay import (
     DETAIL_ALL_AGAIN_S,
     NAMES_AGAIN_S,
+    POSITION_ALL_S,
     DetailRelay,
     PositionRelay,
 )
@@ -161,6 +162,8 @@ def test_robots_are_named_once_and_all_of_them_to_who_asks(place):
     assert place.tick() == (["r2"], []) and named() == []
     place.exchange.receive(EVERYBODY, CODEC.encode(Wake("a", "positions")))
     assert place.tick() == (["r1", "r2", "r0"], []) and named() == ["r1", "r2", "r0"]
+    place.now += POSITION_ALL_S
+    assert place.tick() == (["r1", "r2", "r0"], []) and named() == [], "who misses a name asks for it"
 
 
 def test_a_gateway_that_runs_out_of_numbers_begins_anew(place, monkeypatch):

@@ -135,6 +135,25 @@ def test_a_heading_is_kept_within_half_a_turn(robots):
     assert robots.pose("theirs").theta == pytest.approx(4.0 - 2 * math.pi)
 
 
+def test_details_that_are_said_again_are_no_change(robots):
+    said = DescribedElsewhere(0.1, "odd", "it jumps", 0.2, None, "map", 7)
+    for one, changes in ((said, True), (said, False), (said._replace(status=None), True)):
+        seen = robots.revision
+        robots.describe_elsewhere("theirs", "south", one)
+        assert (robots.revision > seen) is changes
+    for field, value in (
+        ("battery", 0.2),
+        ("doubt", None),
+        ("latency", 0.4),
+        ("abilities", "x"),
+        ("magic", 8),
+        ("magic", 0),
+    ):
+        seen, said = robots.revision, said._replace(status=None, **{field: value})
+        robots.describe_elsewhere("theirs", "south", said)
+        assert robots.revision > seen, field
+
+
 def test_details_go_with_the_place_until_others_come(robots):
     robots.describe_elsewhere(
         "theirs", "south", DescribedElsewhere(0.5, "busy", "it leapt", 0.01, None, None, 9)
