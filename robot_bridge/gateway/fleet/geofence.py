@@ -188,6 +188,8 @@ def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances
     )
     for kind, areas, metres in kinds:
         pairs = areas.near(places, metres + MARGIN_M)
+        if not pairs.size:
+            continue
         near.update(StayKey(robots[robot], kind, areas.id(area)) for robot, area in pairs.T.tolist())
         # Most robots are nowhere near.
         rows = np.unique(pairs[0])
