@@ -11,6 +11,7 @@ import numpy.typing as npt
 from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
+from ...robot_bridge.core.geometry import pairs_between
 from ...robot_bridge.core.messages.administration import SiteReport
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import TaskState
@@ -26,7 +27,6 @@ from ..layers.roles import layers_with_role
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.language import age_in_words, tr
 from ..ui.scheduling import Steps, scaled_progress
-from .close_pairs import pairs_between
 from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck, is_looked_at
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand, Point
 

@@ -11,8 +11,8 @@ import numpy as np
 import numpy.typing as npt
 from qgis.core import QgsSettings
 
+from ....robot_bridge.core.geometry import Ints, close_pairs
 from ....robot_bridge.core.messages.safety import RobotState
-from ...control.close_pairs import Ints, close_pairs
 from ...gateway_client.robot_states import STATES
 from ...ui.language import tr
 

@@ -2,7 +2,8 @@
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.control.close_pairs import close_pairs, pairs_between
+
+from robot_bridge.core.geometry import close_pairs, pairs_between
 
 
 def brute_force(xy, reach):
