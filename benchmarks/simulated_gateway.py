@@ -21,8 +21,9 @@ import numpy as np
 from robot_bridge.core.clock import SYSTEM_CLOCK
 from robot_bridge.core.messages.positions import PositionForm, View
 from robot_bridge.core.messages.robots import SendPos
-from robot_bridge.gateway.cluster.bus import Bus, NatsBus, NoBus
+from robot_bridge.gateway.cluster.bus import Bus, NoBus
 from robot_bridge.gateway.cluster.messages import Exchange
+from robot_bridge.gateway.cluster.nats_bus import NatsBus
 from robot_bridge.gateway.cluster.robot_relay import DetailRelay, PositionRelay
 from robot_bridge.gateway.fleet.views import FleetViews, ViewWatch
 from robot_bridge.gateway.model.position_checks import AcceptedArea

@@ -1,4 +1,4 @@
-"""The bus between the gateways of a fleet: what may be lost travels over it. Its makes are none and two.
+"""The bus between the gateways of a fleet: what may be lost travels over it. None, PostgreSQL, or NATS.
 
 What may not be lost is in the database; a bus only makes it known sooner. A message is handed over while the
 bus is connected, or not at all: what waited for a connection would arrive as if it were new.
@@ -10,7 +10,6 @@ import asyncio
 import contextlib
 import logging
 import os
-import random
 import socket
 from base64 import b64decode, b64encode
 from binascii import Error as Base64Error
@@ -18,13 +17,8 @@ from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any, Protocol
-from urllib.parse import urlsplit
 
 from sqlalchemy import URL, create_engine
-
-from ...core.errors import BridgeError
-from ...core.logs import log_unforeseen
-from ..monitoring import wait_at_most
 
 if TYPE_CHECKING:
     from psycopg import AsyncConnection, Connection
@@ -37,10 +31,8 @@ STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
 """Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
 MOST_WAITING = 256
 """messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
-RETRY_S, NATS_RETRY_S = 1.0, 0.1
+RETRY_S = 1.0
 """seconds from one attempt to connect to the next."""
-CONNECTED_LOOK_S = 0.2
-"""seconds after which a connection is looked at that did not say that it was lost."""
 
 
 def own_subject(gateway: str) -> str:
@@ -237,268 +229,3 @@ class NotifyBus:
 
 def _notification(subject: str, content: bytes) -> tuple[str, str]:
     return f"{CHANNEL}.{subject}", b64encode(content).decode("ascii")
-
-
-# --- NATS: for any number of gateways ---
-
-OLDEST_NATS = (2, 10, 26)
-CONNECT_S, FLUSH_S = 2.0, 2.0
-QUIET_LOOKS, PONG_S = 10, 1.0
-"""Looks at a connection by which nothing came, after which it is asked whether it stands, and seconds for the
-answer: a stop of the network is known after three seconds. One by which messages come is not asked: with many
-robots on a busy computer the answer waits behind positions for longer than that."""
-PING_S = 30
-"""seconds between pings of the client itself, two of which may be without an answer."""
-PENDING_BYTES = 4 << 20
-"""bytes that wait for a slow server."""
-
-
-class NatsBus:
-    """One connection to a NATS server or cluster; ``servers`` are its URLs.
-
-    :raises BridgeError: when nats-py is not installed.
-    """
-
-    def __init__(self, servers: list[str], gateway: str, prefix: str, password: str | None = None) -> None:
-        try:
-            import nats
-        except ImportError:
-            raise BridgeError(
-                "the bus nats:// needs nats-py; install it with: "
-                "pip install 'fleet-supervisor-robot-bridge[cluster]'"
-            ) from None
-        self._nats = nats
-        self._servers = servers
-        self._prefix = prefix
-        self._subjects = (STOP, EVERYBODY, POSITIONS, own_subject(gateway))
-        self._password = password
-        self._client: Any = None
-        self._outgoing = OutgoingMessages()
-        self._said = set[str]()
-        """why there is no connection, since there was one."""
-
-    @property
-    def connected(self) -> bool:
-        """Whether the connection stands, and the server knows what this gateway listens to."""
-        return self._client is not None and bool(self._client.is_connected)
-
-    def publish(self, subject: str, content: bytes) -> bool:
-        """Send a message; false while there is no connection."""
-        if not self.connected:
-            return False
-        if subject != STOP or not write_at_once(self._client, f"{self._prefix}.{subject}", content):
-            self._outgoing.add(subject, content)
-        return True
-
-    async def check(self) -> None:
-        """Connect for a moment.
-
-        :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
-        """
-        faults: list[str] = []
-        heard = asyncio.Event()
-
-        async def add_fault(error: Exception) -> None:
-            faults.append(str(error))
-            heard.set()
-
-        async def hear(_message: Any) -> None:
-            heard.set()
-
-        try:
-            async with asyncio.timeout(self._patience):
-                client = await self._connect(add_fault, allow_reconnect=False)
-        except (self._nats.errors.Error, OSError, TimeoutError) as error:
-            raise BridgeError(
-                f"bus {self._where}: {str(error) or 'no server answers'}{_all(faults)}; check that NATS "
-                "runs there, and the account of this gateway"
-            ) from None
-        try:
-            check_version(self._where, client.connected_server_version)
-            subject = self._subjects[-1]
-            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-            await client.publish(f"{self._prefix}.{subject}", b"")
-            async with asyncio.timeout(FLUSH_S):
-                await heard.wait()
-        except TimeoutError:
-            faults.append("what this gateway publishes does not come back to it")
-        finally:
-            await client.close()
-        if faults:
-            raise BridgeError(
-                f"bus {self._where}: {_all(faults).lstrip(': ')}; the account of this gateway has to be "
-                f"allowed to publish and to subscribe to {self._prefix}.>"
-            )
-
-    async def run(self, receive: Receive) -> None:
-        """Connect and send until cancelled; the client connects again by itself."""
-        while True:
-            try:
-                await self._serve(receive)
-            except (self._nats.errors.Error, OSError, TimeoutError, BridgeError) as error:
-                self._say(str(error) or "no server answers")
-            except Exception:
-                # Whatever the library stumbles over: the bus is there again a moment later.
-                log_unforeseen(log, f"bus {self._where}")
-            finally:
-                self._outgoing.clear()
-            await asyncio.sleep(NATS_RETRY_S)
-
-    async def _serve(self, receive: Receive) -> None:
-        lost = asyncio.Event()
-
-        async def ended() -> None:
-            lost.set()
-
-        async def log_fault(error: Exception) -> None:
-            self._say(str(error))
-
-        async with asyncio.timeout(self._patience):
-            # A connection that is lost is made anew here, not by the client: it would keep what is published
-            # meanwhile, and send that as if it were new.
-            client = await self._connect(
-                log_fault, allow_reconnect=False, disconnected_cb=ended, closed_cb=ended
-            )
-        try:
-            check_version(self._where, client.connected_server_version)
-            await self._subscribe(client, receive)
-            self._client = client
-            self._said.clear()
-            await self._send_until_lost(client, lost)
-        finally:
-            self._client = None
-            with contextlib.suppress(Exception):
-                async with asyncio.timeout(FLUSH_S):
-                    await client.close()
-        raise OSError("the connection is lost")
-
-    async def _subscribe(self, client: Any, receive: Receive) -> None:
-        """Return when the server knows what this gateway listens to: what is said before is not heard."""
-        cut = len(self._prefix) + 1
-
-        async def hear(message: Any) -> None:
-            receive(message.subject[cut:], message.data)
-            # The client hands over all that waits without a pause, and answers no pings meanwhile.
-            await asyncio.sleep(0)
-
-        for subject in self._subjects:
-            # Each has a queue of its own: no stop waits behind positions.
-            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-        await client.flush(FLUSH_S)
-
-    async def _send_until_lost(self, client: Any, lost: asyncio.Event) -> None:
-        sending = asyncio.create_task(self._send(client))
-        losing = asyncio.create_task(disconnection(client, lost))
-        try:
-            await asyncio.wait({sending, losing}, return_when=asyncio.FIRST_COMPLETED)
-            if sending.done():
-                sending.result()
-        finally:
-            for task in (sending, losing):
-                task.cancel()
-            await asyncio.gather(sending, losing, return_exceptions=True)
-
-    async def _send(self, client: Any) -> None:
-        while True:
-            subject, content = await self._outgoing.next()
-            await client.publish(f"{self._prefix}.{subject}", content)
-
-    async def _connect(self, on_error: Any, **options: Any) -> Any:
-        """Connect to one of the servers; raises what the last one brought about."""
-        servers = random.sample(self._servers, len(self._servers))  # nosec B311 # nothing secret: spreads load
-        for server in servers:
-            try:
-                return await self._connect_to(server, on_error, **options)
-            except (self._nats.errors.Error, OSError, TimeoutError):
-                if server is servers[-1]:
-                    raise
-        raise AssertionError("there is a server")
-
-    async def _connect_to(self, server: str, on_error: Any, **options: Any) -> Any:
-        if self._password is not None:
-            options |= {"user": urlsplit(server).username, "password": self._password}
-        return await self._nats.connect(
-            server,
-            error_cb=on_error,
-            connect_timeout=CONNECT_S,
-            reconnect_time_wait=0.1,
-            max_reconnect_attempts=1,
-            ping_interval=PING_S,
-            max_outstanding_pings=2,
-            pending_size=PENDING_BYTES,
-            no_echo=False,
-            name="robot-bridge",
-            **options,
-        )
-
-    @property
-    def _patience(self) -> float:
-        return 2 * CONNECT_S * len(self._servers)
-
-    @property
-    def _where(self) -> str:
-        return ",".join(server.rpartition("@")[2].removeprefix("nats://") for server in self._servers)
-
-    def _say(self, reason: str) -> None:
-        if reason not in self._said:
-            log.warning("bus %s: %s; connecting again until it works", self._where, reason)
-        self._said.add(reason)
-
-
-def write_at_once(client: Any, subject: str, content: bytes) -> bool:
-    """Publish on a connection of nats-py without a turn of the loop; false where that cannot be.
-
-    The client writes what was published in a task of its own, whose turn comes after those of thousands of
-    robots. It does nothing where nothing is left to be written. A message of which this says false may have
-    been published all the same.
-    """
-    with contextlib.suppress(Exception):
-        publishing = client.publish(subject, content)
-        try:
-            publishing.send(None)
-        except StopIteration:
-            with contextlib.suppress(Exception):
-                client._transport.writelines(client._pending[:])
-                client._pending, client._pending_data_size = [], 0
-            # If not now, it is written by the client's task.
-            return True
-        finally:
-            publishing.close()
-    return False
-
-
-async def disconnection(client: Any, lost: asyncio.Event) -> None:
-    """Wait until ``client`` has lost its server, which it says by ``lost``, or the server does not answer.
-
-    It may not say so: a task of its own that fails as it closes the connection ends without a word.
-    """
-    heard, quiet = -1, 0
-    while client.is_connected and not lost.is_set():
-        # Looks are counted, not seconds: what came while this computer was busy is read before the next one.
-        await wait_at_most(lost, CONNECTED_LOOK_S)
-        before, heard = heard, client.stats["in_msgs"]
-        quiet = quiet + 1 if heard == before else 0
-        if quiet >= QUIET_LOOKS:
-            quiet = 0
-            try:
-                await client.flush(PONG_S)
-            except Exception:
-                # Whatever it is: it is not certain that others are heard.
-                if client.stats["in_msgs"] == heard:
-                    return
-
-
-def check_version(where: str, version: Any) -> None:
-    """Raise BridgeError for a server that is too old; ``version`` is what nats-py knows of it."""
-    found = (version.major, version.minor, version.patch)
-    if found < OLDEST_NATS:
-        wanted = ".".join(map(str, OLDEST_NATS))
-        raise BridgeError(
-            f"bus {where}: NATS {'.'.join(map(str, found))} lets one reader that stands still delay all "
-            f"others for seconds; install {wanted} or newer (Debian 13's package nats-server runs on Debian "
-            "12)"
-        )
-
-
-def _all(faults: list[str]) -> str:
-    return f": {'; '.join(dict.fromkeys(faults))}" if faults else ""

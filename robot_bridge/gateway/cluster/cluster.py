@@ -10,9 +10,10 @@ from sqlalchemy import URL
 from ...core.errors import BridgeError
 from ...core.messages.base import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
-from .bus import Bus, NatsBus, NoBus, NotifyBus
+from .bus import Bus, NoBus, NotifyBus
 from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name
 from .messages import Exchange, fleet_key
+from .nats_bus import NatsBus
 from .ownership import Ownership
 
 log = logging.getLogger(__name__)

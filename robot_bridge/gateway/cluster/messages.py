@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import hashlib
 import hmac
+import itertools
 import logging
 import secrets
 import time
@@ -58,6 +59,9 @@ Line = Annotated[str, Meta(max_length=600)]
 Status = Annotated[str, Meta(max_length=LONGEST_STATUS)]
 Names = Annotated[list[Robot], Meta(max_length=MOST_NAMED)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
+Number = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
+"""Of a message about stops: :class:`Exchange` gives each that it sends another one, so that no two are the
+same bytes. 0 where the sender gives none, as earlier versions do."""
 
 
 class BusMessageError(BridgeError):
@@ -102,6 +106,7 @@ class StopCall(BusMessage, frozen=True, tag="stop"):
     at: float
     by: Annotated[str, Meta(max_length=200)]
     reason: Line | None = None
+    number: Number = 0
 
 
 class StopSeen(BusMessage, frozen=True, tag="stopped"):
@@ -113,6 +118,7 @@ class StopSeen(BusMessage, frozen=True, tag="stopped"):
     standing: Count
     waiting: Names = []
     refused: Names = []
+    number: Number = 0
 
 
 class AbortCall(BusMessage, frozen=True, tag="abort"):
@@ -132,7 +138,7 @@ class PositionBatch(BusMessage, frozen=True, tag="positions"):
     """
 
     t: float
-    run: Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
+    run: Number
     ids: Annotated[bytes, Meta(max_length=4 * MOST_ROBOTS)]
     names: Annotated[list[Robot], Meta(max_length=MOST_ROBOTS)]
     numbers: Annotated[bytes, Meta(max_length=4 * REPORTED_NUMBERS * MOST_ROBOTS)]
@@ -295,6 +301,9 @@ KEY = "bus_key"
 HEARD_S = 5.0
 """seconds after which a gateway that says nothing is not heard any more."""
 
+MOST_NUMBERED = 1024
+"""messages about stops of which a second copy is known: what four gateways say over a stop in 20 seconds."""
+
 Kind = TypeVar("Kind", bound=BusMessage)
 
 
@@ -306,7 +315,9 @@ def fleet_key(connection: Connection) -> bytes:
 class Exchange:
     """Sends over the first bus; stops, what wakes others, and questions over all of them.
 
-    A subscriber that fails keeps a message from no other one.
+    A subscriber that fails keeps a message from no other one. Messages about stops come by several ways, and
+    are handed over once: each copy would be answered, over every bus. What is sent again until somebody has
+    answered is another message, by its number.
     """
 
     def __init__(self, gateway: str, key: bytes, buses: Sequence[Bus]) -> None:
@@ -315,6 +326,10 @@ class Exchange:
         self._buses = buses
         self._events = EventBus()
         self._heard: dict[str, float] = {}
+        # At random, so that a gateway that is started again does not begin with the same ones.
+        self._numbers = itertools.count(1 + secrets.randbits(48))
+        self._known: dict[bytes, None] = {}
+        """the signatures of messages about stops, the oldest first."""
         self._repeated = RepeatedLines()
 
     def subscribe(self, kind: type[Kind], handler: Callable[[Kind], None]) -> None:
@@ -323,6 +338,8 @@ class Exchange:
 
     def send(self, subject: str, message: BusMessage) -> bool:
         """Send a message; return at once, true where some bus took it."""
+        if isinstance(message, (StopCall, StopSeen)):
+            message = msgspec.structs.replace(message, number=next(self._numbers))
         content = self._codec.encode(message)
         urgent = subject == STOP or isinstance(message, (Wake, NameQuery, NameAnswer))
         taken = [bus.publish(subject, content) for bus in (self._buses if urgent else self._buses[:1])]
@@ -367,4 +384,16 @@ class Exchange:
         self._heard[message.gw] = time.monotonic()
         if isinstance(message, StopCall) and subject != STOP:
             return
+        if isinstance(message, (StopCall, StopSeen)) and message.number:
+            if self._is_copy(content[:SIGNATURE]):
+                return
+            message = msgspec.structs.replace(message, number=0)
         self._events.publish(message)
+
+    def _is_copy(self, signature: bytes) -> bool:
+        if signature in self._known:
+            return True
+        self._known[signature] = None
+        if len(self._known) > MOST_NUMBERED:
+            del self._known[next(iter(self._known))]
+        return False

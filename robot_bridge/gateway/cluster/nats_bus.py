@@ -1,0 +1,492 @@
+"""The bus on NATS, for any number of gateways: a connection for all messages, and one for stops alone."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import random
+import threading
+from collections import deque
+from collections.abc import AsyncIterator, Callable, Iterator
+from typing import Any
+from urllib.parse import urlsplit
+
+from ...core.errors import BridgeError
+from ...core.logs import log_and_continue, log_unforeseen
+from ..monitoring import wait_at_most
+from .bus import EVERYBODY, MOST_WAITING, POSITIONS, RETRY_S, STOP, OutgoingMessages, Receive, own_subject
+
+log = logging.getLogger(__name__)
+
+OLDEST_NATS = (2, 10, 26)
+NATS_RETRY_S = 0.1
+"""seconds from one attempt to connect to the next."""
+CONNECT_S, FLUSH_S = 2.0, 2.0
+CONNECTED_LOOK_S = 0.2
+"""seconds after which a connection is looked at that did not say that it was lost."""
+QUIET_LOOKS, PONG_S = 10, 1.0
+"""Looks at a connection by which nothing came, after which it is asked whether it stands, and seconds for the
+answer: a stop of the network is known after three seconds. One by which messages come is not asked: with many
+robots on a busy computer the answer waits behind positions for longer than that."""
+PING_S = 30
+"""seconds between pings of the client itself, two of which may be without an answer."""
+PENDING_BYTES = 4 << 20
+"""bytes that wait for a slow server."""
+LARGEST_STOP = 16 << 10
+"""bytes of a message that the thread of stops hands over: no message of a stop has as many. With MOST_WAITING
+of them 4 MB wait at most; what is longer is left to the connection for all messages."""
+END_S = 2.0
+"""seconds for which the end of the bus waits for that thread."""
+
+
+# --- Connections: to one of some servers, and to another one when it is lost ---
+
+
+class NatsServers:
+    """The URLs of some NATS servers, and the password of the account in them.
+
+    :raises BridgeError: when nats-py is not installed.
+    """
+
+    def __init__(self, urls: list[str], password: str | None = None) -> None:
+        try:
+            import nats
+        except ImportError:
+            raise BridgeError(
+                "the bus nats:// needs nats-py; install it with: "
+                "pip install 'fleet-supervisor-robot-bridge[cluster]'"
+            ) from None
+        self._nats = nats
+        self._urls = urls
+        self._password = password
+        self.errors: tuple[type[Exception], ...] = (nats.errors.Error, OSError, TimeoutError)
+        """what comes of servers and the network."""
+
+    @property
+    def patience(self) -> float:
+        """Seconds after which none of them has answered."""
+        return 2 * CONNECT_S * len(self._urls)
+
+    @property
+    def where(self) -> str:
+        """Where they are, without accounts."""
+        return ",".join(url.rpartition("@")[2].removeprefix("nats://") for url in self._urls)
+
+    async def connect(self, name: str, on_error: Any, **options: Any) -> Any:
+        """Connect to one of the servers as ``name``; raises what the last one brought about."""
+        urls = random.sample(self._urls, len(self._urls))  # nosec B311 # nothing secret: spreads load
+        for url in urls:
+            try:
+                return await self._connect_to(url, name, on_error, **options)
+            except self.errors:
+                if url is urls[-1]:
+                    raise
+        raise AssertionError("there is a server")
+
+    async def _connect_to(self, url: str, name: str, on_error: Any, **options: Any) -> Any:
+        if self._password is not None:
+            options |= {"user": urlsplit(url).username, "password": self._password}
+        return await self._nats.connect(
+            url,
+            error_cb=on_error,
+            connect_timeout=CONNECT_S,
+            # A connection that is lost is made again here, not by the client: it would keep what is published
+            # meanwhile, and send that as if it were new.
+            allow_reconnect=False,
+            reconnect_time_wait=0.1,
+            max_reconnect_attempts=1,
+            ping_interval=PING_S,
+            max_outstanding_pings=2,
+            pending_size=PENDING_BYTES,
+            no_echo=False,
+            name=name,
+            **options,
+        )
+
+
+class NatsConnection:
+    """A connection that hears ``subjects``, one after the other: used by one loop, whichever that is.
+
+    ``trouble`` is what the log says behind the reason while there is none.
+    """
+
+    def __init__(
+        self, servers: NatsServers, name: str, prefix: str, subjects: tuple[str, ...], trouble: str
+    ) -> None:
+        self.client: Any = None
+        self._servers = servers
+        self._name = name
+        self._prefix = prefix
+        self._subjects = subjects
+        self._trouble = trouble
+        self._said = set[str]()
+        """why there is no connection, since there was one."""
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands, and the server knows what is listened to."""
+        client = self.client
+        return client is not None and bool(client.is_connected)
+
+    @contextlib.asynccontextmanager
+    async def open(self, receive: Receive) -> AsyncIterator[asyncio.Event]:
+        """Connect, and hand what comes to ``receive``; yield an event that says when the connection is lost.
+
+        :raises OSError: as the block ends: the connection is lost by then. Others as they come.
+        """
+        lost = asyncio.Event()
+
+        async def ended() -> None:
+            lost.set()
+
+        async def log_fault(error: Exception) -> None:
+            self._say(str(error))
+
+        async with asyncio.timeout(self._servers.patience):
+            client = await self._servers.connect(
+                self._name, log_fault, disconnected_cb=ended, closed_cb=ended
+            )
+        try:
+            check_version(self._servers.where, client.connected_server_version)
+            await self._subscribe(client, receive)
+            self.client = client
+            self._said.clear()
+            yield lost
+        finally:
+            self.client = None
+            with contextlib.suppress(Exception):
+                async with asyncio.timeout(FLUSH_S):
+                    await client.close()
+        raise OSError("the connection is lost")
+
+    @contextlib.contextmanager
+    def faults_logged(self) -> Iterator[None]:
+        """Log what goes wrong in the block, each reason once until there is a connection, and go on."""
+        foreseen: tuple[type[Exception], ...] = (*self._servers.errors, BridgeError)
+        try:
+            yield
+        except foreseen as error:
+            self._say(str(error) or "no server answers")
+        except Exception as error:
+            # Whatever the library stumbles over: the connection is there again a moment later.
+            reason = f"{type(error).__name__}: {error}"
+            if reason not in self._said:
+                log_unforeseen(log, f"bus {self._servers.where}")
+            self._said.add(reason)
+        except asyncio.CancelledError:
+            # The library cancels tasks and futures of its own, which is no reason to end this one.
+            if (task := asyncio.current_task()) is None or task.cancelling():
+                raise
+            self._say("the client was cancelled")
+
+    async def _subscribe(self, client: Any, receive: Receive) -> None:
+        """Return when the server knows what is listened to: what is said before is not heard."""
+        cut = len(self._prefix) + 1
+
+        async def hear(message: Any) -> None:
+            receive(message.subject[cut:], message.data)
+            # The client hands over all that waits without a pause, and answers no pings meanwhile.
+            await asyncio.sleep(0)
+
+        for subject in self._subjects:
+            # Each has a queue of its own: no stop waits behind positions.
+            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
+        await client.flush(FLUSH_S)
+
+    def _say(self, reason: str) -> None:
+        if reason not in self._said:
+            log.warning("bus %s: %s; %s", self._servers.where, reason, self._trouble)
+        self._said.add(reason)
+
+
+# --- Stops: heard by a thread as well ---
+
+
+class StopListener:
+    """Hears stops in a thread with a loop and a connection of its own, and hands each to the gateway's loop.
+
+    That needs one turn of the gateway's loop, and with thousands of robots one takes up to 25 ms. Over the
+    connection for all messages it is three: bytes are read, parsed, and handed to the subscription. That
+    connection hears stops as well, and nothing that befalls the thread changes that: what comes twice
+    :class:`~.messages.Exchange` takes in once.
+    """
+
+    def __init__(self, servers: NatsServers, prefix: str, main: NatsConnection) -> None:
+        self._main = main
+        self._connection = NatsConnection(
+            servers,
+            "robot-bridge stops",
+            prefix,
+            (STOP,),
+            "stops of other gateways come some milliseconds later until it works",
+        )
+        self._waiting: deque[bytes] = deque(maxlen=MOST_WAITING)
+        """What was heard and not taken in yet. Whoever floods the subject with messages must not fill the
+        gateway's loop with them: it would have a turn for nothing else, and no end of memory would be taken.
+        The oldest are dropped; a stop among them is heard over the connection for all messages."""
+        self._is_due = False
+        """whether the gateway's loop was asked to take in what waits, and has not begun to."""
+        self._receive: Receive | None = None
+
+    @contextlib.asynccontextmanager
+    async def listening(self, receive: Receive) -> AsyncIterator[None]:
+        """Have a thread hear stops within the block, and ``receive`` take them in on the running loop."""
+        ended = asyncio.Event()
+        self._waiting.clear()
+        self._receive, self._is_due = receive, False
+        end = self._start(asyncio.get_running_loop(), ended)
+        try:
+            yield
+        finally:
+            self._receive = None
+            if end is not None:
+                end()
+                # Not by joining it: that would take a thread of the gateway's, or its loop.
+                await wait_at_most(ended, END_S)
+
+    def _start(self, gateway: asyncio.AbstractEventLoop, ended: asyncio.Event) -> Callable[[], None] | None:
+        """Start the thread; return what ends it, None where there is no room for it.
+
+        ``ended`` is set on the loop ``gateway`` then.
+        """
+        ending = asyncio.Event()
+        try:
+            loop = asyncio.new_event_loop()
+        except OSError as error:
+            log.warning("bus: no thread hears stops: %s", error)
+            return None
+
+        def run() -> None:
+            try:
+                loop.run_until_complete(self._listen_until(ending, gateway))
+            except Exception:
+                log_unforeseen(log, "the thread that hears stops")
+            finally:
+                # Not asyncio.run, which would wait for a name that is being resolved.
+                loop.close()
+                with contextlib.suppress(RuntimeError):
+                    gateway.call_soon_threadsafe(ended.set)
+
+        def end() -> None:
+            # It may have ended by itself.
+            with contextlib.suppress(RuntimeError):
+                loop.call_soon_threadsafe(ending.set)
+
+        try:
+            threading.Thread(target=run, name="stops from NATS", daemon=True).start()
+        except RuntimeError as error:
+            log.warning("bus: no thread hears stops: %s", error)
+            loop.close()
+            return None
+        return end
+
+    async def _listen_until(self, ending: asyncio.Event, gateway: asyncio.AbstractEventLoop) -> None:
+        """Listen until ``ending`` is set; end what the client has begun as well, as far as possible."""
+        listening = asyncio.create_task(self._listen(ending, gateway))
+        await ending.wait()
+        listening.cancel()
+        await asyncio.wait({listening}, timeout=END_S / 2)
+        if rest := asyncio.all_tasks() - {asyncio.current_task()}:
+            for task in rest:
+                task.cancel()
+            await asyncio.wait(rest, timeout=END_S / 4)
+
+    async def _listen(self, ending: asyncio.Event, gateway: asyncio.AbstractEventLoop) -> None:
+        def hand_over(_subject: str, content: bytes) -> None:
+            if len(content) > LARGEST_STOP:
+                return
+            self._waiting.append(content)
+            if self._is_due:
+                return
+            self._is_due = True
+            try:
+                gateway.call_soon_threadsafe(self._take_in)
+            except RuntimeError:
+                # That loop has ended without a word to this one.
+                ending.set()
+
+        while True:
+            while not self._main.connected:
+                # First that one: a server may take no more connections than it.
+                await asyncio.sleep(NATS_RETRY_S)
+            with self._connection.faults_logged():
+                async with self._connection.open(hand_over) as lost:
+                    await disconnection(self._connection.client, lost)
+            await asyncio.sleep(RETRY_S)
+
+    def _take_in(self) -> None:
+        # In this order: what the thread adds from here on is either counted, or asked for again.
+        self._is_due = False
+        for _ in range(len(self._waiting)):
+            content = self._waiting.popleft()
+            if self._receive is not None:
+                with log_and_continue(log, "a stop that a thread heard"):
+                    self._receive(STOP, content)
+
+
+# --- The bus ---
+
+
+class NatsBus:
+    """One connection to a NATS server or cluster for all messages, and one for stops; ``urls`` are its URLs.
+
+    :raises BridgeError: when nats-py is not installed.
+    """
+
+    def __init__(self, urls: list[str], gateway: str, prefix: str, password: str | None = None) -> None:
+        self._servers = NatsServers(urls, password)
+        self._prefix = prefix
+        self._own = own_subject(gateway)
+        self._connection = NatsConnection(
+            self._servers,
+            "robot-bridge",
+            prefix,
+            (STOP, EVERYBODY, POSITIONS, self._own),
+            "connecting again until it works",
+        )
+        self._stops = StopListener(self._servers, prefix, self._connection)
+        self._outgoing = OutgoingMessages()
+
+    @property
+    def connected(self) -> bool:
+        """Whether the connection stands, and the server knows what this gateway listens to."""
+        return self._connection.connected
+
+    def publish(self, subject: str, content: bytes) -> bool:
+        """Send a message; false while there is no connection."""
+        if not self.connected:
+            return False
+        if subject != STOP or not write_at_once(
+            self._connection.client, f"{self._prefix}.{subject}", content
+        ):
+            self._outgoing.add(subject, content)
+        return True
+
+    async def check(self) -> None:
+        """Connect for a moment.
+
+        :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
+        """
+        where = self._servers.where
+        faults: list[str] = []
+        heard = asyncio.Event()
+
+        async def add_fault(error: Exception) -> None:
+            faults.append(str(error))
+            heard.set()
+
+        async def hear(_message: Any) -> None:
+            heard.set()
+
+        try:
+            async with asyncio.timeout(self._servers.patience):
+                client = await self._servers.connect("robot-bridge", add_fault)
+        except self._servers.errors as error:
+            raise BridgeError(
+                f"bus {where}: {str(error) or 'no server answers'}{_all(faults)}; check that NATS "
+                "runs there, and the account of this gateway"
+            ) from None
+        try:
+            check_version(where, client.connected_server_version)
+            await client.subscribe(f"{self._prefix}.{self._own}", cb=hear)
+            await client.publish(f"{self._prefix}.{self._own}", b"")
+            async with asyncio.timeout(FLUSH_S):
+                await heard.wait()
+        except TimeoutError:
+            faults.append("what this gateway publishes does not come back to it")
+        finally:
+            await client.close()
+        if faults:
+            raise BridgeError(
+                f"bus {where}: {_all(faults).lstrip(': ')}; the account of this gateway has to be "
+                f"allowed to publish and to subscribe to {self._prefix}.>"
+            )
+
+    async def run(self, receive: Receive) -> None:
+        """Connect and send until cancelled; it connects again by itself."""
+        async with self._stops.listening(receive):
+            while True:
+                with self._connection.faults_logged():
+                    try:
+                        async with self._connection.open(receive) as lost:
+                            await self._send_until_lost(self._connection.client, lost)
+                    finally:
+                        self._outgoing.clear()
+                await asyncio.sleep(NATS_RETRY_S)
+
+    async def _send_until_lost(self, client: Any, lost: asyncio.Event) -> None:
+        sending = asyncio.create_task(self._send(client))
+        losing = asyncio.create_task(disconnection(client, lost))
+        try:
+            await asyncio.wait({sending, losing}, return_when=asyncio.FIRST_COMPLETED)
+            if sending.done():
+                sending.result()
+        finally:
+            for task in (sending, losing):
+                task.cancel()
+            await asyncio.gather(sending, losing, return_exceptions=True)
+
+    async def _send(self, client: Any) -> None:
+        while True:
+            subject, content = await self._outgoing.next()
+            await client.publish(f"{self._prefix}.{subject}", content)
+
+
+def write_at_once(client: Any, subject: str, content: bytes) -> bool:
+    """Publish on a connection of nats-py without a turn of the loop; false where that cannot be.
+
+    The client writes what was published in a task of its own, whose turn comes after those of thousands of
+    robots. It does nothing where nothing is left to be written. A message of which this says false may have
+    been published all the same.
+    """
+    with contextlib.suppress(Exception):
+        publishing = client.publish(subject, content)
+        try:
+            publishing.send(None)
+        except StopIteration:
+            with contextlib.suppress(Exception):
+                client._transport.writelines(client._pending[:])
+                client._pending, client._pending_data_size = [], 0
+            # If not now, it is written by the client's task.
+            return True
+        finally:
+            publishing.close()
+    return False
+
+
+async def disconnection(client: Any, lost: asyncio.Event) -> None:
+    """Wait until ``client`` has lost its server, which it says by ``lost``, or the server does not answer.
+
+    It may not say so: a task of its own that fails as it closes the connection ends without a word.
+    """
+    heard, quiet = -1, 0
+    while client.is_connected and not lost.is_set():
+        # Looks are counted, not seconds: what came while this computer was busy is read before the next one.
+        await wait_at_most(lost, CONNECTED_LOOK_S)
+        before, heard = heard, client.stats["in_msgs"]
+        quiet = quiet + 1 if heard == before else 0
+        if quiet >= QUIET_LOOKS:
+            quiet = 0
+            try:
+                await client.flush(PONG_S)
+            except Exception:
+                # Whatever it is: it is not certain that others are heard.
+                if client.stats["in_msgs"] == heard:
+                    return
+
+
+def check_version(where: str, version: Any) -> None:
+    """Raise BridgeError for a server that is too old; ``version`` is what nats-py knows of it."""
+    found = (version.major, version.minor, version.patch)
+    if found < OLDEST_NATS:
+        wanted = ".".join(map(str, OLDEST_NATS))
+        raise BridgeError(
+            f"bus {where}: NATS {'.'.join(map(str, found))} lets one reader that stands still delay all "
+            f"others for seconds; install {wanted} or newer (Debian 13's package nats-server runs on Debian "
+            "12)"
+        )
+
+
+def _all(faults: list[str]) -> str:
+    return f": {'; '.join(dict.fromkeys(faults))}" if faults else ""
