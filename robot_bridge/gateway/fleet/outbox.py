@@ -324,15 +324,17 @@ class MapSender:
         self._unplaced: set[str] = set()
         """robots that have such a map, and are still to say where they are."""
 
-    async def first(self, robot: str) -> EncodedMap:
-        """Return the map that ``robot`` is sent behind the acknowledgement of its Ready.
+    async def first(self, robot: str, *, reads_itself: bool) -> tuple[SetMap, bool]:
+        """Return the map that ``robot`` is sent behind the acknowledgement of its Ready, and whether it is a
+        part of the site.
 
         Of a part :meth:`.Mailboxes.finish` is to be told, so that more can follow. Raises StoreError.
         """
         offer = await self._offer(robot)
         self._unplaced.discard(robot)
         self._parts[robot] = offer.border
-        return offer
+        is_at_hand = offer.is_whole and not reads_itself
+        return WHOLE_SITE if is_at_hand else SetMap(offer.content), not offer.is_whole
 
     def located(self, poses: Sequence[RobotPose]) -> None:
         """Note that robots have said where they are."""
@@ -368,6 +370,8 @@ class MapSender:
 
     async def whole_or_around(self, robot: str) -> bytes:
         """Return the map of the whole site, or of what is around ``robot``; raises StoreError."""
+        if (whole := self._site.small_map_at_hand()) is not None:
+            return whole.content
         # While it is made again all robots may wait for it, but in one thread: others have work for the rest.
         async with self._making:
             content = await asyncio.to_thread(self._site.whole_map)
@@ -410,6 +414,8 @@ class MapSender:
             await self.send(robot)
 
     async def _offer(self, robot: str) -> EncodedMap:
+        if (whole := self._site.small_map_at_hand()) is not None:
+            return whole
         place = await self._place(robot)
         return await asyncio.to_thread(self._site.map_at_once, place)
 

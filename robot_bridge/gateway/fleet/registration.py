@@ -332,10 +332,10 @@ class Registration:
                 return RequestOutcome(robot, OpAck(id=id, ok=False, reason=reason, magic=request.magic))
             if self._takeover is not None:
                 await self._takeover.claim(robot)
-            content, part = None, False
+            content: SetMap | None = None
+            part = False
             if request.abilities is None or "map" in request.abilities:
-                offer = await self._maps.first(robot)
-                content, part = SetMap(offer.content), not offer.is_whole
+                content, part = await self._maps.first(robot, reads_itself=link == "sql")
             ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
             welcome: list[Answer | None] = [ack if link == "sql" else None, content]
             if await self._let_in(robot, link, request, [one for one in welcome if one is not None]):

@@ -61,6 +61,9 @@ class ServedSite(Protocol):
     def whole_map(self) -> bytes | None:
         """Return the map of the whole site, None where it is larger than the site allows; may take long."""
 
+    def small_map_at_hand(self) -> EncodedMap | None:
+        """Return the map of the whole site if it is small and made already; waits for nothing."""
+
     def map_at_once(self, place: tuple[float, float] | None) -> EncodedMap:
         """Return the map of the whole site if small and at hand, else one of what is around ``place``."""
 

@@ -307,21 +307,24 @@ class SiteMaps:
                 made = self._whole_map = (drawn, _encoded(drawn))
             return made[1]
 
+    def small_map_at_hand(self) -> EncodedMap | None:
+        """Return the map of the whole site if it is small and made already; waits for nothing."""
+        drawn, made = self._drawn, self._whole_map
+        if made is None or made[0] is not drawn or made[1] is None or len(made[1]) > STORED_AT_ONCE:
+            return None
+        return EncodedMap(made[1], Border(*drawn.site.bounds), is_whole=True)
+
     def map_at_once(self, place: tuple[float, float] | None) -> EncodedMap:
         """Return the map of the whole site if small and at hand, else that of a window around ``place``.
 
         Without a place the middle of the site is taken. It takes some hundredths of a second at most.
         """
-        drawn, made = self._drawn, self._whole_map
+        drawn = self._drawn
         site = drawn.site
-        if made is not None and made[0] is drawn:
-            content = made[1]
-        elif site.segment_count <= AT_ONCE:
-            content = self.whole_map()
-        else:
-            content = None
-        if content is not None and len(content) <= STORED_AT_ONCE:
-            return EncodedMap(content, Border(*site.bounds), is_whole=True)
+        if site.segment_count <= AT_ONCE:
+            self.whole_map()
+        if (whole := self.small_map_at_hand()) is not None:
+            return whole
         x, y = place or (sum(site.bounds[::2]) / 2, sum(site.bounds[1::2]) / 2)
         part = site.map_near(x, y, site.settings.maps.window_m, AT_ONCE)
         return EncodedMap(encode(drawn.objects.join(part)), part.border, is_whole=False)
