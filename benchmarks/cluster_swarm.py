@@ -128,12 +128,8 @@ class RowRobots(Robots[RowRobot]):
         while self._due and self._due[0][0] <= time.monotonic():
             robot = heapq.heappop(self._due)[-1]
             address = urlsplit(self._addresses[robot].current)
-            try:
-                robot.begin_open(str(address.hostname), int(address.port or 0))
-            except ConnectionError as error:
-                self.lost(robot, error)
-            else:
-                self.watch(robot)
+            robot.begin_open(str(address.hostname), int(address.port or 0))
+            self.watch(robot, opening=True)
         super().hear(seconds)
 
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:

@@ -38,24 +38,23 @@ def result(id: int) -> bytes:
     return frame(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
 
 
-def begin(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
-    """Return a socket on which the handshake is asked for."""
+def handshake(host: str, port: int, path: str) -> bytes:
+    """Return what asks a server for a connection."""
+    key = base64.b64encode(os.urandom(16)).decode()
+    return (
+        f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
+        f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
+    )
+
+
+def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
+    """Return a socket on which the handshake is done."""
     sock = socket.socket()
     if receive_buffer:
         sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
     sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
     sock.connect((host, port))
-    key = base64.b64encode(os.urandom(16)).decode()
-    sock.sendall(
-        f"GET {path} HTTP/1.1\r\nHost: {host}:{port}\r\nUpgrade: websocket\r\nConnection: Upgrade\r\n"
-        f"Sec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n".encode()
-    )
-    return sock
-
-
-def connect(host: str, port: int, path: str, receive_buffer: int | None = None) -> socket.socket:
-    """Return a socket on which the handshake is done."""
-    sock = begin(host, port, path, receive_buffer)
+    sock.sendall(handshake(host, port, path))
     answer = b""
     while not answer.endswith(END):
         # Byte by byte: what comes behind the answer belongs to whoever reads frames.
@@ -127,12 +126,14 @@ class Peer:
     def begin_open(self, host: str, port: int) -> None:
         """Ask a server for a connection; :meth:`opened` is called once it has agreed.
 
-        :raises ConnectionError: when nobody listens there.
+        Nobody waits for that: what asks is sent by :meth:`send` once the socket can be written to.
         """
         self._where = host, port, self._where[2]
-        self.sock = begin(*self._where)
+        self.sock = socket.socket()
         self.sock.setblocking(False)
-        self._inbox, self._left, self._answer = Inbox(), b"", b""
+        self.sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        self.sock.connect_ex((host, port))
+        self._inbox, self._left, self._answer = Inbox(), handshake(*self._where), b""
 
     def opened(self) -> None:
         """Do what comes first on a connection that was asked for."""

@@ -116,8 +116,13 @@ class Robots(ABC, Generic[Kind]):
     def _take_in(self, seconds: float) -> bool:
         """Take in what has come, or is the first to come in that time; tell whether anything did."""
         found = self._poll.poll(seconds)
-        for file, _ in found:
+        for file, events in found:
             robot = self._by_file[file]
+            if events & select.EPOLLOUT:
+                robot.send()
+                self._poll.modify(file, select.EPOLLIN)
+            if events == select.EPOLLOUT:
+                continue
             try:
                 robot.hear()
             except ConnectionError as error:
@@ -128,10 +133,10 @@ class Robots(ABC, Generic[Kind]):
         """Deal with a connection that was lost; raises ``error`` where nobody is to lose one."""
         raise error
 
-    def watch(self, robot: Kind) -> None:
-        """Hear what comes on the connection that a robot has now."""
+    def watch(self, robot: Kind, *, opening: bool = False) -> None:
+        """Hear what comes on the connection that a robot has now, or asks for."""
         self._by_file[robot.sock.fileno()] = robot
-        self._poll.register(robot.sock.fileno(), select.EPOLLIN)
+        self._poll.register(robot.sock.fileno(), select.EPOLLIN | (select.EPOLLOUT if opening else 0))
 
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Do what is asked: drive."""
