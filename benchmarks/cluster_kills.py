@@ -19,6 +19,7 @@ from benchmarks.cluster_onlookers import Plan as Onlookers
 from benchmarks.cluster_positions import Fleet
 from benchmarks.page import Part, goal
 from benchmarks.trial import size
+from robot_bridge.core.gateway_addresses import ROBOT_PACE
 from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 from tests.support.faults.audit import Findings
@@ -69,8 +70,7 @@ Wrong in all of this: {wrong} ({goal}).
 
 {many} robots, dealt out evenly over {gateways} gateways and one NATS server, say where they are {rate:g}
 times a second, whatever happens; one gateway is killed, and its robots go on at the others as the reference
-robot does: after half a second they try theirs once more, and a tenth of a second later one of the others.
-{back}
+robot does: they try theirs once more after {again_s:g} s, and one of the others {between:g} s later. {back}
 """
 
 
@@ -152,6 +152,7 @@ def part(seed: int, killed: Killed, back: float | None) -> Part:
         },
         **{"again": STARTED_AGAIN_S, "seed": seed, "figures": _figures(killed), "many": GATEWAYS * MANY},
         **{"rate": MANY_RATE, "back": _back(back)},
+        **{"again_s": ROBOT_PACE.first_wait, "between": ROBOT_PACE.between},
         wrong=len(wrong) or "nothing",
         goal=goal("nothing", not wrong),
     )

@@ -114,6 +114,12 @@ class FencedAreas(ABC):
 
         return self._near(places, places, lambda rows: shapely.points(places[rows]), metres)
 
+    def are_near(self, places: Points, pairs: Indices, metres: float) -> NDArray[np.bool_]:
+        """Tell which of ``pairs``, (2, m) of a place and an area, :meth:`near` returns for ``metres``."""
+        import shapely
+
+        return _are_within(self._shapes(pairs[1]), shapely.points(places[pairs[0]]), metres)
+
     def near_legs(self, start: tuple[float, float], ends: Points, metres: float) -> Indices:
         """Return which straight legs, from ``start`` to each of ``ends``, (n, 2), come within ``metres`` of
         which area: (2, m), leg and area."""
@@ -144,15 +150,12 @@ class FencedAreas(ABC):
         Their boxes are from ``low`` to ``high``, (n, 2) each. Most are near no area, and are never made:
         ``geometries`` returns those of some rows.
         """
-        import shapely
-
         query, area = self._boxes_between(low - metres, high + metres)
         if not len(query):
             return np.empty((2, 0), dtype=np.int64)
         rows, of_row = np.unique(query, return_inverse=True)
         queried, shapes = geometries(rows)[of_row], self._shapes(area)
-        near = shapely.dwithin(shapes, queried, metres) if metres > 0 else shapely.contains(shapes, queried)
-        pairs: Indices = np.array([query, area], dtype=np.int64)[:, near]
+        pairs: Indices = np.array([query, area], dtype=np.int64)[:, _are_within(shapes, queried, metres)]
         return pairs
 
     @abstractmethod
@@ -304,6 +307,16 @@ class Fences:
         polygons = [shapely.Polygon(outer, holes) for outer, *holes in (area.rings for area in areas)]
         obstacles = FencedOutlines(outlines, FencedRows.of(outlines) if rows is None else rows)
         return cls(FencedPolygons(polygons, [area.label for area in areas]), obstacles)
+
+
+def _are_within(areas: NDArray[Any], geometries: NDArray[Any], metres: float) -> NDArray[np.bool_]:
+    """Tell which geometries are within ``metres`` of their area, (n,) each; with 0 metres inside it."""
+    import shapely
+
+    found: NDArray[np.bool_] = (
+        shapely.dwithin(areas, geometries, metres) if metres > 0 else shapely.contains(areas, geometries)
+    )
+    return found
 
 
 def _touching(

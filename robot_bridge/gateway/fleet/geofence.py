@@ -6,9 +6,10 @@ import asyncio
 import logging
 import time
 import uuid
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -80,12 +81,12 @@ class Clearances(NamedTuple):
 
 
 class FoundStays(NamedTuple):
-    """Robots that were ``judged``; those ``inside`` an area, with its name and ``places`` of those, and those
-    still ``near`` one."""
+    """Robots that were ``judged``; those ``inside`` an area, with what returns its name and ``places`` of
+    those, and those still ``near`` one."""
 
     judged: AbstractSet[str]
     places: dict[str, Place]
-    inside: dict[StayKey, str]
+    inside: dict[StayKey, Callable[[], str]]
     near: set[StayKey]
 
 
@@ -128,7 +129,7 @@ class Stays:
         """Take in what was found of some robots; the others are where they were."""
         entered = []
         for key in sorted(found.inside.keys() - self._stays.keys()):
-            stay = self._begin(key, found.inside[key], found.places[key.robot], settings, now)
+            stay = self._begin(key, found.inside[key](), found.places[key.robot], settings, now)
             if stay is not None:
                 entered.append(stay)
         self._note_outside(found, now)
@@ -178,7 +179,7 @@ class Stays:
 
 def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances: Clearances) -> FoundStays:
     """Return in which areas ``robots`` at ``places``, (n, 2) metres in the site frame, are; in any thread."""
-    inside: dict[StayKey, str] = {}
+    inside: dict[StayKey, Callable[[], str]] = {}
     near: set[StayKey] = set()
     at: dict[str, Place] = {}
     kinds: tuple[tuple[FenceKind, FencedAreas, float], ...] = (
@@ -190,14 +191,14 @@ def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances
         pairs = areas.near(places, metres + MARGIN_M)
         if not pairs.size:
             continue
-        near.update(StayKey(robots[robot], kind, areas.id(area)) for robot, area in pairs.T.tolist())
-        # Most robots are nowhere near.
-        rows = np.unique(pairs[0])
-        for row, area in areas.near(places[rows], metres).T.tolist():
-            robot = robots[rows[row]]
-            inside[StayKey(robot, kind, areas.id(area))] = areas.name(area)
-            x, y = places[rows[row]].tolist()
-            at[robot] = x, y
+        is_inside = areas.are_near(places, pairs, metres).tolist()
+        for (row, area), inside_it in zip(pairs.T.tolist(), is_inside, strict=True):
+            key = StayKey(robots[row], kind, areas.id(area))
+            near.add(key)
+            if inside_it:
+                inside[key] = partial(areas.name, area)
+                x, y = places[row].tolist()
+                at[key.robot] = x, y
     return FoundStays(set(robots), at, inside, near)
 
 
