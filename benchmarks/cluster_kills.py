@@ -69,8 +69,9 @@ nowhere.
 Wrong in all of this: {wrong} ({goal}).
 
 {many} robots, dealt out evenly over {gateways} gateways and one NATS server, say where they are {rate:g}
-times a second, whatever happens; one gateway is killed, and its robots go on at the others as the reference
-robot does: they try theirs once more after {again_s:g} s, and one of the others {between:g} s later. {back}
+times a second, and after each Ready; one gateway is killed, and its robots go on at the others as the
+reference robot does: they try theirs once more after {again_s:g} s, and one of the others {between:g} s
+later. {back}
 """
 
 

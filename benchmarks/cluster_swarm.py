@@ -81,19 +81,25 @@ class RowRobot(Robot):
         self._step += 1
         if not self.arrived:
             return False
-        message = frame(
-            f'{{"jsonrpc":"2.0","method":"SendPos","params":{{"x":{self._x + self._step / 1000:.3f},'
-            f'"y":{self._y:.3f},"theta":0.5,"v":0.1,"t":{time.time():.6f}}}}}'
-        )
         try:
-            return self.offer(message)
+            return self.offer(self._position())
         except ConnectionError:
             # Seen when it is read.
             return False
 
+    def _position(self) -> bytes:
+        return frame(
+            f'{{"jsonrpc":"2.0","method":"SendPos","params":{{"x":{self._x + self._step / 1000:.3f},'
+            f'"y":{self._y:.3f},"theta":0.5,"v":0.1,"t":{time.time():.6f}}}}}'
+        )
+
     def take_text(self, payload: bytes) -> None:
         """Take in a message; note when a stop came, and acknowledge it."""
-        super().take_text(payload)
+        if not self.arrived:
+            super().take_text(payload)
+            if self.arrived and self._step:
+                # As each robot does after its Ready: it drives on meanwhile.
+                self.send(self._position())
         if b'"Abort"' in payload:
             message = json.loads(payload)
             self.stops.setdefault(str(message["id"]), time.time())
