@@ -322,7 +322,9 @@ class EmergencyStops:
         """
         stop = self._stop
         if stop is None or not self.in_force:
-            self._abort_overdue(newest, robots)
+            # One may have been cleared since that was read.
+            over = [one for one in (stop, newest) if one is not None and one.cleared_at is not None]
+            self._abort_overdue(max(over, key=lambda one: one.cleared_at or 0.0, default=None), robots)
             return
         for robot in robots:
             self._tally.note_sent(robot)

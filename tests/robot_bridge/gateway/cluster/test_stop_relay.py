@@ -18,7 +18,7 @@ from robot_bridge.gateway.cluster.messages import Beat, Codec, Exchange, StopCal
 from robot_bridge.gateway.cluster.stop_relay import CUT_OFF_S, EmergencyStopRelay
 from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.fleet.emergency_persistence import abort_id
-from robot_bridge.gateway.storage.repositories import emergency_stops
+from robot_bridge.gateway.storage.repositories import commands, emergency_stops
 from robot_bridge.gateway.storage.repositories.emergency_stops import StopRow
 from tests.support.patience import BUSY
 
@@ -295,6 +295,20 @@ async def test_a_robot_of_a_gateway_that_died_over_a_stop_is_aborted_when_that_i
     await place.yard.restart()
     await place.yard.fleet.save()
     assert (place.yard.waiting("r1"), place.yard.waiting("r2")) == (["Abort"], ["Abort"])
+
+
+@pytest.mark.parametrize("read", [StopRow("stop-number-a", 1001.0, "Ada", "smoke"), None, over_at(900.0)])
+async def test_such_a_robot_is_aborted_also_where_the_stop_was_over_after_it_was_read(place, read):
+    await place.yard.send("before")
+    over = over_at(place.yard.now + 2.0)
+    place.yard.now += 10.0
+    await place.store(over)
+    place.yard.fleet._book.drop(["r1"])
+    await place.relay.read_stored()
+    place.yard.fleet._book.take_up(await place.yard.database.run(commands.still_open, ["r1"]))
+    place.stops.take_over(["r1"], read)
+    await place.yard.fleet.save()
+    assert place.yard.waiting("r1") == ["Abort"]
 
 
 async def test_an_abort_that_could_not_be_stored_before_the_stop_was_over_is_stored(place, monkeypatch):
