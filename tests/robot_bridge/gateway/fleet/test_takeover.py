@@ -11,7 +11,7 @@ from robot_bridge.core.errors import StoreError
 from robot_bridge.gateway.cluster import ownership as owning
 from robot_bridge.gateway.cluster.ownership import OwnerChanges
 from robot_bridge.gateway.fleet.registration import Takeover
-from robot_bridge.gateway.model.events import EventBus
+from robot_bridge.gateway.model.events import EventBus, RobotLeft
 from robot_bridge.gateway.model.robots import Robots
 from robot_bridge.gateway.storage.repositories.gateways import Claimed, Member, Owner, OwnersRead
 
@@ -121,6 +121,30 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
     assert woken == [("positions", "b"), ("positions", "c")]
     await takeover.follow()
     assert len(woken) == 2
+
+
+async def test_a_robot_that_was_lost_while_it_was_let_in_here_is_dropped_by_the_next_look(ownership):
+    known, left, woken = Robots(), [], []
+    for robot in ("mine", "astray", "doubtful"):
+        known.ready(robot, 1, "websocket", 0.0)
+    exchange = SimpleNamespace(gateway="a", wake=lambda what, gateway: woken.append((what, gateway)))
+    ignored, held = SimpleNamespace(drop=lambda _robots: None), SimpleNamespace(forget=lambda _robot: None)
+    events = EventBus()
+    events.subscribe(RobotLeft, left.append)
+    takeover = Takeover(ownership, exchange, known, ignored, ignored, held, ignored, None, None, events)
+
+    async def refresh():
+        # That "mine" has come here since was not read yet; "doubtful" is read once more.
+        return OwnerChanges(set(), set(), set(), {"mine": "b", "astray": "b", "doubtful": "a", "new": "b"})
+
+    async def meet(*_):
+        pass
+
+    ownership.refresh, ownership.note_followed, takeover._meet = refresh, lambda: None, meet
+    ownership.owns = lambda robot: robot == "mine"
+    await takeover.follow()
+    assert left == [RobotLeft("astray", "b")] and woken == [("positions", "b")]
+    assert [known.gateway_of(robot) for robot in ("mine", "astray", "doubtful")] == [None, "b", None]
 
 
 class OwnersTable:
