@@ -147,19 +147,20 @@ class Numbering:
         """-1 of a number that was not named."""
 
     def name(self, ids: Rows, rows: Rows, lives: Counts) -> None:
-        """Note the rows of robots, below 0 where they have none, and which use of each row it is."""
+        """Note the rows of robots, below 0 where they have none, and which use of each row it is; of those
+        without a row, how many had been given out."""
         self._grow(ids)
         self._rows[ids], self._lives[ids] = rows, lives
 
-    def rows(self, ids: Rows, lives: Counts) -> tuple[Rows, bool]:
+    def rows(self, ids: Rows, lives: Counts, given: int) -> tuple[Rows, bool]:
         """Return the rows of robots, below 0 where they have none, and whether each number was named.
 
-        ``lives`` counts by row how often it has been used.
+        ``lives`` counts by row how often it has been used, ``given`` how many were given out in all.
         """
         self._grow(ids)
         rows, then = self._rows[ids], self._lives[ids]
-        # A row that has another robot since is not its any more.
-        stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, 0)
+        # A row that has another robot since is not its any more; one that had no row may have got one.
+        stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, given)
         rows[stale] = -1
         return rows, not stale.any()
 
@@ -212,6 +213,8 @@ class RobotColumns:
         """-1 of a row that is free."""
         self._lives = np.empty(0, dtype=np.int64)
         """how often each row has been free."""
+        self._given = 0
+        """how many rows were given to robots."""
 
     def __contains__(self, name: str) -> bool:
         return name in self._rows
@@ -309,9 +312,9 @@ class RobotColumns:
             numbering = self._numberings[report.gateway] = Numbering(report.run)
         ids, named = report.ids.astype(np.intp), len(report.names)
         rows = np.array([self._rows.get(name, -1) for name in report.names], dtype=np.intp)
-        lives = np.where(rows >= 0, self._lives[rows] if len(self._lives) else 0, 0)
+        lives = np.where(rows >= 0, self._lives[rows] if len(self._lives) else 0, self._given)
         numbering.name(ids[:named], rows, lives)
-        others, all_named = numbering.rows(ids[named:], self._lives)
+        others, all_named = numbering.rows(ids[named:], self._lives, self._given)
         return np.concatenate([rows, others]), all_named
 
     def read_changed(self, robots: Sequence[Known]) -> Iterator[tuple[Known, RowReading]]:
@@ -390,6 +393,7 @@ class RobotColumns:
         if not self._free:
             self._grow()
         row = self._free.pop()
+        self._given += 1
         self._rows[name] = row
         self._names[row] = name
         return row

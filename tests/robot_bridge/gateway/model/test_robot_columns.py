@@ -295,3 +295,13 @@ def test_what_is_said_of_a_robot_of_this_gateway_is_left_and_not_asked_for(robot
     assert robots.observe_elsewhere(numbered([3], ["mine"], [at(1)]))
     assert robots.observe_elsewhere(numbered([3], [], [at(2)]))
     assert robots.pose("mine") is None and robots.gateway_of("mine") is None
+
+
+def test_a_robot_that_goes_elsewhere_is_asked_for_where_it_was_named_before_that_was_known(robots):
+    """The message in which it is named again, as others ask for then, may be lost."""
+    assert robots.observe_elsewhere(numbered([3], ["mine"], [at(1)]))
+    robots.let_go("mine", "south")
+    assert not robots.observe_elsewhere(numbered([3], [], [at(2)]))
+    assert robots.observe_elsewhere(numbered([3], ["mine"], [at(3)]))
+    assert robots.observe_elsewhere(numbered([3], [], [at(4)]))
+    assert robots.pose("mine").x == 4.0
