@@ -128,8 +128,10 @@ class Stays:
     def update(self, found: FoundStays, settings: GeofenceSettings, now: float) -> StayChanges:
         """Take in what was found of some robots; the others are where they were."""
         entered = []
-        for key in sorted(found.inside.keys() - self._stays.keys()):
-            stay = self._begin(key, found.inside[key](), found.places[key.robot], settings, now)
+        # All names before any stay: one that began, and of which nobody is told, would never be acted upon.
+        names = {key: found.inside[key]() for key in sorted(found.inside.keys() - self._stays.keys())}
+        for key, name in names.items():
+            stay = self._begin(key, name, found.places[key.robot], settings, now)
             if stay is not None:
                 entered.append(stay)
         self._note_outside(found, now)
