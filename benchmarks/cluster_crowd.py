@@ -164,6 +164,19 @@ class Desk:
         await self._socket.send(rpc_call(method, params, number))
         return await self._answers[number]
 
+    async def until_heard(self, robots: Iterable[str], since: float) -> float:
+        """Return the seconds from ``since`` until this desk had what all ``robots`` said later."""
+        missing, last = dict.fromkeys(robots), since
+        async with asyncio.timeout(HEARD_WITHIN):
+            while missing:
+                for robot in list(missing):
+                    said, at = self.newest.get(robot, (0.0, 0.0))
+                    if said > since:
+                        last = max(last, at)
+                        del missing[robot]
+                await asyncio.sleep(0.01)
+        return last - since
+
     async def _hear(self, socket: ClientConnection) -> None:
         async for message in socket:
             now = time.time()
@@ -284,20 +297,9 @@ class Crowd:
                 await asyncio.sleep(0.05)
 
     async def do_heard(self, since: float, desk: int, homes: Sequence[int]) -> float:
-        """Return the seconds from ``since`` until a desk was told what all robots of ``homes`` said later."""
-        told = self._desks[desk].newest
+        """Return the seconds from ``since`` until a desk had what all robots of ``homes`` said later."""
         robots = [robot.name for robot in self._robots if robot.home in homes]
-        found: dict[str, float] = {}
-
-        def all_heard() -> bool:
-            for name in robots:
-                said, at = told.get(name, (0.0, 0.0))
-                if said > since:
-                    found.setdefault(name, at)
-            return len(found) == len(robots)
-
-        await _until(all_heard)
-        return max(found.values()) - since
+        return await self._desks[desk].until_heard(robots, since)
 
     async def do_fresh(self, since: float, desk: int, homes: Sequence[int], age: float) -> float:
         """Return the seconds from ``since`` until what a desk was told of no robot of ``homes`` is older than

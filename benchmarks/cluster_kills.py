@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from benchmarks.clock import spread, table
-from benchmarks.cluster_onlookers import HEARD_WITHIN
+from benchmarks.cluster_crowd import HEARD_WITHIN
 from benchmarks.cluster_onlookers import Plan as Onlookers
 from benchmarks.cluster_positions import Fleet
 from benchmarks.page import Part, goal
@@ -128,15 +128,11 @@ def _lose_one_of_many() -> float:
         plan = Onlookers(fleet.addresses[:1], [{"rate": DESK_RATE, "form": "columns"}])
         desks = fleet.begin("benchmarks.cluster_onlookers", asdict(plan))
         desks.line()
-        begin = time.monotonic() + 0.5
-        wall = time.time() + begin - time.monotonic()
-        for crowd in fleet.crowds:
-            crowd.tell(begin=begin, seconds=SETTLE_S + HEARD_WITHIN, rate=MANY_RATE, measured=SETTLE_S)
-        time.sleep(begin + SETTLE_S - time.monotonic())
+        drive = fleet.drive(0.5, SETTLE_S + HEARD_WITHIN, MANY_RATE, SETTLE_S)
+        drive.wait(SETTLE_S)
         since = time.time()
         fleet.kill(GATEWAYS - 1)
-        schedule = {"crowds": GATEWAYS, "robots": MANY, "rate": MANY_RATE, "begin": wall}
-        desks.tell(schedule=schedule, heard={"home": GATEWAYS - 1, "since": since})
+        desks.tell(schedule=drive.schedule, heard={"home": GATEWAYS - 1, "since": since})
         return float(desks.line())
 
 

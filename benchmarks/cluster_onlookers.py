@@ -17,7 +17,7 @@ from typing import Any
 from benchmarks.cluster_crowd import Desk
 from benchmarks.cluster_swarm import NAME, Schedule
 
-ARRIVED_WITHIN, HEARD_WITHIN = 60.0, 30.0
+ARRIVED_WITHIN = 60.0
 
 
 @dataclass(frozen=True)
@@ -40,22 +40,6 @@ class Times:
             yield from self.schedule.times(frame)
 
 
-async def heard(desk: Desk, schedule: Schedule, home: int, since: float) -> float:
-    """Return the seconds from ``since`` until a desk was told what all robots of a gateway said later."""
-    names = [f"{NAME}{number * schedule.crowds + home}" for number in range(schedule.robots)]
-    missing = dict.fromkeys(names)
-    last = since
-    async with asyncio.timeout(HEARD_WITHIN):
-        while missing:
-            for name in list(missing):
-                said, at = desk.newest.get(name, (0.0, 0.0))
-                if said > since:
-                    last = max(last, at)
-                    del missing[name]
-            await asyncio.sleep(0.01)
-    return last - since
-
-
 async def run(plan: Plan) -> None:
     """Do what is said on standard input until that ends."""
     times, loop = Times(), asyncio.get_running_loop()
@@ -73,7 +57,8 @@ async def run(plan: Plan) -> None:
         window = json.loads(line)
         times.schedule = Schedule(**window["schedule"])
         if "heard" in window:
-            print(json.dumps(await heard(desks[0], times.schedule, **window["heard"])), flush=True)
+            names, since = times.schedule.robots_of(window["heard"]["home"]), window["heard"]["since"]
+            print(json.dumps(await desks[0].until_heard(names, since)), flush=True)
             continue
         await asyncio.sleep(window["begin"] - time.time())
         for desk in desks:

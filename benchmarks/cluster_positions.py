@@ -105,6 +105,17 @@ def measure(_data: Path) -> Part:
         sys.exit(f"bench: {error}")
 
 
+class Drive(NamedTuple):
+    """When robots begin to say where they are, by the steady clock, and their ``schedule`` for desks."""
+
+    begin: float
+    schedule: dict[str, Any]
+
+    def wait(self, seconds: float) -> None:
+        """Return ``seconds`` after the beginning; at once where that is over."""
+        time.sleep(max(0.0, self.begin + seconds - time.monotonic()))
+
+
 class Fleet(Gateways):
     """Gateways, each with ``robots`` of its own, which go on at another one where they ``follow``."""
 
@@ -127,6 +138,15 @@ class Fleet(Gateways):
         for crowd in self.crowds:
             crowd.line()
 
+    def drive(self, after: float, seconds: float, rate: float, measured: float = 0.0) -> Drive:
+        """Have all robots say where they are ``rate`` times a second, in ``after`` seconds and for so many;
+        what counts is from ``measured`` on."""
+        begin = time.monotonic() + after
+        for crowd in self.crowds:
+            crowd.tell(begin=begin, seconds=seconds, rate=rate, measured=measured)
+        wall = time.time() + begin - time.monotonic()
+        return Drive(begin, {"crowds": len(self.crowds), "robots": self._robots, "rate": rate, "begin": wall})
+
     def wait_until_calm(self) -> None:
         """Wait until the gateways have stored what came of a stop."""
         until = time.monotonic() + CALM_WITHIN
@@ -142,15 +162,11 @@ def _watched(database: PostgreSql, count: int) -> Run:
         plan = Onlookers(fleet.addresses, _subscriptions(count))
         desks = fleet.begin("benchmarks.cluster_onlookers", asdict(plan))
         desks.line()
-        begin = time.monotonic() + 0.5
-        wall = time.time() + begin - time.monotonic()
-        for crowd in fleet.crowds:
-            crowd.tell(begin=begin, seconds=SETTLE + SECONDS, rate=RATE, measured=SETTLE)
-        schedule = {"crowds": count, "robots": ROBOTS, "rate": RATE, "begin": wall}
-        desks.tell(schedule=schedule, begin=wall + SETTLE, seconds=SECONDS)
-        time.sleep(begin + SETTLE - time.monotonic())
+        drive = fleet.drive(0.5, SETTLE + SECONDS, RATE, SETTLE)
+        desks.tell(schedule=drive.schedule, begin=drive.schedule["begin"] + SETTLE, seconds=SECONDS)
+        drive.wait(SETTLE)
         before = fleet.cpu_seconds(), _of_the_bus(fleet)
-        time.sleep(max(0.0, begin + SETTLE + SECONDS - time.monotonic()))
+        drive.wait(SETTLE + SECONDS)
         now = fleet.cpu_seconds(), _of_the_bus(fleet)
         sent, seen = [crowd.line() for crowd in fleet.crowds], desks.line()
         return Run(
@@ -206,12 +222,10 @@ def _stopped(database: PostgreSql) -> dict[str, list[Stop]]:
 def _stop(
     fleet: Fleet, desks: Onlooker, trouble: Callable[[], AbstractContextManager[None]], without: list[int]
 ) -> Stop:
-    begin = time.monotonic() + 0.2
-    for crowd in fleet.crowds:
-        crowd.tell(begin=begin, seconds=WHILE_STOPPED, rate=RATE, measured=0.0)
+    drive = fleet.drive(0.2, WHILE_STOPPED, RATE)
     # Robots speak for a third of the time before the stop; trouble begins late in it, since a gateway that is
     # frozen for longer than its lease loses its robots.
-    time.sleep(begin + WHILE_STOPPED / 3 - TROUBLE - time.monotonic())
+    drive.wait(WHILE_STOPPED / 3 - TROUBLE)
     with trouble():
         time.sleep(TROUBLE)
         desks.tell(do="stop", desk=0, without=without)

@@ -16,7 +16,7 @@ from urllib.parse import urlsplit
 
 import numpy as np
 
-from benchmarks.raw_websocket import call, frame
+from benchmarks.raw_websocket import frame
 from benchmarks.raw_websocket import result as call_result
 from benchmarks.swarm_robots import Robot, Robots, serve
 from robot_bridge.core.gateway_addresses import GatewayAddresses
@@ -46,6 +46,10 @@ class Schedule:
     rate: float
     begin: float
 
+    def robots_of(self, crowd: int) -> list[str]:
+        """Return the names of the robots of a process."""
+        return [f"{NAME}{number * self.crowds + crowd}" for number in range(self.robots)]
+
     def times(self, message: bytes) -> Iterator[tuple[str, float]]:
         """Yield when robots said what a table of positions tells of them."""
         begin = POSITION_HEAD + int.from_bytes(message[:POSITION_HEAD], "little")
@@ -71,10 +75,6 @@ class RowRobot(Robot):
         self._x, self._y = home(number)
         self.stops: dict[str, float] = {}
         """When it heard of each stop first, by the id of the call."""
-
-    def opened(self) -> None:
-        """Say Ready again, under the number of before."""
-        self.send(call("Ready", {"magic": self.number}, 1))
 
     def tell(self) -> bool:
         """Send a position; return false when the socket takes no more, or there is no gateway."""

@@ -47,7 +47,11 @@ class Robot(Peer):
         self.number = number
         self.arrived = not rpc
         if rpc:
-            self.send(call("Ready", {"magic": number}, 1))
+            self.opened()
+
+    def opened(self) -> None:
+        """Say Ready, on each connection under the same number."""
+        self.send(call("Ready", {"magic": self.number}, 1))
 
     def tell(self) -> bool:
         """Send a position; return false when the socket takes no more."""
