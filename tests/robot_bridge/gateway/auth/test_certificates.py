@@ -13,6 +13,7 @@ import pytest
 from robot_bridge.gateway.auth import certificates, port
 from robot_bridge.gateway.auth.port import ServerFiles, ServerTls, server_files
 from robot_bridge.protocol.credentials import AccessError
+from tests.support.patience import until
 
 
 @pytest.fixture
@@ -165,27 +166,21 @@ async def watched(files, monkeypatch):
     watching.cancel()
 
 
-async def until(condition):
-    async with asyncio.timeout(30):
-        while not condition():
-            await asyncio.sleep(0.01)
-
-
 async def test_a_key_is_looked_at_again_when_its_rights_have_changed(watched, files, monkeypatch):
     reloads = []
     monkeypatch.setattr(watched, "reload", lambda: reloads.append(1))
     files.key.chmod(0o400)
-    await until(lambda: reloads)
+    await until(lambda: reloads, 7.5)
 
 
 async def test_a_gateway_that_runs_for_long_is_warned_before_its_certificate_ends(
     watched, files, caplog, monkeypatch
 ):
     certificates.renew(files.folder, days=5)
-    await until(lambda: "holds for 4 days more" in caplog.text)
+    await until(lambda: "holds for 4 days more" in caplog.text, 7.5)
     caplog.clear()
     monkeypatch.setattr(port, "WARN_INTERVAL", 0.0)
-    await until(lambda: "holds for 4 days more" in caplog.text)
+    await until(lambda: "holds for 4 days more" in caplog.text, 7.5)
 
 
 def test_old_versions_and_weak_ciphers_are_off(files):

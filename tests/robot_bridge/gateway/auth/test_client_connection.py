@@ -13,6 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth.accounts import TokenKind
 from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
+from tests.support.patience import until
 
 
 class OpenDoor:
@@ -73,26 +74,20 @@ async def client(host):
             yield wire
 
 
-async def until(holds):
-    async with asyncio.timeout(20):
-        while not holds():
-            await asyncio.sleep(0.005)
-
-
 async def test_who_answers_pings_is_measured_and_stays(host, client):
     first = await client.ping()
     await first
-    await until(lambda: host.visitor.round_trip is not None)
+    await until(lambda: host.visitor.round_trip is not None, 5.0)
     assert 0 < host.visitor.round_trip < 10
     host.visitor.round_trip = None
     await asyncio.sleep(1.0)
-    await until(lambda: host.visitor.round_trip is not None)
+    await until(lambda: host.visitor.round_trip is not None, 5.0)
     assert not host.visitor.is_gone
 
 
 async def test_who_answers_no_ping_is_cut_off(host, client):
     client.transport.pause_reading()
-    await until(lambda: host.visitor.is_gone)
+    await until(lambda: host.visitor.is_gone, 5.0)
 
 
 async def test_positions_go_past_the_queue(host, client):
