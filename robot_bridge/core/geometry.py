@@ -103,7 +103,7 @@ Ints = npt.NDArray[np.int64]
 _ROW = np.int64(2**32)
 """From a cell's number to that of the cell above it; the cell beside it is the next."""
 _LARGEST = 2**30
-"""Cells from the origin; nobody's place is told further away."""
+"""Cells from the origin; no place is reported further away."""
 
 
 def close_pairs(xy: Floats, reach: float) -> tuple[Ints, Ints, Floats]:

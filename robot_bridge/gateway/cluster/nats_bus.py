@@ -261,6 +261,7 @@ class StopListener:
             try:
                 loop.run_until_complete(self._listen_until(ending, gateway))
             except Exception:
+                # Stops are heard over the connection for all messages from then on.
                 log_unforeseen(log, "the thread that hears stops")
             finally:
                 # Not asyncio.run, which would wait for a name that is being resolved.

@@ -77,9 +77,8 @@ class CommandService(CommandReader):
 
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
-        for stored in await self._database.run(commands.still_open):
-            if self._fence.owns(stored.report.robot):
-                self._open.add(self._restored(stored))
+        stored = await self._database.run(commands.still_open)
+        self.take_up(command for command in stored if self._fence.owns(command.report.robot))
 
     def take_up(self, stored: Iterable[StoredCommand]) -> None:
         """Take up commands of robots that another gateway had."""

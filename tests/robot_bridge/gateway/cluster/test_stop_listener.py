@@ -33,6 +33,7 @@ def until_in_place(condition):
     end = time.monotonic() + 10 * BUSY
     while not condition():
         assert time.monotonic() < end
+        # The thread under test needs the interpreter; the loop must have no turn.
         time.sleep(0.005)
 
 
