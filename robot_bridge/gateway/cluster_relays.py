@@ -9,7 +9,7 @@ from .cluster.cluster import Cluster
 from .cluster.feeds import Followed, Follower, ObservationRelay, PlacementRelay, QueueFeed, StepFeed
 from .cluster.messages import Wake
 from .cluster.request_relay import RequestRelay
-from .cluster.robot_relay import DetailRelay, PositionRelay
+from .cluster.robot_relay import DetailRelay, FenceRelay, PositionRelay
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
 from .model.events import Answering, PlanChanged, SiteChosen
@@ -41,6 +41,7 @@ class ClusterRelays:
         stops_when_cut_off: bool,
     ) -> None:
         membership, exchange, database = cluster.membership, cluster.exchange, fleet.database
+        small = cluster.has_small_messages
         self._cluster = cluster
         self._fleet = fleet
         self.stops = EmergencyStopRelay(
@@ -48,8 +49,9 @@ class ClusterRelays:
         )
         fleet.emergency.relay_by(self.stops)
         self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database)
-        self._positions = PositionRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
-        self._details = DetailRelay(fleet.robots, membership, exchange, small=cluster.has_small_messages)
+        self._positions = PositionRelay(fleet.robots, membership, exchange, small=small)
+        self._details = DetailRelay(fleet.robots, membership, exchange, small=small)
+        self._fences = FenceRelay(membership, exchange, fleet.events, small=small)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
         self._queues = QueueFeed(
             fleet.robots, fleet.queue_context.book, fleet.listeners, fleet.events, exchange, database

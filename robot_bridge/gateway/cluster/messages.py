@@ -26,7 +26,7 @@ from sqlalchemy import Connection
 from ...core.errors import BridgeError
 from ...core.logs import RepeatedLines
 from ...core.messages.base import LONGEST_STATUS
-from ...core.messages.safety import PathDeclaration
+from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, StopOutcome
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
 from ..storage.repositories import metadata
@@ -51,6 +51,10 @@ MOST_IDS = 1_000_000
 
 MOST_NAMED = 50
 """robots that are named one by one in a message."""
+MOST_ALARMS, MOST_UNJUDGED = 300, 20
+"""of the geofence, and robots that it cannot judge, in a message and in what operators are sent."""
+LONGEST_NAME = 200
+"""characters of the name of a keepout or an obstacle."""
 
 Gateway = Annotated[str, Meta(max_length=32)]
 Robot = Annotated[str, Meta(max_length=63)]
@@ -59,6 +63,7 @@ Line = Annotated[str, Meta(max_length=600)]
 Status = Annotated[str, Meta(max_length=LONGEST_STATUS)]
 Names = Annotated[list[Robot], Meta(max_length=MOST_NAMED)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
+Finite = Annotated[float, Meta(ge=-1e12, le=1e12)]
 Number = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
 """Of a message about stops: :class:`Exchange` gives each that it sends another one, so that no two are the
 same bytes. 0 where the sender gives none, as earlier versions do."""
@@ -173,6 +178,35 @@ class DetailBatch(BusMessage, frozen=True, tag="details"):
     robots: Annotated[list[RobotDetails], Meta(max_length=MOST_ROBOTS)]
 
 
+class FencedRobot(msgspec.Struct, array_like=True, frozen=True):
+    """A robot in a keepout or at an obstacle, as :class:`~.core.messages.safety.FenceAlarm` has it."""
+
+    robot: Robot
+    kind: FenceKind
+    name: Annotated[str, Meta(max_length=LONGEST_NAME)]
+    since: Finite
+    x: Finite
+    y: Finite
+    action: StopAction
+    outcome: StopOutcome
+    reason: Line | None
+    current: bool
+
+
+class FenceReport(BusMessage, frozen=True, tag="fence"):
+    """Which robots of the gateway are in keepouts and at obstacles, at the database's time ``t``, in seconds.
+
+    ``more`` and ``unjudged_more`` count those that are not listed.
+    """
+
+    t: float
+    alarms: Annotated[list[FencedRobot], Meta(max_length=MOST_ALARMS)]
+    more: Count = 0
+    unjudged: Annotated[list[Robot], Meta(max_length=MOST_UNJUDGED)] = []
+    unjudged_more: Count = 0
+    fault: Line | None = None
+
+
 class QueuesChanged(BusMessage, frozen=True, tag="queues"):
     """Queues of robots have changed at the gateway, which has them or edited them; that is stored."""
 
@@ -202,6 +236,7 @@ AnyMessage = (
     | AbortCall
     | PositionBatch
     | DetailBatch
+    | FenceReport
     | QueuesChanged
     | NameQuery
     | NameAnswer
@@ -280,6 +315,15 @@ def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[lis
         size += more
     if some:
         yield some
+
+
+def fitting_report(report: FenceReport, largest: int) -> FenceReport:
+    """Return ``report`` with as many alarms, of the first ones, as go into ``largest`` bytes."""
+    room = largest - FRAME - len(_ENCODER.encode(msgspec.structs.replace(report, alarms=[])))
+    sizes = itertools.accumulate(len(_ENCODER.encode(alarm)) for alarm in report.alarms)
+    fits = sum(size <= room for size in sizes)
+    more = report.more + len(report.alarms) - fits
+    return msgspec.structs.replace(report, alarms=report.alarms[:fits], more=more)
 
 
 def _check_lengths(batch: PositionBatch) -> None:

@@ -1,7 +1,7 @@
-"""Robots across gateways: where they are, and the details of them that change seldom.
+"""Robots across gateways: where they are, details of them that change seldom, and which are fenced.
 
 Positions that changed go out in columns, newest only; what is old is dropped. Details go out when they have
-changed.
+changed. Each gateway reports which of its robots are in keepouts and at obstacles.
 """
 
 from __future__ import annotations
@@ -10,12 +10,15 @@ import asyncio
 import math
 import secrets
 from collections.abc import Iterable
+from dataclasses import fields, replace
 from operator import attrgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ...core.messages.base import LONGEST_STATUS, one_line
+from ...core.messages.safety import FenceAlarm, FenceKind, Geofence
+from ..model.events import EventBus, FenceJudged, FenceJudgedElsewhere
 from ..model.robot_columns import (
     POSE_AT,
     REPORTED_FLAGS,
@@ -26,17 +29,23 @@ from ..model.robot_columns import (
 )
 from ..model.robots import Robot, Robots
 from ..monitoring import wait_at_most
-from .bus import LARGEST_NOTIFICATION, POSITIONS
+from .bus import EVERYBODY, LARGEST_NOTIFICATION, POSITIONS
 from .membership import Membership
 from .messages import (
     LARGEST,
+    LONGEST_NAME,
+    MOST_ALARMS,
     MOST_IDS,
+    MOST_UNJUDGED,
     DetailBatch,
     Exchange,
+    FencedRobot,
+    FenceReport,
     PositionBatch,
     RobotDetails,
     Wake,
     detail_batches,
+    fitting_report,
     position_batches,
 )
 
@@ -48,7 +57,7 @@ class NewestBatches:
         self._old_s = old_s
         self._newest: dict[str, float] = {}
 
-    def accept(self, batch: PositionBatch | DetailBatch, now: float) -> bool:
+    def accept(self, batch: PositionBatch | DetailBatch | FenceReport, now: float) -> bool:
         """Return whether ``batch`` counts at ``now``, by the database's clock; it is the newest then."""
         if abs(now - batch.t) > self._old_s or batch.t < self._newest.get(batch.gw, -math.inf):
             return False
@@ -280,3 +289,114 @@ def _details(name: str, facts: _Facts) -> RobotDetails:
     return RobotDetails(
         name, battery, status, None if doubt is None else one_line(doubt, LONGEST_STATUS), *more
     )
+
+
+# --- Robots in keepouts and at obstacles: each gateway judges its own
+
+FENCE_OLD_S = 5.0
+"""seconds after which a report is dropped: it has waited somewhere."""
+_LONGEST_LINE = 500
+_OF_ALARM = attrgetter(*(field.name for field in fields(FenceAlarm)))
+
+
+class FenceRelay:
+    """Tells other gateways what the geofence found of robots of this one, and takes in what theirs found."""
+
+    def __init__(
+        self, membership: Membership, exchange: Exchange, events: EventBus, *, small: bool = False
+    ) -> None:
+        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        self._membership = membership
+        self._exchange = exchange
+        self._events = events
+        self._largest = LARGEST_NOTIFICATION if small else LARGEST
+        self._newest = NewestBatches(FENCE_OLD_S)
+        events.subscribe(FenceJudged, self._send)
+        exchange.subscribe(FenceReport, self._take)
+
+    def _send(self, judged: FenceJudged) -> None:
+        found, offset = judged.report, self._membership.clock_offset
+        report = FenceReport(
+            self._exchange.gateway,
+            self._membership.database_time(),
+            [_fenced(alarm, alarm.since + offset) for alarm in found.alarms],
+            found.more,
+            found.unjudged,
+            found.unjudged_more,
+            _line(found.fault),
+        )
+        self._exchange.send(EVERYBODY, fitting_report(report, self._largest))
+
+    def _take(self, report: FenceReport) -> None:
+        if not self._newest.accept(report, self._membership.database_time()):
+            return
+        offset = self._membership.clock_offset
+        found = Geofence(
+            t=report.t - offset,
+            alarms=[_alarm(fenced, fenced.since - offset) for fenced in report.alarms],
+            more=report.more,
+            unjudged=report.unjudged,
+            unjudged_more=report.unjudged_more,
+            fault=report.fault,
+        )
+        self._events.publish(FenceJudgedElsewhere(report.gw, found))
+
+
+REPORT_HOLDS_S = 10.0
+"""seconds after its last report until a gateway is no longer taken to judge its robots."""
+
+
+class ReportsElsewhere:
+    """The newest report of each other gateway, of its own robots; times by the steady clock."""
+
+    def __init__(self) -> None:
+        self._reports: dict[str, tuple[float, Geofence]] = {}
+
+    def note(self, gateway: str, report: Geofence, now: float) -> None:
+        """Take in what a gateway reports."""
+        self._reports[gateway] = now, report
+
+    def at(self, now: float) -> dict[str, Geofence]:
+        """Return the reports that hold at time ``now``, by gateway."""
+        self._reports = {
+            gateway: (came, report)
+            for gateway, (came, report) in self._reports.items()
+            if now - came < REPORT_HOLDS_S
+        }
+        return {gateway: report for gateway, (_, report) in self._reports.items()}
+
+    def alarm(self, robot: str, kind: FenceKind, name: str) -> FenceAlarm | None:
+        """Return what a gateway reported last of a robot in an area, in which it was before it came here."""
+        same = robot, kind, name[:LONGEST_NAME]
+        reports = (report for _, report in self._reports.values())
+        alarms = (alarm for report in reports for alarm in report.alarms)
+        return next((alarm for alarm in alarms if (alarm.robot, alarm.kind, alarm.name) == same), None)
+
+
+def join_reports(first: Geofence, others: Iterable[Geofence]) -> Geofence:
+    """Return ``first`` with what ``others`` found in the same areas, within the same bounds."""
+    reports = [first, *others]
+    alarms = sorted((alarm for one in reports for alarm in one.alarms), key=lambda alarm: -alarm.since)
+    unjudged = sorted(name for one in reports for name in one.unjudged)
+    return replace(
+        first,
+        alarms=alarms[:MOST_ALARMS],
+        more=sum(one.more for one in reports) + max(len(alarms) - MOST_ALARMS, 0),
+        unjudged=unjudged[:MOST_UNJUDGED],
+        unjudged_more=sum(one.unjudged_more for one in reports) + max(len(unjudged) - MOST_UNJUDGED, 0),
+        fault=next((one.fault for one in reports if one.fault is not None), None),
+    )
+
+
+def _fenced(alarm: FenceAlarm, since: float) -> FencedRobot:
+    robot, kind, name, _, x, y, action, outcome, reason, current = _OF_ALARM(alarm)
+    return FencedRobot(robot, kind, name[:LONGEST_NAME], since, x, y, action, outcome, _line(reason), current)
+
+
+def _alarm(fenced: FencedRobot, since: float) -> FenceAlarm:
+    robot, kind, name, _, *more = _OF_ALARM(fenced)
+    return FenceAlarm(robot, kind, name, round(since, 1), *more)
+
+
+def _line(text: str | None) -> str | None:
+    return None if text is None else one_line(text, _LONGEST_LINE)

@@ -6,11 +6,10 @@ import asyncio
 import logging
 import time
 import uuid
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass
-from functools import partial
-from typing import Any, NamedTuple, Protocol
+from dataclasses import dataclass, replace
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,9 +23,11 @@ from ...core.messages.safety import FenceAlarm, FenceKind, Geofence, StopAction,
 from ...core.sites.fences import FencedAreas, Fences
 from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
+from ..cluster.messages import MOST_ALARMS, MOST_UNJUDGED
+from ..cluster.robot_relay import ReportsElsewhere, join_reports
 from ..commands.requests import CommandRequests
-from ..model.events import Listeners
-from ..model.robot_columns import DOUBTED, FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
+from ..model.events import EventBus, FenceJudged, FenceJudgedElsewhere, Listeners
+from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
@@ -40,6 +41,10 @@ LEFT_AFTER_S = 2.0
 """Seconds for which it has to be that far away before it counts as left."""
 Place = tuple[float, float]
 """x, y in metres, site frame."""
+
+
+DONE: Collection[StopOutcome] = ("paused", "aborted", "stopped")
+"""Outcomes of robots that have been stopped."""
 
 
 class StayKey(NamedTuple):
@@ -81,12 +86,12 @@ class Clearances(NamedTuple):
 
 
 class FoundStays(NamedTuple):
-    """Robots that were ``judged``; those ``inside`` an area, with what returns its name and ``places`` of
-    those, and those still ``near`` one."""
+    """Robots that were ``judged``; those ``inside`` an area, with the areas and its number among them, and
+    ``places`` of those, and those still ``near`` one."""
 
     judged: AbstractSet[str]
     places: dict[str, Place]
-    inside: dict[StayKey, Callable[[], str]]
+    inside: dict[StayKey, tuple[FencedAreas, int]]
     near: set[StayKey]
 
 
@@ -129,7 +134,8 @@ class Stays:
         """Take in what was found of some robots; the others are where they were."""
         entered = []
         # All names before any stay: one that began, and of which nobody is told, would never be acted upon.
-        names = {key: found.inside[key]() for key in sorted(found.inside.keys() - self._stays.keys())}
+        new = sorted(found.inside.keys() - self._stays.keys())
+        names = {key: areas.name(area) for key in new for areas, area in [found.inside[key]]}
         for key, name in names.items():
             stay = self._begin(key, name, found.places[key.robot], settings, now)
             if stay is not None:
@@ -140,7 +146,7 @@ class Stays:
         return StayChanges(entered, ended)
 
     def forget(self, robots: Iterable[str]) -> list[Stay]:
-        """End the stays of robots that are known no more, and return them."""
+        """End the stays of robots that nobody judges here any more, and return them."""
         gone = set(robots)
         keys = [key for key in self._stays if key.robot in gone]
         for key in keys:
@@ -181,7 +187,7 @@ class Stays:
 
 def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances: Clearances) -> FoundStays:
     """Return in which areas ``robots`` at ``places``, (n, 2) metres in the site frame, are; in any thread."""
-    inside: dict[StayKey, Callable[[], str]] = {}
+    inside: dict[StayKey, tuple[FencedAreas, int]] = {}
     near: set[StayKey] = set()
     at: dict[str, Place] = {}
     kinds: tuple[tuple[FenceKind, FencedAreas, float], ...] = (
@@ -198,7 +204,7 @@ def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances
             key = StayKey(robots[row], kind, areas.id(area))
             near.add(key)
             if inside_it:
-                inside[key] = partial(areas.name, area)
+                inside[key] = areas, area
                 x, y = places[row].tolist()
                 at[key.robot] = x, y
     return FoundStays(set(robots), at, inside, near)
@@ -220,8 +226,6 @@ REPORT_EVERY_S = 1.0
 UNCHANGED_EVERY_S = 3.0
 """Operators who have connected since then hear of it, and that somebody watches at all."""
 RETRY_AFTER_S = 1.0
-MOST_ALARMS = 300
-MOST_NAMES = 20
 _LONGEST_NAME = 100
 
 
@@ -234,10 +238,27 @@ class AuditNote(Protocol):
         """Note that ``who`` did ``action``, or tried to."""
 
 
+class _Passed:
+    """A report as it was passed on last: again when it has changed, and after :data:`UNCHANGED_EVERY_S`."""
+
+    def __init__(self) -> None:
+        self._report: Geofence | None = None
+        self._at = -UNCHANGED_EVERY_S
+
+    def is_due(self, report: Geofence) -> bool:
+        """Tell whether ``report`` has to be passed on; it is the last one then."""
+        now = time.monotonic()
+        if now - self._at < UNCHANGED_EVERY_S and self._report == replace(report, t=0.0):
+            return False
+        self._report, self._at = replace(report, t=0.0), now
+        return True
+
+
 class GeofenceWatch:
     """Judges some times a second the newest position of each robot that has moved, and no other.
 
-    Each robot is stopped by a task of its own: one that takes long, or fails, holds up no other.
+    Robots of other gateways are judged by those, and here where they report nothing. Each robot is stopped
+    by a task of its own: one that takes long, or fails, holds up no other.
     """
 
     def __init__(
@@ -249,6 +270,7 @@ class GeofenceWatch:
         emergency: EmergencyStops,
         clock: Clock,
         listeners: Listeners,
+        events: EventBus,
         note: AuditNote | None = None,
     ) -> None:
         self._site = site
@@ -258,14 +280,21 @@ class GeofenceWatch:
         self._emergency = emergency
         self._clock = clock
         self._listeners = listeners
+        self._events = events
         self._note = note
         self._stays = Stays()
         self._fenced: Fences | None = None
         self._fault: str | None = None
         self._seen = -1
         """The revision of the robots that were judged."""
+        self._elsewhere = ReportsElsewhere()
+        self._left: frozenset[str] = frozenset()
+        """The gateways that judge their robots themselves."""
         self._acting: set[asyncio.Task[None]] = set()
-        self._last_report: tuple[float, Geofence | None] = (-UNCHANGED_EVERY_S, None)
+        self._reported_at, self._reported = -REPORT_EVERY_S, 0
+        """When a report was made last, and of how many alarms."""
+        self._to_operators, self._to_gateways = _Passed(), _Passed()
+        events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
@@ -282,19 +311,38 @@ class GeofenceWatch:
 
     def report(self) -> Geofence:
         """Return what operators are told."""
-        now = self._clock.time()
-        stays = sorted(self._stays, key=lambda stay: -stay.since)
-        places = self._robots.places()
+        return self._join(self._own())
+
+    def _own(self) -> Geofence:
+        """Return what was found of the robots of this gateway."""
+        is_own = self._robots.gateway_of
+        stays = [stay for stay in self._stays if is_own(stay.robot) is None]
+        return self._report(stays, self._robots.own_places())
+
+    def _join(self, own: Geofence) -> Geofence:
+        """Return what was found of all robots."""
+        gateway_of, reports = self._robots.gateway_of, self._elsewhere.at(self._clock.steady())
+        stays = [stay for stay in self._stays if gateway_of(stay.robot) is not None]
+        found = [self._report(stays, self._robots.places_elsewhere(without=self._left))]
+        for gateway, report in reports.items():
+            # A robot that has gone from there since is judged by the gateway that has it now.
+            alarms = [alarm for alarm in report.alarms if gateway_of(alarm.robot) == gateway]
+            fault = None if report.fault is None else f"gateway {gateway}: {report.fault}"
+            found.append(replace(report, alarms=alarms, fault=fault))
+        return join_reports(own, found)
+
+    def _report(self, stays: Sequence[Stay], places: RobotPlaces) -> Geofence:
+        now, fenced = self._clock.time(), self._fenced
+        newest = sorted(stays, key=lambda stay: -stay.since)[:MOST_ALARMS]
         unjudged = self._unjudged(places, now)
-        fenced = self._fenced
         return Geofence(
             t=now,
-            alarms=_alarms(stays[:MOST_ALARMS], places),
-            more=max(len(stays) - MOST_ALARMS, 0),
+            alarms=[_alarm(stay, is_placed=self._robots.is_placed(stay.robot)) for stay in newest],
+            more=len(stays) - len(newest),
             keepouts=0 if fenced is None else len(fenced.keepouts),
             obstacles=0 if fenced is None else len(fenced.obstacles) + len(fenced.observed),
-            unjudged=unjudged[:MOST_NAMES],
-            unjudged_more=max(len(unjudged) - MOST_NAMES, 0),
+            unjudged=unjudged[:MOST_UNJUDGED],
+            unjudged_more=max(len(unjudged) - MOST_UNJUDGED, 0),
             fault=self._fault,
         )
 
@@ -313,11 +361,12 @@ class GeofenceWatch:
         return fences
 
     async def _judge(self, fences: Fences) -> None:
-        gone = [stay.robot for stay in self._stays if stay.robot not in self._robots]
-        if gone:
-            self._stays.forget(gone)
+        left = frozenset(self._elsewhere.at(self._clock.steady()))
+        if left != self._left:
+            self._left, self._seen = left, -1
+        self._stays.forget({stay.robot for stay in self._stays if not self._is_judged(stay.robot)})
         seen = self._robots.revision
-        names, places = _placed(self._robots, self._seen)
+        names, places = _placed(self._robots, self._seen, left)
         settings = self._site.settings
         found = FoundStays(set(), {}, {}, set())
         if names:
@@ -329,13 +378,23 @@ class GeofenceWatch:
             log.info("robot %s is no longer %s", stay.robot, _where(stay))
         for stay in changes.entered:
             self._begin(stay)
+        for stay in self._stays:
+            # What another gateway has, that one stops; what has come from there since is stopped here.
+            if _is_open(stay) and self._robots.gateway_of(stay.robot) is None:
+                self._stop_by_task(stay)
+
+    def _is_judged(self, robot: str) -> bool:
+        return robot in self._robots and self._robots.gateway_of(robot) not in self._left
 
     def _begin(self, stay: Stay) -> None:
         x, y = stay.place
         log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), x, y)
-        # What another gateway has, that one stops.
-        if stay.action == "none" or self._robots.gateway_of(stay.robot) is not None:
-            return
+        known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name)
+        if known is not None and known.outcome in DONE:
+            # It was stopped where it comes from, and may be on its way out.
+            stay.since, stay.outcome, stay.reason = known.since, known.outcome, known.reason
+
+    def _stop_by_task(self, stay: Stay) -> None:
         stay.outcome = "asked"
         acting = asyncio.create_task(self._act(stay), name=f"geofence: {stay.action} {stay.robot}")
         self._acting.add(acting)
@@ -392,15 +451,19 @@ class GeofenceWatch:
             self._note(OPERATOR, stay.action, done=done, subject=stay.robot, detail=detail)
 
     def _tell(self) -> None:
-        reported_at, last = self._last_report
-        waited = time.monotonic() - reported_at
-        if waited < REPORT_EVERY_S and last is not None and len(self._stays) == len(last.alarms) + last.more:
+        now = time.monotonic()
+        if now - self._reported_at < REPORT_EVERY_S and len(self._stays) == self._reported:
             return
-        report = self.report()
-        changed = last is None or _without_time(report) != _without_time(last)
-        if changed or waited >= UNCHANGED_EVERY_S:
-            self._last_report = time.monotonic(), report
+        self._reported_at, self._reported = now, len(self._stays)
+        own = self._own()
+        if self._to_gateways.is_due(own):
+            self._events.publish(FenceJudged(own))
+        report = self._join(own)
+        if self._to_operators.is_due(report):
             self._listeners.announce("geofence", "geofence", to_json(report))
+
+    def _note_elsewhere(self, judged: FenceJudgedElsewhere) -> None:
+        self._elsewhere.note(judged.gateway, judged.report, self._clock.steady())
 
     def _unjudged(self, places: RobotPlaces, now: float) -> list[str]:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
@@ -411,10 +474,9 @@ class GeofenceWatch:
         return sorted(places.names[row] for row in rows.tolist())
 
 
-def _alarms(stays: Sequence[Stay], places: RobotPlaces) -> list[FenceAlarm]:
-    is_placed = (places.states == FRESH) & ((places.flags & (LOCATED | DOUBTED)) == LOCATED)
-    placed = {places.names[row] for row in np.flatnonzero(is_placed).tolist()} if stays else set()
-    return [_alarm(stay, is_placed=stay.robot in placed) for stay in stays]
+def _is_open(stay: Stay) -> bool:
+    """Tell whether something has to be done about a stay that nobody has begun yet."""
+    return stay.action != "none" and stay.outcome == "none"
 
 
 def _alarm(stay: Stay, *, is_placed: bool) -> FenceAlarm:
@@ -432,10 +494,10 @@ def _alarm(stay: Stay, *, is_placed: bool) -> FenceAlarm:
     )
 
 
-def _placed(robots: Robots, since: int) -> tuple[list[str], Points]:
+def _placed(robots: Robots, since: int, without: AbstractSet[str]) -> tuple[list[str], Points]:
     """Return the names and places, (n, 2), of those that changed after revision ``since`` and have said where
-    they are since they connected."""
-    found = robots.places(since)
+    they are since they connected, without the robots of some gateways."""
+    found = robots.own_places(since).join(robots.places_elsewhere(since, without=without))
     places = found.table[[X, Y]].T
     places[(found.flags & LOCATED) == 0] = np.nan
     rows = finite_places(places)
@@ -445,8 +507,3 @@ def _placed(robots: Robots, since: int) -> tuple[list[str], Points]:
 def _where(stay: Stay) -> str:
     name = "".join(letter if letter.isprintable() else "?" for letter in stay.name)[:_LONGEST_NAME]
     return f"in the keepout '{name}'" if stay.kind == "keepout" else f"at the obstacle '{name}'"
-
-
-def _without_time(report: Geofence) -> dict[str, Any]:
-    values: dict[str, Any] = {**vars(report), "t": 0.0}
-    return values

@@ -126,7 +126,15 @@ class Fleet:
         rules.add(self.roads.closures)
         self.pauses = PauseService(self.queue_context)
         self.geofence = GeofenceWatch(
-            site, self.robots, self.orders, self.pauses, self.emergency, clock, self.listeners, note
+            site,
+            self.robots,
+            self.orders,
+            self.pauses,
+            self.emergency,
+            clock,
+            self.listeners,
+            self.events,
+            note,
         )
         self.nearness = NearnessWatch(
             self.robots, self.links, self.roads.traffic, site, clock, self.listeners

@@ -12,6 +12,7 @@ from ...core.logs import log_and_continue
 from ...core.messages.base import DESK_REQUESTS, DeskRequest, to_json
 from ...core.messages.commands import CommandReport
 from ...core.messages.records import ObservationReport, PlacementReport
+from ...core.messages.safety import Geofence
 
 log = logging.getLogger(__name__)
 
@@ -138,6 +139,27 @@ class RobotLeft:
 
     def __str__(self) -> str:
         return f"robot {self.robot!r} that went to gateway {self.gateway!r}"
+
+
+@dataclass(frozen=True)
+class FenceJudged:
+    """The geofence judged the robots of this gateway: ``report`` is of those alone."""
+
+    report: Geofence
+
+    def __str__(self) -> str:
+        return f"the geofence's {len(self.report.alarms) + self.report.more} alarms"
+
+
+@dataclass(frozen=True)
+class FenceJudgedElsewhere:
+    """The geofence of another gateway judged the robots of that one."""
+
+    gateway: str
+    report: Geofence
+
+    def __str__(self) -> str:
+        return f"the alarms of gateway {self.gateway!r}'s geofence"
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ its row says: :class:`.Robots` makes a :class:`.Robot` of that when somebody ask
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
@@ -369,9 +369,11 @@ class RobotColumns:
         """Return the names of those that are only seen."""
         return self._named(np.flatnonzero(((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)))
 
-    def places(self, since: int = -1) -> RobotPlaces:
-        """Return where those are that changed after revision ``since``."""
+    def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
+        """Return where those are that changed after revision ``since``, but for robots of some gateways."""
         rows = np.flatnonzero(self._revisions > since)
+        if without:
+            rows = rows[~np.isin(self._owners[rows], [self._owner(gateway) for gateway in without])]
         return RobotPlaces(self._named(rows), self._numbers[:, rows], self._states[rows], self._flags[rows])
 
     def _states_at(self, now: float, stale_after: float, lost_after: float) -> Flags:

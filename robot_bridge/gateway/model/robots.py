@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
 
@@ -485,9 +485,14 @@ class Robots:
         """Return where the robots of this gateway are that changed after revision ``since``."""
         return self._own_columns.places(since)
 
+    def places_elsewhere(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
+        """Return where the robots of other gateways, but those of ``without``, are that changed after
+        revision ``since``."""
+        return self._other_columns.places(since, without)
+
     def places(self, since: int = -1) -> RobotPlaces:
         """Return where those are that changed after revision ``since``, those of this gateway first."""
-        return self._own_columns.places(since).join(self._other_columns.places(since))
+        return self.own_places(since).join(self.places_elsewhere(since))
 
     def only_seen(self) -> list[Robot]:
         """Return the robots that can do nothing."""

@@ -2,21 +2,34 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import msgspec
 import pytest
 
 from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.core.messages.safety import FenceAlarm, Geofence
 from robot_bridge.gateway.cluster import robot_relay
-from robot_bridge.gateway.cluster.bus import EVERYBODY
-from robot_bridge.gateway.cluster.messages import Codec, Exchange, PositionBatch, Wake
+from robot_bridge.gateway.cluster.bus import EVERYBODY, LARGEST_NOTIFICATION
+from robot_bridge.gateway.cluster.messages import (
+    LONGEST_NAME,
+    Codec,
+    Exchange,
+    FencedRobot,
+    PositionBatch,
+    Wake,
+)
 from robot_bridge.gateway.cluster.robot_relay import (
     DETAIL_ALL_AGAIN_S,
+    FENCE_OLD_S,
     NAMES_AGAIN_S,
     POSITION_ALL_S,
     DetailRelay,
+    FenceRelay,
     PositionRelay,
 )
+from robot_bridge.gateway.model.events import EventBus, FenceJudged, FenceJudgedElsewhere
 from robot_bridge.gateway.model.robots import Robots
 
 CODEC = Codec(b"k" * 32)
@@ -210,3 +223,62 @@ def test_who_did_not_hear_the_names_asks_for_them_once_in_a_while(place, here):
     place.tick()
     hand_over(place, here)
     assert here.robots.pose("r1").x == 2.5
+
+
+ALARM = FenceAlarm("r1", "keepout", "Basin", 1000.5, 1.0, 2.0, "abort", "failed", "no database", False)
+
+
+class Fences:
+    """A gateway whose clock is ``offset`` seconds behind the database's, and what it hears of others."""
+
+    def __init__(self, name, offset, *, small=False):
+        self.bus, self.events, self.heard = Bus(), EventBus(), []
+        self.exchange = Exchange(name, b"k" * 32, [self.bus])
+        self.now = 2000.0
+        membership = SimpleNamespace(database_time=lambda: self.now, clock_offset=offset)
+        self.relay = FenceRelay(membership, self.exchange, self.events, small=small)
+        self.events.subscribe(FenceJudgedElsewhere, self.heard.append)
+
+    def judged(self, report):
+        self.events.publish(FenceJudged(report))
+        return self.bus.sent.pop()
+
+    def hear(self, message):
+        self.exchange.receive(EVERYBODY, CODEC.encode(message))
+        return self.heard
+
+
+def test_what_the_geofence_found_is_told_in_the_time_of_whoever_hears_it():
+    here, there = Fences("a", 100.0), Fences("b", -50.0)
+    found = Geofence(1900.0, [ALARM], 4, 9, 9, ["r2"], 5, "areas\nbroken")
+    (judged,) = there.hear(here.judged(found))
+    assert judged.gateway == "a"
+    assert judged.report == Geofence(
+        2050.0, [replace(ALARM, since=1150.5)], 4, 0, 0, ["r2"], 5, "areas broken"
+    )
+
+
+def test_a_report_that_waited_somewhere_counts_for_nothing():
+    here, there = Fences("a", 0.0), Fences("b", 0.0)
+    message = here.judged(Geofence(2000.0))
+    there.now += FENCE_OLD_S + 1
+    assert there.hear(message) == []
+
+
+def test_alarms_that_do_not_fit_into_a_notification_are_counted():
+    here = Fences("a", 0.0, small=True)
+    alarms = [replace(ALARM, robot=f"robot-{k:03}", name="B" * 300) for k in range(300)]
+    message = here.judged(Geofence(2000.0, alarms, 7))
+    assert len(CODEC.encode(message)) <= LARGEST_NOTIFICATION
+    assert 10 < len(message.alarms) < 300 and message.more == 307 - len(message.alarms)
+    assert message.alarms[0].robot == "robot-000" and len(message.alarms[0].name) == LONGEST_NAME
+
+
+@pytest.mark.parametrize("where", [float("nan"), float("inf")])
+def test_an_alarm_that_is_nowhere_is_no_message(where):
+    here, there = Fences("a", 0.0), Fences("b", 0.0)
+    assert there.hear(here.judged(Geofence(2000.0, [replace(ALARM, x=1.0)])))
+    message = msgspec.structs.replace(here.judged(Geofence(2000.0)), alarms=[])
+    broken = msgspec.structs.replace(message, alarms=[FencedRobot(*vars(replace(ALARM, x=where)).values())])
+    there.exchange.receive(EVERYBODY, CODEC.encode(broken))
+    assert len(there.heard) == 1

@@ -11,11 +11,13 @@ import pytest
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.records import GetObservations, ReviewObservation
 from robot_bridge.core.messages.robots import SetObject
-from robot_bridge.core.messages.safety import EmergencyStop
+from robot_bridge.core.messages.safety import EmergencyStop, FenceAlarm, Geofence
 from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
+from robot_bridge.gateway.cluster.robot_relay import REPORT_HOLDS_S
 from robot_bridge.gateway.fleet import geofence as watch
 from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
+from robot_bridge.gateway.model.events import FenceJudged, FenceJudgedElsewhere
 from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
 
 IN_THE_BASIN = 66.0, 32.0
@@ -58,26 +60,88 @@ async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarde
     assert await guarded.acknowledge_all() == []
 
 
-async def test_a_robot_of_another_gateway_is_told_of_and_left_to_that(guarded):
-    def told(place, *, wall, located=True):
-        table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
-        flags = np.array([LOCATED * located], dtype=np.uint8)
-        guarded.fleet.robots.observe_elsewhere(
-            ReportedElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, wall)
-        )
+def told_elsewhere(yard, place, *, located=True):
+    """Take in where gateway south says that its robot far is."""
+    table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
+    flags = np.array([LOCATED * located], dtype=np.uint8)
+    yard.fleet.robots.observe_elsewhere(
+        ReportedElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, yard.now)
+    )
 
-    told(IN_THE_BASIN, wall=guarded.now, located=False)
+
+def reported_elsewhere(yard, *alarms, **more):
+    yard.fleet.events.publish(FenceJudgedElsewhere("south", Geofence(yard.now, list(alarms), **more)))
+
+
+def basin(robot, outcome="aborted", since=1000.0):
+    return FenceAlarm(robot, "keepout", "Water basin", since, 66.0, 32.0, "abort", outcome)
+
+
+async def test_a_robot_of_a_gateway_that_reports_nothing_is_told_of_and_left_to_that(guarded):
+    told_elsewhere(guarded, IN_THE_BASIN, located=False)
     report = await look(guarded)
     assert (report.alarms, report.unjudged) == ([], ["far"])
-    told(OUTSIDE, wall=guarded.now)
+    told_elsewhere(guarded, OUTSIDE)
     report = await look(guarded)
     assert (report.alarms, report.unjudged) == ([], [])
-    told(IN_THE_BASIN, wall=guarded.now)
+    told_elsewhere(guarded, IN_THE_BASIN)
     (alarm,) = (await look(guarded)).alarms
     assert (alarm.robot, alarm.name, alarm.outcome) == ("far", "Water basin", "none")
     guarded.now += 20
     guarded.fleet.robots.age(guarded.now)
     assert (await look(guarded)).unjudged == ["far", "r1"]
+
+
+async def test_what_another_gateway_reports_is_told_and_its_robots_are_not_judged_here(guarded):
+    told_elsewhere(guarded, IN_THE_BASIN)
+    assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["none"]
+    reported_elsewhere(guarded)
+    assert (await look(guarded)).alarms == []
+    reported_elsewhere(guarded, basin("far"), more=3, unjudged=["u"], unjudged_more=2, fault="no areas")
+    report = await look(guarded)
+    assert report.alarms == [basin("far")]
+    assert (report.more, report.unjudged, report.unjudged_more) == (3, ["u"], 2)
+    assert report.fault == "gateway south: no areas" and report.keepouts
+    # Once it has been silent for long its robots are judged here, whether they move or not.
+    guarded.clock.uptime += REPORT_HOLDS_S
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.robot, alarm.outcome) == ("far", "none")
+
+
+async def test_others_hear_of_the_robots_of_this_gateway_alone(guarded):
+    heard = []
+    guarded.fleet.events.subscribe(FenceJudged, lambda judged: heard.append(judged.report))
+    told_elsewhere(guarded, IN_THE_BASIN)
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    assert sorted(alarm.robot for alarm in (await look(guarded)).alarms) == ["far", "r1"]
+    assert [alarm.robot for alarm in heard[-1].alarms] == ["r1"]
+
+
+async def test_a_robot_that_was_stopped_at_another_gateway_may_drive_out(guarded):
+    reported_elsewhere(guarded, basin("r1"))
+    assert (await look(guarded)).alarms == [], "it is this gateway's by now"
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
+    assert await guarded.acknowledge_all() == []
+
+
+@pytest.mark.parametrize("outcome", ["none", "asked", "failed"])
+async def test_a_robot_that_another_gateway_could_not_stop_is_stopped(guarded, outcome):
+    reported_elsewhere(guarded, basin("r1", outcome))
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["aborted"]
+    assert await guarded.acknowledge_all() == ["Abort"]
+
+
+async def test_a_robot_that_came_in_at_another_gateway_is_stopped_when_it_comes_here(guarded):
+    told_elsewhere(guarded, IN_THE_BASIN)
+    assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["none"]
+    await guarded.ready("far")
+    await guarded.acknowledge_all("far")
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.robot, alarm.outcome) == ("far", "aborted")
+    assert await guarded.acknowledge_all("far") == ["Abort"]
 
 
 async def test_a_stop_that_cannot_be_stored_is_tried_until_it_is(guarded, monkeypatch):

@@ -165,10 +165,11 @@ def test_a_name_that_cannot_be_read_keeps_no_robot_from_being_acted_upon():
     places = np.array([(3.0, 2.0), (22.0, 2.0)])
     found = find_stays(["r1", "r2"], places, SITE, Clearances(0.0, RADIUS))
 
-    def unreadable():
-        raise ValueError("no text")
+    class Unreadable:
+        def name(self, area):
+            raise ValueError("no text")
 
-    stays, broken = Stays(), {**found.inside, max(found.inside): unreadable}
+    stays, broken = Stays(), {**found.inside, max(found.inside): (Unreadable(), 0)}
     with pytest.raises(ValueError, match="no text"):
         stays.update(found._replace(inside=broken), GeofenceSettings(), 1000.0)
     assert [stay.robot for stay in stays.update(found, GeofenceSettings(), 1001.0).entered] == ["r1", "r2"]
