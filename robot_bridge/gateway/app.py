@@ -51,7 +51,7 @@ from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
 from .fleet.link_supervision import LinkProcesses
 from .fleet.service import Fleet
-from .model.events import Answering, RequestHandlers
+from .model.events import Answering, RequestHandlers, StopBegun
 from .monitoring import GarbageCollection, Metrics, Work, every, keep_all_going
 from .plans.service import PlanService
 from .retention import Retention
@@ -174,6 +174,7 @@ class Gateway:
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch()
         self._leavings = GarbageCollection()
+        fleet.events.subscribe(StopBegun, lambda _: self._leavings.postpone())
         self.retention = Retention(fleet.database, fleet.site)
 
     async def serve(self, host: str, port: int) -> Server:

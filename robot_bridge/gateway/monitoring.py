@@ -301,6 +301,11 @@ def freeze_permanent_objects() -> None:
     gc.set_threshold(YOUNG, MIDDLE, OLD)
 
 
+AFTER_STOP_S, MOST_POSTPONED_S = 5.0, 30.0
+"""seconds without a look after an emergency stop has begun, and at most where one follows another: to stop a
+thousand robots makes so many objects that there would be several, of 40 ms of a core each and more."""
+
+
 class GarbageCollection:
     """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare."""
 
@@ -308,10 +313,25 @@ class GarbageCollection:
         self._clock = clock
         self._looked_at = 0
         self._rests_until = -math.inf
+        self._postponed_since: float | None = None
+        self._postponed_until = -math.inf
+
+    def postpone(self) -> None:
+        """Have Python look at nothing for a while; :meth:`clear_away` lets it look again."""
+        now = self._clock.steady()
+        if self._postponed_since is None:
+            self._postponed_since = now
+            gc.disable()
+        self._postponed_until = min(now + AFTER_STOP_S, self._postponed_since + MOST_POSTPONED_S)
 
     def clear_away(self, gone: int) -> None:
         """Look at all objects when ``gone``, connections since the start, has grown by MOST_GONE since."""
         began = self._clock.steady()
+        if self._postponed_since is not None:
+            if began < self._postponed_until:
+                return
+            self._postponed_since = None
+            gc.enable()
         if gone - self._looked_at < MOST_GONE or began < self._rests_until:
             return
         self._looked_at = gone

@@ -39,6 +39,8 @@ LOOK_S = 1.0
 """seconds between two looks when nobody tells of a change."""
 WAKE_S = 0.02
 """seconds for which changes here wait for one another before other gateways are woken."""
+PIECE = 50
+"""steps that operators are told before others have their turn: some milliseconds."""
 APART_S = 0.05
 """seconds between two looks at least: in an emergency stop others tell of changes without a pause."""
 
@@ -129,9 +131,11 @@ class StepFeed:
         found = await self._database.read(commands.steps_after, self._margin())
         new = list(dict.fromkeys(command for id, command in found if id not in self._seen))
         reports = await self._database.read(commands.find_all, new) if new else {}
-        for command in new:
-            if command in reports:
-                self._tell(reports[command].report)
+        for begin in range(0, len(new), PIECE):
+            for command in new[begin : begin + PIECE]:
+                if command in reports:
+                    self._tell(reports[command].report)
+            await asyncio.sleep(0)
         self._newest = max([self._newest, *(id for id, _ in found)])
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
 

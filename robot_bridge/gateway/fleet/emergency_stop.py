@@ -22,7 +22,7 @@ from ...core.messages.robots import Abort
 from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
-from ..model.events import Listeners, handles
+from ..model.events import EventBus, Listeners, StopBegun, handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
@@ -154,6 +154,7 @@ class EmergencyStops:
         clock: Clock,
         robots: Robots,
         listeners: Listeners,
+        events: EventBus,
         journal: StopJournal | None = None,
     ) -> None:
         self._book = book
@@ -161,6 +162,7 @@ class EmergencyStops:
         self._clock = clock
         self._robots = robots
         self._listeners = listeners
+        self._events = events
         self._journal = journal
         self._links: list[Callable[[str], None]] = []
         self._relays: list[StopRelay] = []
@@ -422,6 +424,7 @@ class EmergencyStops:
             self._book.keep_aborts(orders_of(stop, overdue))
 
     def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
+        self._events.publish(StopBegun(stop.id))
         self._put_in_force(stop)
         noting = None
         # Whatever goes wrong in one of these, what comes after it is done.

@@ -102,7 +102,9 @@ class Fleet:
             database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
         )
         self.orders = CommandRequests(site, self.robots, self._book, database)
-        self.emergency = EmergencyStops(self._book, database, clock, self.robots, self.listeners, stops)
+        self.emergency = EmergencyStops(
+            self._book, database, clock, self.robots, self.listeners, self.events, stops
+        )
         self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()
         self.queue_context = QueueContext(

@@ -163,6 +163,16 @@ class FenceJudgedElsewhere:
 
 
 @dataclass(frozen=True)
+class StopBegun:
+    """An emergency stop is about to be told to robots: whatever takes time had better wait."""
+
+    stop: str
+
+    def __str__(self) -> str:
+        return f"the beginning of emergency stop {self.stop}"
+
+
+@dataclass(frozen=True)
 class SiteChosen:
     """A supervisor chose at this gateway which site is served; that is stored."""
 

@@ -8,6 +8,7 @@ import gc
 import pytest
 from websockets.asyncio.client import connect
 
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.core.sites.settings_tables import LimitSettings, LinkOptions
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway import app
@@ -66,6 +67,17 @@ async def test_of_robots_that_come_and_go_nothing_is_left(running, no_looks, mon
         while connections() > before:
             await asyncio.sleep(0.05)
     clearing.cancel()
+
+
+async def test_python_looks_for_nothing_while_robots_are_stopped(running):
+    fleet = running[0]._fleet
+    looks = []
+    fleet.emergency.reach(lambda _call: looks.append(gc.isenabled()))
+    try:
+        await fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada")
+        assert looks == [False]
+    finally:
+        gc.enable()
 
 
 def connections() -> int:

@@ -10,7 +10,9 @@ import pytest
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages.robots import SendPos
 from robot_bridge.gateway.monitoring import (
+    AFTER_STOP_S,
     MOST_GONE,
+    MOST_POSTPONED_S,
     REST,
     YOUNG,
     GarbageCollection,
@@ -108,3 +110,37 @@ def test_a_look_that_took_long_is_not_followed_by_another_for_much_longer(looks)
     finally:
         gc.callbacks.remove(last_two_seconds)
     assert looks == [2, 2]
+
+
+@pytest.fixture
+def enabled():
+    yield
+    gc.enable()
+
+
+def test_nothing_is_looked_at_for_a_while_after_a_stop_has_begun(looks, enabled):
+    clock = ManualClock(uptime=10.0)
+    leavings = GarbageCollection(clock)
+    leavings.postpone()
+    for _ in range(2 * YOUNG):
+        Ring()
+    leavings.clear_away(MOST_GONE)
+    assert looks == []
+    clock.advance(AFTER_STOP_S - 1.0)
+    leavings.postpone()
+    clock.advance(AFTER_STOP_S - 1.0)
+    leavings.clear_away(MOST_GONE)
+    assert looks == [], "a second stop had begun"
+    clock.advance(1.0)
+    leavings.clear_away(MOST_GONE)
+    assert gc.isenabled() and 2 in looks
+
+
+def test_stops_without_end_do_not_keep_what_is_left_behind_for_ever(looks, enabled):
+    clock = ManualClock(uptime=10.0)
+    leavings = GarbageCollection(clock)
+    for _ in range(int(MOST_POSTPONED_S)):
+        leavings.postpone()
+        clock.advance(1.0)
+    leavings.clear_away(0)
+    assert gc.isenabled()
