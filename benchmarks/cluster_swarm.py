@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.raw_websocket import frame
 from benchmarks.raw_websocket import result as call_result
-from benchmarks.swarm_robots import Robot, Robots, serve
+from benchmarks.swarm_robots import Robot, Robots, Sent, serve
 from robot_bridge.core.gateway_addresses import GatewayAddresses
 from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
 from robot_bridge.gateway.fleet.emergency_stop import NAME_PREFIX
@@ -75,6 +75,10 @@ class RowRobot(Robot):
         self._x, self._y = home(number)
         self.stops: dict[str, float] = {}
         """When it heard of each stop first, by the id of the call."""
+
+    def go_home(self) -> None:
+        """Begin again where it began."""
+        self._step = 0
 
     def tell(self) -> bool:
         """Send a position; return false when the socket takes no more, or there is no gateway."""
@@ -138,15 +142,21 @@ class RowRobots(Robots[RowRobot]):
             self.watch(robot, opening=True)
         super().hear(seconds)
 
+    def drive(self, begin: float, seconds: float, rate: float, measured: float) -> Sent:
+        """Send positions, from their homes on: see :class:`Schedule`."""
+        for robot in self.robots:
+            robot.go_home()
+        return super().drive(begin, seconds, rate, measured)
+
     def do(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """Do what is asked: drive, or say how many robots heard of a stop, and when the last one did."""
+        """Do what is asked: drive, or say how many robots heard of a stop, when the first did, and last."""
         if "stop" not in asked:
             return super().do(asked)
         until, id = time.monotonic() + STOPPED_WITHIN, f"{NAME_PREFIX}{asked['stop']}"
         while any(id not in robot.stops for robot in self.robots) and time.monotonic() < until:
             self.hear(0.02)
         times = [robot.stops[id] for robot in self.robots if id in robot.stops]
-        return {"heard": len(times), "last": max(times, default=0.0)}
+        return {"heard": len(times), "first": min(times, default=0.0), "last": max(times, default=0.0)}
 
     def make(self, plan: dict[str, Any]) -> Iterator[RowRobot]:
         """Yield robots that have said Ready."""
