@@ -52,7 +52,7 @@ MOST_IDS = 1_000_000
 MOST_NAMED = 50
 """robots that are named one by one in a message."""
 MOST_ALARMS, MOST_UNJUDGED = 300, 20
-"""of the geofence, and robots that it cannot judge, in a message and in what operators are sent."""
+"""alarms of the geofence, and robots that it cannot judge, in a message and in what operators are sent."""
 LONGEST_NAME = 200
 """characters of the name of a keepout or an obstacle."""
 

@@ -26,7 +26,7 @@ from ...core.sites.settings_tables import GeofenceSettings
 from ..cluster.messages import MOST_ALARMS, MOST_UNJUDGED
 from ..cluster.robot_relay import ReportsElsewhere, join_reports
 from ..commands.requests import CommandRequests
-from ..model.events import EventBus, FenceJudged, FenceJudgedElsewhere, Listeners
+from ..model.events import EventBus, FenceJudged, FenceJudgedElsewhere, Listeners, RobotLeft
 from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
 from ..queues.requests import PauseService
@@ -290,11 +290,14 @@ class GeofenceWatch:
         self._elsewhere = ReportsElsewhere()
         self._left: frozenset[str] = frozenset()
         """The gateways that judge their robots themselves."""
+        self._judged: set[str] = set()
+        """The robots that were judged here since they came from another gateway."""
         self._acting: set[asyncio.Task[None]] = set()
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
         """When a report was made last, and of how many alarms."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
         events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
+        events.subscribe(RobotLeft, lambda left: self._judged.discard(left.robot))
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
@@ -378,6 +381,7 @@ class GeofenceWatch:
             log.info("robot %s is no longer %s", stay.robot, _where(stay))
         for stay in changes.entered:
             self._begin(stay)
+        self._judged.update(names)
         for stay in self._stays:
             # What another gateway has, that one stops; what has come from there since is stopped here.
             if _is_open(stay) and self._robots.gateway_of(stay.robot) is None:
@@ -389,9 +393,11 @@ class GeofenceWatch:
     def _begin(self, stay: Stay) -> None:
         x, y = stay.place
         log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), x, y)
+        if stay.robot in self._judged:
+            return
         known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name)
         if known is not None and known.outcome in DONE:
-            # It was stopped where it comes from, and may be on its way out.
+            # It came here inside the area, was stopped where it comes from, and may be on its way out.
             stay.since, stay.outcome, stay.reason = known.since, known.outcome, known.reason
 
     def _stop_by_task(self, stay: Stay) -> None:

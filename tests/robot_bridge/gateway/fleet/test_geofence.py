@@ -117,18 +117,33 @@ async def test_others_hear_of_the_robots_of_this_gateway_alone(guarded):
     assert [alarm.robot for alarm in heard[-1].alarms] == ["r1"]
 
 
+async def come_from_south(yard, *alarms):
+    """Have robot far, of which gateway south reports so, say Ready here in the basin; return the alarms."""
+    told_elsewhere(yard, IN_THE_BASIN)
+    reported_elsewhere(yard, *alarms)
+    await look(yard)
+    await yard.ready("far")
+    await yard.acknowledge_all("far")
+    await yard.at(*IN_THE_BASIN, v=1.0, robot="far")
+    return (await look(yard)).alarms
+
+
 async def test_a_robot_that_was_stopped_at_another_gateway_may_drive_out(guarded):
-    reported_elsewhere(guarded, basin("r1"))
-    assert (await look(guarded)).alarms == [], "it is this gateway's by now"
-    await guarded.at(*IN_THE_BASIN, v=1.0)
-    (alarm,) = (await look(guarded)).alarms
+    (alarm,) = await come_from_south(guarded, basin("far"))
     assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
-    assert await guarded.acknowledge_all() == []
+    assert await guarded.acknowledge_all("far") == []
 
 
 @pytest.mark.parametrize("outcome", ["none", "asked", "failed"])
 async def test_a_robot_that_another_gateway_could_not_stop_is_stopped(guarded, outcome):
-    reported_elsewhere(guarded, basin("r1", outcome))
+    (alarm,) = await come_from_south(guarded, basin("far", outcome))
+    assert alarm.outcome == "aborted"
+    assert await guarded.acknowledge_all("far") == ["Abort"]
+
+
+async def test_a_robot_that_was_judged_here_outside_is_stopped_whatever_is_reported_of_it(guarded):
+    reported_elsewhere(guarded, basin("r1"))
+    assert (await look(guarded)).alarms == [], "it is this gateway's by now"
     await guarded.at(*IN_THE_BASIN, v=1.0)
     assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["aborted"]
     assert await guarded.acknowledge_all() == ["Abort"]
