@@ -248,7 +248,9 @@ def _from_now_on(one: RobotPlan, situation: PlanSituation) -> RobotPlan:
     robot = situation.robots.get(one.robot.id) or _by_plan(one, situation.now_s)
     if not lost:
         robot = replace(robot, ready_s=max(robot.ready_s, situation.now_s))
-    return RobotPlan(robot, (), (*one.done, *passed), lost)
+    # What a robot was at counted as done by the plan before; one that was lost over it has not done it.
+    done = [stop for stop in one.done if not stop.is_target or stop.id in situation.done]
+    return RobotPlan(robot, (), (*done, *passed), lost)
 
 
 def _passed(one: RobotPlan, situation: PlanSituation) -> tuple[PlanStop, ...]:

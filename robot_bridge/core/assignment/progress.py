@@ -231,7 +231,9 @@ def problem_of(
     for one in plan.robots:
         if one.lost:
             continue
-        left = [stop.id for stop in one.stops if stop.is_target and stop.id not in progress.done]
+        # With what it was at when the plan was made, which counts as done in that.
+        stops = (*one.done, *one.stops)
+        left = [stop.id for stop in stops if stop.is_target and stop.id not in progress.done]
         report = queues.get(one.robot.id)
         if left and report is not None and report.robot_state in AWAY:
             away.append(one.robot.id)
@@ -320,11 +322,6 @@ def standing_cones(progress: PlanProgress) -> list[tuple[float, float]]:
     placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
     coming = [one for one in committed_stops(progress) if one.kind == PLACE and one.id not in progress.placed]
     return placed + [(one.x, one.y) for one in coming]
-
-
-def current_cones(progress: PlanProgress) -> set[str]:
-    """Return the cones that robots are at."""
-    return {one.stop.id for one in current_stops(progress).values()}
 
 
 def _loaded(robot: PlanRobot, plan: ConePlan, progress: PlanProgress, name: str) -> PlanRobot:

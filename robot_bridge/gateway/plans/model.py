@@ -13,7 +13,6 @@ from ...core.assignment.progress import (
     PlanProblem,
     PlanProgress,
     SentStop,
-    current_cones,
     current_stops,
     sent_stops,
 )
@@ -176,7 +175,7 @@ def check_proposal(plan: DrivenPlan, progress: PlanProgress) -> ConePlan:
     begun = {at.stop.id for robot, at in current_stops(progress).items() if robot not in lost}
     coming = {stop.id for _, stop in plan.proposal.all_stops() if stop.is_target}
     for found, what in (
-        (plan.proposal.done - progress.done - current_cones(progress), "given up"),
+        (plan.proposal.done - progress.done - begun, "given up"),
         (coming & (progress.done | begun), "begun or placed"),
     ):
         if found:

@@ -248,6 +248,28 @@ async def test_a_cone_begun_since_the_plan_was_looked_at_last_is_not_given_to_an
     assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == ALL
 
 
+@pytest.mark.parametrize("cones", [("c1", "c2"), tuple(CONES)], ids=["its last one", "with others to come"])
+async def test_a_cone_that_a_robot_was_at_when_it_was_planned_again_is_not_forgotten(drive, cones):
+    await drive.submit(plan_of(cones=cones), by_itself=True)
+    for robot in ("r1", "r2"):
+        await drive.yard.acknowledge_all(robot)
+    # What each robot is at counts as done in the plan of what is left; then one of them is lost over it.
+    report = await drive.seen()
+    await drive.plans.replan(Replan("plan-1", report.revision), "Ada")
+    await drive.plans.follow()
+    await drive.planned()
+    assert (await drive.seen()).state is PlanState.DRIVEN
+    await drive.line.advance()
+    await drive.go(robots=["r1"])
+    await drive.lose()
+    assert (await drive.seen()).state is PlanState.REPLANNING
+    await drive.planned()
+    assert (await drive.seen()).robots == ["r1"]
+    await drive.line.advance()
+    await drive.go(robots=["r1"], times=8)
+    assert (await drive.seen()).state is PlanState.FINISHED and drive.cones() == [(cone,) for cone in cones]
+
+
 @pytest.mark.parametrize("moment", ["before", "while it is confirmed"])
 async def test_a_proposal_is_refused_when_one_of_its_cones_was_begun(drive, monkeypatch, moment):
     await drive.submit()
