@@ -55,10 +55,10 @@ TEXT = """\
 robots each on WebSockets, {all_robots} in all; and beside them, in the same run, {gateways} gateways that
 each serve a fleet of their own on PostgreSQL with {robots}. Robots say where they are {rate:g} times a
 second. Each gateway has two desks at {desk_rate:g} Hz, as the panel in QGIS asks: one shows {near} robots, of
-all gateways of its fleet, and one the whole site, as a density. All of it is on this machine's {cpus} processors,
-the robots of each gateway and the desks of each fleet in processes of their own. The robots of one gateway
-with a fleet of its own, of all four of those, and of the one fleet speak in turns, {turns} times for
-{seconds:g} s. Delays are from the moment at which a robot was to speak; a tick of the desk is
+all gateways of its fleet, and one the whole site, as a density. All of it is on this machine's {cpus}
+processors, the robots of each gateway and the desks of each fleet in processes of their own. The robots of
+one gateway with a fleet of its own, of all four of those, and of the one fleet speak in turns, {turns} times
+for {seconds:g} s. Delays are from the moment at which a robot was to speak; a tick of the desk is
 {desk_tick:.0f} ms, and one between gateways {tick:.0f} ms.
 
 {rows}
