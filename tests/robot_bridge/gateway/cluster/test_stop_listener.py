@@ -195,7 +195,8 @@ async def test_it_goes_on_whatever_the_client_stumbles_over(nats, attempts, monk
     async with listening(nats.url) as (listener, heard):
         await until(lambda: len(attempts) == 2 and listener._connection.connected)
         publish(nats.url, b"a stop")
-        await until(lambda: heard == [(STOP, b"a stop")])
+        # A first connection that is not closed yet may hear it as well.
+        await until(lambda: (STOP, b"a stop") in heard)
 
 
 async def test_it_leaves_the_last_connection_of_an_account_to_all_messages(tmp_path, attempts, caplog):
