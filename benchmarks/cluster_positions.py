@@ -299,7 +299,7 @@ def _stop(
         for crowd in fleet.crowds:
             crowd.line()
         last, in_force = made["began"], []
-        desks_told = iter(made["gateways"])
+        by_desks = iter(made["gateways"])
         for number, crowd in enumerate(fleet.crowds):
             if number not in without:
                 crowd.tell(stop=made["stop"])
@@ -308,7 +308,7 @@ def _stop(
                     missed = ROBOTS - found["heard"]
                     raise RuntimeError(f"{missed} robots of gateway {number} did not hear of {made['stop']}")
                 last = max(last, found["last"])
-                in_force.append(min(next(desks_told), (found["first"] - made["began"]) * 1e3))
+                in_force.append(min(next(by_desks), (found["first"] - made["began"]) * 1e3))
     desks.tell(do="clear")
     desks.line()
     time.sleep(STANDING)

@@ -41,7 +41,7 @@ class ClusterRelays:
         stops_when_cut_off: bool,
     ) -> None:
         membership, exchange, database = cluster.membership, cluster.exchange, fleet.database
-        small = cluster.has_small_messages
+        largest = cluster.largest_message
         self._cluster = cluster
         self._fleet = fleet
         self.stops = EmergencyStopRelay(
@@ -49,9 +49,9 @@ class ClusterRelays:
         )
         fleet.emergency.relay_by(self.stops)
         self.requests = RequestRelay(handlers, fleet.robots, membership, exchange, database)
-        self._positions = PositionRelay(fleet.robots, membership, exchange, small=small)
-        self._details = DetailRelay(fleet.robots, membership, exchange, small=small)
-        self._fences = FenceRelay(membership, exchange, fleet.events, small=small)
+        self._positions = PositionRelay(fleet.robots, membership, exchange, largest)
+        self._details = DetailRelay(fleet.robots, membership, exchange, largest)
+        self._fences = FenceRelay(membership, exchange, fleet.events, largest)
         self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
         self._queues = QueueFeed(
             fleet.robots, fleet.queue_context.book, fleet.listeners, fleet.events, exchange, database

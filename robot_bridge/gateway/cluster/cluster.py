@@ -10,9 +10,9 @@ from sqlalchemy import URL
 from ...core.errors import BridgeError
 from ...core.messages.base import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
-from .bus import Bus, NoBus, NotifyBus
+from .bus import LARGEST_NOTIFICATION, Bus, NoBus, NotifyBus
 from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name
-from .messages import Exchange, fleet_key
+from .messages import LARGEST, Exchange, fleet_key
 from .nats_bus import NatsBus
 from .ownership import Ownership
 
@@ -95,9 +95,9 @@ class Cluster:
             )
 
     @property
-    def has_small_messages(self) -> bool:
-        """Whether what is sent has to fit into notifications of PostgreSQL."""
-        return self.settings.bus == "postgresql"
+    def largest_message(self) -> int:
+        """How many bytes of a message the bus takes, which may have to fit into a notification."""
+        return LARGEST_NOTIFICATION if self.settings.bus == "postgresql" else LARGEST
 
 
 async def join_cluster(settings: ClusterSettings, database: Database, lease: Database, fleet: str) -> Cluster:

@@ -40,7 +40,7 @@ LOOK_S = 1.0
 WAKE_S = 0.02
 """seconds for which changes here wait for one another before other gateways are woken."""
 PIECE = 50
-"""steps that operators are told before others have their turn: some milliseconds."""
+"""steps that operators hear of before others have their turn: some milliseconds."""
 APART_S = 0.05
 """seconds between two looks at least: in an emergency stop others tell of changes without a pause."""
 

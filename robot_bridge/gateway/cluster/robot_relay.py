@@ -29,7 +29,7 @@ from ..model.robot_columns import (
 )
 from ..model.robots import Robot, Robots
 from ..monitoring import wait_at_most
-from .bus import EVERYBODY, LARGEST_NOTIFICATION, POSITIONS
+from .bus import EVERYBODY, POSITIONS
 from .membership import Membership
 from .messages import (
     LARGEST,
@@ -82,13 +82,13 @@ class PositionRelay:
     """Tells other gateways where the robots of this one are, and takes in where theirs are."""
 
     def __init__(
-        self, robots: Robots, membership: Membership, exchange: Exchange, *, small: bool = False
+        self, robots: Robots, membership: Membership, exchange: Exchange, largest: int = LARGEST
     ) -> None:
-        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        """:param largest: bytes of a message, which the bus takes."""
         self._robots = robots
         self._membership = membership
         self._exchange = exchange
-        self._largest = LARGEST_NOTIFICATION if small else LARGEST
+        self._largest = largest
         self._revision = -1
         self._sent_all_at, self._was_cut_off = -math.inf, True
         self._newest = NewestBatches(POSITION_OLD_S)
@@ -208,13 +208,13 @@ class DetailRelay:
     """
 
     def __init__(
-        self, robots: Robots, membership: Membership, exchange: Exchange, *, small: bool = False
+        self, robots: Robots, membership: Membership, exchange: Exchange, largest: int = LARGEST
     ) -> None:
-        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        """:param largest: bytes of a message, which the bus takes."""
         self._robots = robots
         self._membership = membership
         self._exchange = exchange
-        self._largest = LARGEST_NOTIFICATION if small else LARGEST
+        self._largest = largest
         self._sent: dict[str, _Sent] = {}
         self._revision, self._sent_all_at, self._is_asked = -1, -math.inf, False
         self._newest = NewestBatches(DETAIL_OLD_S)
@@ -303,13 +303,13 @@ class FenceRelay:
     """Tells other gateways what the geofence found of robots of this one, and takes in what theirs found."""
 
     def __init__(
-        self, membership: Membership, exchange: Exchange, events: EventBus, *, small: bool = False
+        self, membership: Membership, exchange: Exchange, events: EventBus, largest: int = LARGEST
     ) -> None:
-        """:param small: that a message has to fit into a notification of PostgreSQL."""
+        """:param largest: bytes of a message, which the bus takes."""
         self._membership = membership
         self._exchange = exchange
         self._events = events
-        self._largest = LARGEST_NOTIFICATION if small else LARGEST
+        self._largest = largest
         self._newest = NewestBatches(FENCE_OLD_S)
         events.subscribe(FenceJudged, self._send)
         exchange.subscribe(FenceReport, self._take)
@@ -352,7 +352,7 @@ class ReportsElsewhere:
     def __init__(self) -> None:
         self._reports: dict[str, tuple[float, Geofence]] = {}
 
-    def note(self, gateway: str, report: Geofence, now: float) -> None:
+    def add_report(self, gateway: str, report: Geofence, now: float) -> None:
         """Take in what a gateway reports."""
         self._reports[gateway] = now, report
 

@@ -41,8 +41,6 @@ LEFT_AFTER_S = 2.0
 """Seconds for which it has to be that far away before it counts as left."""
 Place = tuple[float, float]
 """x, y in metres, site frame."""
-
-
 DONE: Collection[StopOutcome] = ("paused", "aborted", "stopped")
 """Outcomes of robots that have been stopped."""
 
@@ -133,7 +131,7 @@ class Stays:
     def update(self, found: FoundStays, settings: GeofenceSettings, now: float) -> StayChanges:
         """Take in what was found of some robots; the others are where they were."""
         entered = []
-        # All names before any stay: one that began, and of which nobody is told, would never be acted upon.
+        # All names before any stay: one that began, and of which nobody hears, would never be acted upon.
         new = sorted(found.inside.keys() - self._stays.keys())
         names = {key: areas.name(area) for key in new for areas, area in [found.inside[key]]}
         for key, name in names.items():
@@ -247,10 +245,10 @@ class _Passed:
 
     def is_due(self, report: Geofence) -> bool:
         """Tell whether ``report`` has to be passed on; it is the last one then."""
-        now = time.monotonic()
-        if now - self._at < UNCHANGED_EVERY_S and self._report == replace(report, t=0.0):
+        now, report = time.monotonic(), replace(report, t=0.0)
+        if now - self._at < UNCHANGED_EVERY_S and self._report == report:
             return False
-        self._report, self._at = replace(report, t=0.0), now
+        self._report, self._at = report, now
         return True
 
 
@@ -294,7 +292,7 @@ class GeofenceWatch:
         """The robots that were judged here since they came from another gateway."""
         self._acting: set[asyncio.Task[None]] = set()
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
-        """When a report was made last, and of how many alarms."""
+        """When a report was made last, and of how many stays."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
         events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
         events.subscribe(RobotLeft, lambda left: self._judged.discard(left.robot))
@@ -318,8 +316,8 @@ class GeofenceWatch:
 
     def _own(self) -> Geofence:
         """Return what was found of the robots of this gateway."""
-        is_own = self._robots.gateway_of
-        stays = [stay for stay in self._stays if is_own(stay.robot) is None]
+        gateway_of = self._robots.gateway_of
+        stays = [stay for stay in self._stays if gateway_of(stay.robot) is None]
         return self._report(stays, self._robots.own_places())
 
     def _join(self, own: Geofence) -> Geofence:
@@ -469,7 +467,7 @@ class GeofenceWatch:
             self._listeners.announce("geofence", "geofence", to_json(report))
 
     def _note_elsewhere(self, judged: FenceJudgedElsewhere) -> None:
-        self._elsewhere.note(judged.gateway, judged.report, self._clock.steady())
+        self._elsewhere.add_report(judged.gateway, judged.report, self._clock.steady())
 
     def _unjudged(self, places: RobotPlaces, now: float) -> list[str]:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
@@ -503,7 +501,7 @@ def _alarm(stay: Stay, *, is_placed: bool) -> FenceAlarm:
 def _placed(robots: Robots, since: int, without: AbstractSet[str]) -> tuple[list[str], Points]:
     """Return the names and places, (n, 2), of those that changed after revision ``since`` and have said where
     they are since they connected, without the robots of some gateways."""
-    found = robots.own_places(since).join(robots.places_elsewhere(since, without=without))
+    found = robots.places(since, without)
     places = found.table[[X, Y]].T
     places[(found.flags & LOCATED) == 0] = np.nan
     rows = finite_places(places)

@@ -164,7 +164,7 @@ class FenceJudgedElsewhere:
 
 @dataclass(frozen=True)
 class StopBegun:
-    """An emergency stop is about to be told to robots: whatever takes time had better wait."""
+    """An emergency stop goes out to robots next: whatever takes time had better wait."""
 
     stop: str
 

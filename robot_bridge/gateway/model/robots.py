@@ -490,9 +490,10 @@ class Robots:
         revision ``since``."""
         return self._other_columns.places(since, without)
 
-    def places(self, since: int = -1) -> RobotPlaces:
-        """Return where those are that changed after revision ``since``, those of this gateway first."""
-        return self.own_places(since).join(self.places_elsewhere(since))
+    def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
+        """Return where those are that changed after revision ``since``, those of this gateway first; without
+        the robots of some other gateways."""
+        return self.own_places(since).join(self.places_elsewhere(since, without))
 
     def only_seen(self) -> list[Robot]:
         """Return the robots that can do nothing."""

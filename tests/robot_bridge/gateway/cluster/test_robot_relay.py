@@ -13,6 +13,7 @@ from robot_bridge.core.messages.safety import FenceAlarm, Geofence
 from robot_bridge.gateway.cluster import robot_relay
 from robot_bridge.gateway.cluster.bus import EVERYBODY, LARGEST_NOTIFICATION
 from robot_bridge.gateway.cluster.messages import (
+    LARGEST,
     LONGEST_NAME,
     Codec,
     Exchange,
@@ -231,12 +232,12 @@ ALARM = FenceAlarm("r1", "keepout", "Basin", 1000.5, 1.0, 2.0, "abort", "failed"
 class Fences:
     """A gateway whose clock is ``offset`` seconds behind the database's, and what it hears of others."""
 
-    def __init__(self, name, offset, *, small=False):
+    def __init__(self, name, offset, largest=LARGEST):
         self.bus, self.events, self.heard = Bus(), EventBus(), []
         self.exchange = Exchange(name, b"k" * 32, [self.bus])
         self.now = 2000.0
         membership = SimpleNamespace(database_time=lambda: self.now, clock_offset=offset)
-        self.relay = FenceRelay(membership, self.exchange, self.events, small=small)
+        self.relay = FenceRelay(membership, self.exchange, self.events, largest=largest)
         self.events.subscribe(FenceJudgedElsewhere, self.heard.append)
 
     def judged(self, report):
@@ -266,7 +267,7 @@ def test_a_report_that_waited_somewhere_counts_for_nothing():
 
 
 def test_alarms_that_do_not_fit_into_a_notification_are_counted():
-    here = Fences("a", 0.0, small=True)
+    here = Fences("a", 0.0, LARGEST_NOTIFICATION)
     alarms = [replace(ALARM, robot=f"robot-{k:03}", name="B" * 300) for k in range(300)]
     message = here.judged(Geofence(2000.0, alarms, 7))
     assert len(CODEC.encode(message)) <= LARGEST_NOTIFICATION

@@ -60,7 +60,7 @@ async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarde
     assert await guarded.acknowledge_all() == []
 
 
-def told_elsewhere(yard, place, *, located=True):
+def seen_elsewhere(yard, place, *, located=True):
     """Take in where gateway south says that its robot far is."""
     table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
     flags = np.array([LOCATED * located], dtype=np.uint8)
@@ -78,13 +78,13 @@ def basin(robot, outcome="aborted", since=1000.0):
 
 
 async def test_a_robot_of_a_gateway_that_reports_nothing_is_told_of_and_left_to_that(guarded):
-    told_elsewhere(guarded, IN_THE_BASIN, located=False)
+    seen_elsewhere(guarded, IN_THE_BASIN, located=False)
     report = await look(guarded)
     assert (report.alarms, report.unjudged) == ([], ["far"])
-    told_elsewhere(guarded, OUTSIDE)
+    seen_elsewhere(guarded, OUTSIDE)
     report = await look(guarded)
     assert (report.alarms, report.unjudged) == ([], [])
-    told_elsewhere(guarded, IN_THE_BASIN)
+    seen_elsewhere(guarded, IN_THE_BASIN)
     (alarm,) = (await look(guarded)).alarms
     assert (alarm.robot, alarm.name, alarm.outcome) == ("far", "Water basin", "none")
     guarded.now += 20
@@ -93,7 +93,7 @@ async def test_a_robot_of_a_gateway_that_reports_nothing_is_told_of_and_left_to_
 
 
 async def test_what_another_gateway_reports_is_told_and_its_robots_are_not_judged_here(guarded):
-    told_elsewhere(guarded, IN_THE_BASIN)
+    seen_elsewhere(guarded, IN_THE_BASIN)
     assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["none"]
     reported_elsewhere(guarded)
     assert (await look(guarded)).alarms == []
@@ -111,7 +111,7 @@ async def test_what_another_gateway_reports_is_told_and_its_robots_are_not_judge
 async def test_others_hear_of_the_robots_of_this_gateway_alone(guarded):
     heard = []
     guarded.fleet.events.subscribe(FenceJudged, lambda judged: heard.append(judged.report))
-    told_elsewhere(guarded, IN_THE_BASIN)
+    seen_elsewhere(guarded, IN_THE_BASIN)
     await guarded.at(*IN_THE_BASIN, v=1.0)
     assert sorted(alarm.robot for alarm in (await look(guarded)).alarms) == ["far", "r1"]
     assert [alarm.robot for alarm in heard[-1].alarms] == ["r1"]
@@ -119,7 +119,7 @@ async def test_others_hear_of_the_robots_of_this_gateway_alone(guarded):
 
 async def come_from_south(yard, *alarms):
     """Have robot far, of which gateway south reports so, say Ready here in the basin; return the alarms."""
-    told_elsewhere(yard, IN_THE_BASIN)
+    seen_elsewhere(yard, IN_THE_BASIN)
     reported_elsewhere(yard, *alarms)
     await look(yard)
     await yard.ready("far")
@@ -150,7 +150,7 @@ async def test_a_robot_that_was_judged_here_outside_is_stopped_whatever_is_repor
 
 
 async def test_a_robot_that_came_in_at_another_gateway_is_stopped_when_it_comes_here(guarded):
-    told_elsewhere(guarded, IN_THE_BASIN)
+    seen_elsewhere(guarded, IN_THE_BASIN)
     assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["none"]
     await guarded.ready("far")
     await guarded.acknowledge_all("far")
