@@ -6,7 +6,8 @@ import asyncio
 from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
-from .cluster.feeds import Followed, Follower, ObservationRelay, PlacementRelay, QueueFeed, StepFeed
+from .cluster.feeds import ObservationRelay, PlacementRelay, QueueFeed, StepFeed
+from .cluster.followers import LOOK_S, ChangeNumbers, Followed, Follower
 from .cluster.messages import Wake
 from .cluster.request_relay import RequestRelay
 from .cluster.robot_relay import DetailRelay, FenceRelay, PositionRelay
@@ -52,17 +53,16 @@ class ClusterRelays:
         self._positions = PositionRelay(fleet.robots, membership, exchange, largest)
         self._details = DetailRelay(fleet.robots, membership, exchange, largest)
         self._fences = FenceRelay(membership, exchange, fleet.events, largest)
-        self._steps = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, database)
-        self._queues = QueueFeed(
-            fleet.robots, fleet.queue_context.book, fleet.listeners, fleet.events, exchange, database
-        )
-        self._placements = PlacementRelay(fleet.listeners, fleet.events, exchange, database)
-        self._observations = ObservationRelay(
-            fleet.observations, fleet.listeners, fleet.events, exchange, database
-        )
-        self._sites = Follower("site", sites, exchange)
+        self._numbers = ChangeNumbers(exchange, membership)
+        shared = fleet.listeners, fleet.events, exchange, self._numbers, database
+        self._steps = StepFeed(fleet.robots, *shared)
+        self._queues = QueueFeed(fleet.robots, fleet.queue_context.book, *shared)
+        self._placements = PlacementRelay(*shared)
+        self._observations = ObservationRelay(fleet.observations, *shared)
+        # A site that cannot be served may be published better, and plans go on by what their robots do.
+        self._sites = Follower("site", sites, exchange, self._numbers, LOOK_S)
         fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
-        self._plans = Follower("plans", plans, exchange)
+        self._plans = Follower("plans", plans, exchange, self._numbers, LOOK_S)
         fleet.events.subscribe(PlanChanged, lambda _: self._plans.note_change())
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
@@ -106,7 +106,7 @@ class ClusterRelays:
     async def _beat(self) -> None:
         """Tell others that this gateway is there, whatever else waits."""
         while True:
-            self._cluster.exchange.beat()
+            self._numbers.send_beat()
             await asyncio.sleep(BEAT_INTERVAL_S)
 
     async def _follow_owners(self) -> None:

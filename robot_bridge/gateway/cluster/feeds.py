@@ -1,6 +1,6 @@
 """Feeds of what is stored at other gateways: steps of commands, observations, placed cones, queues.
 
-Each is looked up once a second, and at once when another gateway has changed it.
+Each is looked up when it has changed: see :mod:`.followers`.
 """
 
 from __future__ import annotations
@@ -33,62 +33,11 @@ from ..monitoring import wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, queues, records
 from .bus import EVERYBODY, own_subject
-from .messages import MOST_NAMED, Exchange, QueuesChanged, Wake, WakeTopic
+from .followers import LOOK_S, ChangeNumbers, Follower, LookSchedule
+from .messages import MOST_NAMED, Exchange, QueuesChanged
 
-LOOK_S = 1.0
-"""seconds between two looks when nobody tells of a change."""
-WAKE_S = 0.02
-"""seconds for which changes here wait for one another before other gateways are woken."""
 PIECE = 50
 """steps that operators hear of before others have their turn: some milliseconds."""
-APART_S = 0.05
-"""seconds between two looks at least: in an emergency stop others tell of changes without a pause."""
-
-
-class Followed(Protocol):
-    """What is stored in the database, and known at each gateway."""
-
-    async def follow(self) -> None:
-        """Take in what has changed since the last look; raises StoreError."""
-
-
-class Follower:
-    """Has ``followed`` look for ``topic``, and other gateways where this one has changed something of it."""
-
-    def __init__(self, topic: WakeTopic, followed: Followed, exchange: Exchange) -> None:
-        self._topic: WakeTopic = topic
-        self._followed = followed
-        self._exchange = exchange
-        self._woken = asyncio.Event()
-        self._changed = asyncio.Event()
-        exchange.subscribe(Wake, self._wake)
-
-    def note_change(self) -> None:
-        """Have the others look soon: something is stored that they do not know of."""
-        self._changed.set()
-
-    async def run(self) -> None:
-        """Follow until cancelled; raises StoreError."""
-        waking = asyncio.create_task(self._wake_others())
-        try:
-            while True:
-                self._woken.clear()
-                await self._followed.follow()
-                await asyncio.sleep(APART_S)
-                await wait_at_most(self._woken, LOOK_S)
-        finally:
-            waking.cancel()
-
-    def _wake(self, wake: Wake) -> None:
-        if wake.what == self._topic:
-            self._woken.set()
-
-    async def _wake_others(self) -> None:
-        while True:
-            await self._changed.wait()
-            await asyncio.sleep(WAKE_S)
-            self._changed.clear()
-            self._exchange.wake(self._topic)
 
 
 # --- Steps of commands, told to the operators of this gateway ---
@@ -101,7 +50,13 @@ class StepFeed:
     """Follows the steps of commands of others' robots, and wakes others when robots here take one."""
 
     def __init__(
-        self, robots: Robots, listeners: Listeners, events: EventBus, exchange: Exchange, database: Database
+        self,
+        robots: Robots,
+        listeners: Listeners,
+        events: EventBus,
+        exchange: Exchange,
+        numbers: ChangeNumbers,
+        database: Database,
     ) -> None:
         self._robots = robots
         self._listeners = listeners
@@ -111,9 +66,9 @@ class StepFeed:
         self._seen: set[int] = set()
         self._left: set[str] = set()
         """robots that were here: of what they are doing no step may come for long."""
-        self._follower = Follower("steps", self, exchange)
+        self._follower = Follower("steps", self, exchange, numbers)
         events.subscribe(CommandChanged, self._note)
-        events.subscribe(RobotLeft, lambda left: self._left.add(left.robot))
+        events.subscribe(RobotLeft, self._note_left)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
@@ -167,6 +122,10 @@ class StepFeed:
         if self._robots.gateway_of(changed.report.robot) is None:
             self._follower.note_change()
 
+    def _note_left(self, left: RobotLeft) -> None:
+        self._left.add(left.robot)
+        self._follower.wake()
+
 
 # --- Records, of which the newest are told: those alone that have not been told here ---
 
@@ -211,11 +170,16 @@ class PlacementRelay:
     """Follows which cones robots of other gateways put down and collect, and wakes others."""
 
     def __init__(
-        self, listeners: Listeners, events: EventBus, exchange: Exchange, database: Database
+        self,
+        listeners: Listeners,
+        events: EventBus,
+        exchange: Exchange,
+        numbers: ChangeNumbers,
+        database: Database,
     ) -> None:
         self._database = database
         self._announcer = RecordAnnouncer[PlacementReport]("placement", listeners)
-        self._follower = Follower("placements", self, exchange)
+        self._follower = Follower("placements", self, exchange, numbers)
         events.subscribe(PlacementChanged, self._note)
 
     async def run(self) -> None:
@@ -253,6 +217,7 @@ class ObservationRelay:
         listeners: Listeners,
         events: EventBus,
         exchange: Exchange,
+        numbers: ChangeNumbers,
         database: Database,
     ) -> None:
         self._maps = maps
@@ -261,7 +226,7 @@ class ObservationRelay:
         self._announcer = RecordAnnouncer[ObservationReport]("observation", listeners)
         self._reviewed_here = False
         """whether the maps may show what was reviewed here since the last look, and is otherwise by now."""
-        self._follower = Follower("observations", self, exchange)
+        self._follower = Follower("observations", self, exchange, numbers)
         events.subscribe(ObservationChanged, self._note)
 
     async def run(self) -> None:
@@ -319,12 +284,17 @@ class QueueFeed:
         listeners: Listeners,
         events: EventBus,
         exchange: Exchange,
+        numbers: ChangeNumbers,
         database: Database,
     ) -> None:
         self._robots = robots
         self._own = own
         self._listeners = listeners
         self._exchange = exchange
+        self._numbers = numbers
+        self._schedule = LookSchedule("queues", numbers)
+        self._has_left = False
+        """whether robots that were here have another gateway since the last look."""
         self._database = database
         self._changed: set[str] = set()
         self._has_changed = asyncio.Event()
@@ -335,6 +305,7 @@ class QueueFeed:
         """a hash of what operators were told of each queue, and the state of its robot in that."""
         events.subscribe(QueueReported, self._note)
         events.subscribe(QueueEditedElsewhere, self._call_owner)
+        events.subscribe(RobotLeft, self._note_left)
         exchange.subscribe(QueuesChanged, self._hear)
 
     async def run(self) -> None:
@@ -344,7 +315,9 @@ class QueueFeed:
         try:
             while True:
                 if loop.time() - looked_at >= LOOK_S:
-                    await self.find_changes()
+                    if self._has_left or self._schedule.is_due:
+                        await self._find_changes()
+                    self._name_changed_robots()
                     looked_at = loop.time()
                 self._is_named.clear()
                 await self._tell_named()
@@ -353,8 +326,9 @@ class QueueFeed:
         finally:
             telling.cancel()
 
-    async def find_changes(self) -> None:
+    async def _find_changes(self) -> None:
         """Find the queues that have changed since the last look, whoever told of that; raises StoreError."""
+        self._schedule.begin_look()
         mine = await self._database.read(queues.revisions_of, self._exchange.gateway)
         for robot, revision in mine.items():
             if self._is_here(robot) and self._own.get(robot).revision != revision:
@@ -363,7 +337,10 @@ class QueueFeed:
         before, self._versions = self._versions, found
         if before is not None:
             self._named.update(robot for robot, version in found.items() if before.get(robot) != version)
-        # How a robot is stands in the report of its queue.
+        self._has_left = False
+
+    def _name_changed_robots(self) -> None:
+        """Have operators told of the queues whose robots are not as they were: that stands in the report."""
         self._told = {robot: told for robot, told in self._told.items() if self._is_elsewhere(robot)}
         self._named.update(
             robot for robot, (_, state) in self._told.items() if self._robots.get(robot).state.value != state
@@ -411,13 +388,18 @@ class QueueFeed:
     def _call_owner(self, edited: QueueEditedElsewhere) -> None:
         gateway = self._robots.gateway_of(edited.robot)
         if gateway is not None:
+            self._numbers.add_change("queues")
             self._exchange.send(own_subject(gateway), QueuesChanged(self._exchange.gateway, [edited.robot]))
             # An Abort may have been asked with it.
             self._exchange.wake("requests", gateway)
         self._named.add(edited.robot)
         self._is_named.set()
 
+    def _note_left(self, _left: RobotLeft) -> None:
+        self._has_left = True
+
     def _note(self, reported: QueueReported) -> None:
+        self._numbers.add_change("queues")
         self._changed.add(reported.robot)
         self._has_changed.set()
 

@@ -17,14 +17,12 @@ import socket
 import uuid
 from collections.abc import Iterable, Mapping, Sequence
 
-from sqlalchemy import Connection
-
 from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import BridgeError, FatalError, StoreError
 from ..monitoring import gateway_version
 from ..storage.database import Database
 from ..storage.repositories import gateways
-from ..storage.repositories.gateways import Claimed, Member
+from ..storage.repositories.gateways import Claimed, Member, MembersRead
 from ..storage.singleton_lock import check_no_sole_gateway
 
 log = logging.getLogger(__name__)
@@ -127,9 +125,10 @@ class OwnedRobots:
         for robot in robots:
             self._fences.pop(robot, None)
 
-    def matching(self, stored: Mapping[str, int]) -> set[str]:
-        """Return those robots in ``stored`` whose fence is the one under which this gateway has them."""
-        return {robot for robot, fence in stored.items() if self._fences.get(robot) == fence}
+    def fences(self, robots: Iterable[str]) -> dict[str, int]:
+        """Return the fences of those of ``robots`` that this gateway has."""
+        fences = self._fences
+        return {robot: fences[robot] for robot in robots if robot in fences}
 
 
 def leads(me: Member, members: Sequence[Member]) -> bool:
@@ -244,9 +243,12 @@ class Membership:
         succeeds.
         """
         asked_at = self._clock.steady()
-        if not await self._lease.run(gateways.renew, self.me, LEASE_S) and not await self._lease.run(
-            gateways.join, self.me, LEASE_S
-        ):
+        found = await self._renewed()
+        if found is None:
+            await self._lease.run(gateways.join, self.me, LEASE_S)
+            asked_at = self._clock.steady()
+            found = await self._renewed()
+        if found is None:
             self.trust.lost()
             taken = self._name_is_taken(await self._namesake())
             raise FatalError(
@@ -254,10 +256,12 @@ class Membership:
             )
         self.trust.renewed(asked_at)
         before = set(self.others())
-        began = self._clock.time()
-        self.members, now = await self._lease.read(_look)
-        self._compare_clocks(began, self._clock.time(), now)
+        self.members = found.members
+        self._compare_clocks(found)
         self._name_changes(before, set(self.others()))
+
+    async def _renewed(self) -> MembersRead | None:
+        return await self._lease.run(gateways.renew_and_read, self.me, LEASE_S, self._clock)
 
     async def hold(self) -> None:
         """Renew the lease until cancelled; raises FatalError as :meth:`renew`."""
@@ -308,12 +312,10 @@ class Membership:
                 self.me.version,
             )
 
-    def _compare_clocks(self, began: float, ended: float, database: float) -> None:
-        self.clock_offset = database - (began + ended) / 2
+    def _compare_clocks(self, read: MembersRead) -> None:
+        self.clock_offset = read.database - read.here
         now = self._clock.steady()
-        if abs(self.clock_offset) > CLOCK_TOLERANCE_S + (ended - began) and (
-            now - self._clock_said_at >= OFF_AGAIN_S
-        ):
+        if abs(self.clock_offset) > CLOCK_TOLERANCE_S and now - self._clock_said_at >= OFF_AGAIN_S:
             self._clock_said_at = now
             log.warning(
                 "the clock of this computer is %.1f s off the database's; times of commands and positions of "
@@ -326,7 +328,3 @@ class Membership:
             log.warning("gateway %s serves this fleet, too", name)
         for name in sorted(before - after):
             log.warning("gateway %s is gone, or could not renew its lease for %g s", name, LEASE_S)
-
-
-def _look(connection: Connection) -> tuple[list[Member], float]:
-    return gateways.members(connection), gateways.clock(connection)

@@ -67,6 +67,8 @@ Finite = Annotated[float, Meta(ge=-1e12, le=1e12)]
 Number = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
 """Of a message about stops: :class:`Exchange` gives each that it sends another one, so that no two are the
 same bytes. 0 where the sender gives none, as earlier versions do."""
+Topic = Annotated[str, Meta(max_length=32)]
+MOST_TOPICS = 32
 
 
 class BusMessageError(BridgeError):
@@ -80,7 +82,13 @@ class BusMessage(msgspec.Struct, array_like=True, frozen=True, tag=True):
 
 
 class Beat(BusMessage, frozen=True, tag="beat"):
-    """The gateway is there."""
+    """The gateway is there at the database's time ``t``, in seconds.
+
+    ``changes`` are the numbers of what it stored last, by :data:`WakeTopic`; None from an earlier version.
+    """
+
+    t: float = 0.0
+    changes: Annotated[dict[Topic, Number], Meta(max_length=MOST_TOPICS)] | None = None
 
 
 WakeTopic = Literal[
@@ -93,6 +101,7 @@ WakeTopic = Literal[
     "observations",
     "placements",
     "plans",
+    "queues",
     "positions",
 ]
 """What another gateway had better look at; ``positions`` asks it for all of its robots."""
@@ -393,10 +402,6 @@ class Exchange:
         """Have a gateway, or all others, look at once for ``what`` has been committed."""
         subject = EVERYBODY if gateway is None else own_subject(gateway)
         self.send(subject, Wake(self.gateway, what))
-
-    def beat(self) -> None:
-        """Tell the others that this gateway is there."""
-        self.send(EVERYBODY, Beat(self.gateway))
 
     @property
     def connected(self) -> bool:

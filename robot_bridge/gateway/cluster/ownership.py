@@ -6,7 +6,7 @@ import asyncio
 import logging
 import math
 import uuid
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from collections.abc import Set as AbstractSet
 from typing import Any, NamedTuple, Protocol
 
@@ -83,15 +83,17 @@ class Ownership:
 
     def check(self, connection: Connection, robots: Collection[str]) -> None:
         """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""
-        if missing := set(robots) - self.held(connection, sorted(robots)):
+        if lost := self.lost(connection, robots):
             raise FencedError(
-                f"{listed_names(sorted(missing))}: connected to another gateway by now, or to none; ask "
+                f"{listed_names(sorted(lost))}: connected to another gateway by now, or to none; ask "
                 "again in a moment"
             )
 
-    def held(self, connection: Connection, robots: Sequence[str]) -> AbstractSet[str]:
-        """Return those of ``robots`` that this gateway has until the transaction ends."""
-        return self._robots.matching(gateways.held(connection, self._membership.me, robots))
+    def lost(self, connection: Connection, robots: Collection[str]) -> AbstractSet[str]:
+        """Return those of ``robots`` that this gateway has not; the others stay its own until the commit."""
+        fences = self._robots.fences(robots)
+        lost = gateways.lost(connection, self._membership.me, fences) if fences else set()
+        return lost.union(robot for robot in robots if robot not in fences)
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
         """Return those of its robots ``stored`` that somebody has removed from the database."""

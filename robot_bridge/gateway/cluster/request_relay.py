@@ -286,6 +286,8 @@ class RequestRelay:
 
     async def begin_waiting(self) -> None:
         """Begin with what waits for robots of this gateway; raises StoreError."""
+        if not await self._database.read(gateways.is_asked, self._membership.me):
+            return
         for request in await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE):
             task = asyncio.create_task(self._do(request))
             self._doing.add(task)

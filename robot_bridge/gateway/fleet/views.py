@@ -360,6 +360,9 @@ class ViewWatch:
         self._places: FleetPlaces | None = None
         """those by which it was chosen whom to tell of."""
         self._chosen: list[str] = []
+        self._selected = self._chosen
+        self._selection = views.robots.select(self._selected)
+        """what is known of whom it was chosen to tell of."""
         self._is_dense = False
         self._told: set[str] = set()
         self._seen = EVERYTHING
@@ -374,13 +377,17 @@ class ViewWatch:
         """Return the frame that tells what is new since the last one; None where nothing is."""
         robots, seen, told = self._views.robots, self._seen, self._told
         fleet = self._choose()
-        there = robots.known(self._chosen)
         news: dict[str, Any] = {}
         removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in told]
-        fresh = [robot for robot in there if robot.revision > seen or robot.name not in told]
-        self._told = {robot.name for robot in there}
-        if untracked := sorted(told - self._told - set(removed)):
-            news["untracked"] = untracked
+        fresh: list[Robot] = []
+        if self._selected is not self._chosen or robots.is_outdated(self._selection):
+            self._selected, self._selection = self._chosen, robots.select(self._chosen)
+            self._told = set(self._selection.names)
+            fresh = robots.known(name for name in self._selection.names if name not in told)
+            if untracked := sorted(told - self._told - set(removed)):
+                news["untracked"] = untracked
+        met = {robot.name for robot in fresh}
+        fresh += [robot for robot in robots.changed_of(self._selection, seen) if robot.name not in met]
         if fleet != self._seen_view:
             news["view"] = _told(fleet)
         self._seen, self._seen_view = robots.revision, fleet

@@ -34,7 +34,7 @@ _CODES = {state: code for code, state in enumerate(STATES)}
 FRESH, STALE, LOST, OFFLINE = (
     _CODES[state] for state in (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 )
-_LARGEST = COORDINATE[1], COORDINATE[1], THETA[1], SPEED[1]
+_LARGEST = np.array([[COORDINATE[1]], [COORDINATE[1]], [THETA[1]], [SPEED[1]]])
 _SPARE = 256
 
 Numbers = npt.NDArray[np.float64]
@@ -157,8 +157,11 @@ class Numbering:
 
         ``lives`` counts by row how often it has been used, ``given`` how many were given out in all.
         """
-        self._grow(ids)
-        rows, then = self._rows[ids], self._lives[ids]
+        try:
+            rows, then = self._rows[ids], self._lives[ids]
+        except IndexError:
+            self._grow(ids)
+            rows, then = self._rows[ids], self._lives[ids]
         # A row that has another robot since is not its any more; one that had no row may have got one.
         stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, given)
         rows[stale] = -1
@@ -194,6 +197,17 @@ class Observed(NamedTuple):
     all_named: bool
 
 
+class RobotRows(NamedTuple):
+    """The rows of those of some robots that have one, and their ``places`` among all; both (n,).
+
+    They hold while the :attr:`~RobotColumns.layout` is the same.
+    """
+
+    rows: Rows
+    places: Rows
+    layout: int
+
+
 class RobotColumns:
     """Robots by row; a row whose robot is gone is used again."""
 
@@ -215,6 +229,10 @@ class RobotColumns:
         """how often each row has been free."""
         self._given = 0
         """how many rows were given to robots."""
+        self._all: tuple[int, Rows, list[str]] = -1, np.empty(0, np.intp), []
+        """the layout, and the rows and names of all robots in it."""
+        self.layout = 0
+        """how often a robot was given a row, or lost it."""
 
     def __contains__(self, name: str) -> bool:
         return name in self._rows
@@ -263,6 +281,7 @@ class RobotColumns:
             self._revisions[row] = -1
             self._lives[row] += 1
             self._free.append(row)
+            self.layout += 1
 
     def describe(self, name: str, battery: float | None, flags: int, revision: int) -> None:
         """Write what changes seldom of a robot that has a row; ``flags`` are whether it is only seen, and its
@@ -271,6 +290,16 @@ class RobotColumns:
         self._numbers[BATTERY, row] = math.nan if battery is None else battery
         self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED) | flags
         self._revisions[row] = revision
+
+    def find(self, names: Sequence[str]) -> RobotRows:
+        """Return the rows of those of ``names`` that have one."""
+        rows = np.array([self._rows.get(name, -1) for name in names], dtype=np.intp)
+        places = np.flatnonzero(rows >= 0)
+        return RobotRows(rows[places], places, self.layout)
+
+    def changed_places(self, robots: RobotRows, since: int) -> Rows:
+        """Return the places of those that changed after revision ``since``."""
+        return robots.places[self._revisions[robots.rows] > since]
 
     def has_changed(self, robot: RobotRecord) -> bool:
         """Tell whether a robot with a row is not as that says."""
@@ -290,9 +319,7 @@ class RobotColumns:
         counts = (rows >= 0) & heard
         counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
         placed = counts & np.isfinite(columns[POSE_AT])
-        with np.errstate(invalid="ignore"):
-            for column, largest in zip(columns, _LARGEST, strict=False):
-                placed &= np.abs(column) <= largest
+        placed &= (np.abs(columns[: len(_LARGEST)]) <= _LARGEST).all(axis=0)
         columns[POSE_AT:] = report.wall - columns[POSE_AT:]
         flags = report.flags
         if not placed.all():
@@ -311,6 +338,8 @@ class RobotColumns:
         if numbering is None or numbering.run != report.run:
             numbering = self._numberings[report.gateway] = Numbering(report.run)
         ids, named = report.ids.astype(np.intp), len(report.names)
+        if not named:
+            return numbering.rows(ids, self._lives, self._given)
         rows = np.array([self._rows.get(name, -1) for name in report.names], dtype=np.intp)
         lives = np.where(rows >= 0, self._lives[rows] if len(self._lives) else 0, self._given)
         numbering.name(ids[:named], rows, lives)
@@ -371,10 +400,23 @@ class RobotColumns:
 
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
         """Return where those are that changed after revision ``since``, but for robots of some gateways."""
-        rows = np.flatnonzero(self._revisions > since)
+        rows, names = self._everybody() if since < 0 else (np.flatnonzero(self._revisions > since), None)
         if without:
-            rows = rows[~np.isin(self._owners[rows], [self._owner(gateway) for gateway in without])]
-        return RobotPlaces(self._named(rows), self._numbers[:, rows], self._states[rows], self._flags[rows])
+            left_out = [self._owner(gateway) for gateway in without]
+            counts = np.ones(len(self._gateways), dtype=np.bool_)
+            counts[left_out] = False
+            rows = rows[counts[self._owners[rows]]]
+            names = None
+        names = self._named(rows) if names is None else names
+        return RobotPlaces(names, self._numbers[:, rows], self._states[rows], self._flags[rows])
+
+    def _everybody(self) -> tuple[Rows, list[str]]:
+        layout, rows, names = self._all
+        if layout != self.layout:
+            rows = np.flatnonzero(self._revisions >= 0)
+            names = self._named(rows)
+            self._all = self.layout, rows, names
+        return rows, names
 
     def _states_at(self, now: float, stale_after: float, lost_after: float) -> Flags:
         ages = now - self._numbers[RECEIVED_AT]
@@ -396,6 +438,7 @@ class RobotColumns:
             self._grow()
         row = self._free.pop()
         self._given += 1
+        self.layout += 1
         self._rows[name] = row
         self._names[row] = name
         return row

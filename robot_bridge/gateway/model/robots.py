@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import chain
+from typing import NamedTuple
+
+import numpy as np
 
 from ...core.clock import LEAST_BEHIND, UNKNOWN_AGE, ClockStep
 from ...core.errors import NotReadyError, OtherRunError, RefusedError
@@ -23,6 +26,7 @@ from .robot_columns import (
     ReportedElsewhere,
     RobotColumns,
     RobotPlaces,
+    RobotRows,
     liveness,
 )
 
@@ -75,6 +79,15 @@ class PoseOrder:
 # --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
 # Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the gateway's,
 # by which alone a robot is fresh, stale or lost.
+
+
+class RobotSelection(NamedTuple):
+    """Some robots by name, found once where it is asked often which of them have changed."""
+
+    names: Sequence[str]
+    own: RobotRows
+    others: RobotRows
+
 
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
@@ -506,6 +519,23 @@ class Robots:
         self._renew([name for name in names if name in self._elsewhere])
         found = (self._robots.get(name) or self._elsewhere.get(name) for name in names)
         return [robot for robot in found if robot is not None]
+
+    def select(self, names: Iterable[str]) -> RobotSelection:
+        """Return those of ``names`` that there are, in the same order."""
+        known = [name for name in names if name in self]
+        return RobotSelection(known, self._own_columns.find(known), self._other_columns.find(known))
+
+    def is_outdated(self, selection: RobotSelection) -> bool:
+        """Tell whether robots have come, gone, or moved to another gateway since ``selection`` was made."""
+        layouts = self._own_columns.layout, self._other_columns.layout
+        return (selection.own.layout, selection.others.layout) != layouts
+
+    def changed_of(self, selection: RobotSelection, since: int) -> list[Robot]:
+        """Return those of a selection, which is not outdated, that changed after revision ``since``."""
+        own = self._own_columns.changed_places(selection.own, since)
+        others = self._other_columns.changed_places(selection.others, since)
+        places = np.sort(np.concatenate([own, others])).tolist()
+        return self.known(selection.names[place] for place in places)
 
     def _find(self, name: str) -> Robot | None:
         robot = self._robots.get(name) or self._elsewhere.get(name)

@@ -350,8 +350,8 @@ def _write(
     They are not written again: somebody has removed them. Nor are robots that another gateway has.
     """
     removed = fence.missing(connection, stored)
-    held = fence.held(connection, [row[0] for row in robots])
-    stored_robots.save(connection, [row for row in robots if row[0] in held and row[0] not in removed])
+    gone = removed | fence.lost(connection, [row[0] for row in robots])
+    stored_robots.save(connection, [row for row in robots if row[0] not in gone] if gone else robots)
     trajectories.add(connection, fixes)
     return removed
 

@@ -6,12 +6,13 @@ takes its place where a test turns the clock.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import msgspec
 from sqlalchemy import Connection, text
 
+from ....core.clock import Clock
 from ....core.errors import StoreError
 from ....core.messages.base import DeskRequest, to_json
 
@@ -98,7 +99,7 @@ _RENEW = text(
     """  # nosec B608 # names of ours
 )
 _MEMBERS = text(
-    f"select gw, run, version, host, process, since, lease_until - {_NOW}, address "  # nosec B608 # names of ours
+    f"select gw, run, version, host, process, since, lease_until - {_NOW}, address, {_NOW} "  # nosec B608 # names of ours
     "from gateways order by since, gw"
 )
 _LEAVE = text("delete from gateways where gw = :gw and run = :run")
@@ -120,17 +121,30 @@ def renew(connection: Connection, me: Member, lease_s: float, now: float | None 
 
 def members(connection: Connection, now: float | None = None) -> list[Member]:
     """Return all gateways that are entered, the one that joined first before all others."""
-    return [Member(*row) for row in connection.execute(_MEMBERS, {"now": now})]
+    return [Member(*row[:-1]) for row in connection.execute(_MEMBERS, {"now": now})]
+
+
+class MembersRead(NamedTuple):
+    """All gateways, the database's time and this computer's clock, both of the same moment."""
+
+    members: list[Member]
+    database: float
+    here: float
+
+
+def renew_and_read(connection: Connection, me: Member, lease_s: float, clock: Clock) -> MembersRead | None:
+    """Let a gateway live on as :func:`renew` does; return all of them, None where its lease has run out."""
+    if not renew(connection, me, lease_s):
+        return None
+    began = clock.time()
+    rows = connection.execute(_MEMBERS, {"now": None}).all()
+    here = (began + clock.time()) / 2
+    return MembersRead([Member(*row[:-1]) for row in rows], float(rows[-1][-1]), here)
 
 
 def leave(connection: Connection, me: Member) -> None:
     """Strike a gateway off: its robots are nobody's at once."""
     connection.execute(_LEAVE, {"gw": me.gw, "run": me.run})
-
-
-def clock(connection: Connection) -> float:
-    """Return the database's time."""
-    return float(connection.execute(text(f"select {_NOW}"), {"now": None}).scalar_one())
 
 
 # --- Who has which robot ---
@@ -164,19 +178,27 @@ _CLAIM_NEW = text(
     on conflict (robot) do nothing returning robot, fence
     """
 )
-_HELD = text(
-    "select robot, fence from robot_owners where robot = any(:robots) and gw = :gw and run = :run "
-    "order by robot for share"
+_LOST = text(
+    """
+    with fences as (
+        select key as robot, cast(value as bigint) as fence from json_each_text(cast(:fences as json))
+    ),
+    held as (
+        select o.robot from fences f join robot_owners o on o.robot = f.robot and o.fence = f.fence
+        where o.gw = :gw and o.run = :run order by o.robot for share of o
+    )
+    select robot from fences except select robot from held
+    """
 )
 _OWNED = text("select robot, fence from robot_owners where gw = :gw and run = :run")
-_ALL = text(
-    "select o.robot, o.gw, o.run, o.fence, r.name is not null from robot_owners o "
-    "left join robots r on r.name = o.robot"
-)
+# A row of what is there beside those of owners, which say null in its place.
+_ABOUT = "select null, null, null, count(*), null, cast(pg_snapshot_xmin(pg_current_snapshot()) as text)"
+_OWNERS = "select o.robot, o.gw, o.run, o.fence, r.name is not null, null from robot_owners o"
+_KNOWN = "left join robots r on r.name = o.robot"
 # Transactions that were not over when the mark was read, and all later ones, are at most as old as that.
-_CHANGED = text(f"{_ALL.text} where r.name is null or age(o.xmin) <= age(xid(cast(:since as xid8)))")  # nosec B608 # names of ours
-_MARK = text("select cast(pg_snapshot_xmin(pg_current_snapshot()) as text)")
-_COUNT = text("select count(*) from robot_owners")
+_SINCE = "where r.name is null or age(o.xmin) <= age(xid(cast(:since as xid8)))"
+_ALL = text(f"{_ABOUT} from robot_owners union all {_OWNERS} {_KNOWN}")  # nosec B608 # names of ours
+_CHANGED = text(f"{_ABOUT} from robot_owners union all {_OWNERS} {_KNOWN} {_SINCE}")  # nosec B608 # names of ours
 _PRESENT = text(
     "select count(*) from robots r join robot_owners o on o.robot = r.name where o.gw = :gw and o.run = :run"
 )
@@ -217,10 +239,10 @@ def claim_left(
     return dict([*left, *new])
 
 
-def held(connection: Connection, me: Member, robots: Sequence[str]) -> dict[str, int]:
-    """Return the fences of those of some robots that a gateway has, and keep them so for this transaction."""
-    values: dict[str, Any] = {"gw": me.gw, "run": me.run, "robots": list(robots)}
-    return dict(connection.execute(_HELD, values).all())
+def lost(connection: Connection, me: Member, fences: Mapping[str, int]) -> set[str]:
+    """Return the robots that a gateway has not under ``fences``; the others stay its own until the commit."""
+    values: dict[str, Any] = {"gw": me.gw, "run": me.run, "fences": msgspec.json.encode(fences).decode()}
+    return set(connection.scalars(_LOST, values))
 
 
 def owned(connection: Connection, me: Member) -> dict[str, int]:
@@ -230,11 +252,15 @@ def owned(connection: Connection, me: Member) -> dict[str, int]:
 
 def owners_since(connection: Connection, since: str | None) -> OwnersRead:
     """Return the owners that have changed since the mark of an earlier read, whenever that was committed."""
-    # Before the rows: what ends meanwhile is read once more next time.
-    mark = str(connection.execute(_MARK).scalar_one())
+    # One statement sees one state: what ends meanwhile is read once more next time.
     rows = connection.execute(_ALL) if since is None else connection.execute(_CHANGED, {"since": since})
-    found = {row[0]: Owner(*row[1:]) for row in rows}
-    return OwnersRead(mark, int(connection.execute(_COUNT).scalar_one()), found)
+    mark, total, found = "", 0, {}
+    for robot, *owner, about in rows:
+        if about is None:
+            found[robot] = Owner(*owner)
+        else:
+            mark, total = about, owner[2]
+    return OwnersRead(mark, total, found)
 
 
 def present(connection: Connection, me: Member) -> int:
@@ -260,12 +286,15 @@ _ADD = text(
     values (:robot, :method, :params, :operator, :asked_by, {_CLOCK}) returning id
     """  # nosec B608 # names of ours
 )
+_OPEN = """
+    from relayed_requests q join robot_owners o on o.robot = q.robot
+    where o.gw = :gw and o.run = :run and q.answer is null and q.begun_by is distinct from :run
+"""
+_IS_ASKED = text(f"select exists(select 1 {_OPEN})")  # nosec B608 # names of ours
 _BEGIN = text(
     f"""
     with mine as (
-        select q.id, q.begun_by from relayed_requests q join robot_owners o on o.robot = q.robot
-        where o.gw = :gw and o.run = :run and q.answer is null and q.begun_by is distinct from :run
-        order by q.id limit :most for update of q skip locked
+        select q.id, q.begun_by {_OPEN} order by q.id limit :most for update of q skip locked
     )
     update relayed_requests q set begun_by = :run from mine where q.id = mine.id
     returning q.id, q.robot, q.method, q.params, q.operator, q.asked_by, {_CLOCK} - q.asked_at, mine.begun_by
@@ -316,6 +345,11 @@ def add_requests(
     """Write requests; return their ids in the same order."""
     more = {"operator": operator, "asked_by": asked_by}
     return [int(connection.execute(_ADD, {**one._asdict(), **more}).scalar_one()) for one in requests]
+
+
+def is_asked(connection: Connection, me: Member) -> bool:
+    """Tell whether there are requests that :func:`begin_requests` would return."""
+    return bool(connection.execute(_IS_ASKED, {"gw": me.gw, "run": me.run}).scalar_one())
 
 
 def begin_requests(connection: Connection, me: Member, most: int) -> list[TakenRequest]:

@@ -148,8 +148,8 @@ class OwnerFence(Protocol):
     def check(self, connection: Connection, robots: Collection[str]) -> None:
         """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""
 
-    def held(self, connection: Connection, robots: Sequence[str]) -> AbstractSet[str]:
-        """Return those of ``robots`` that this gateway has until the transaction ends."""
+    def lost(self, connection: Connection, robots: Collection[str]) -> AbstractSet[str]:
+        """Return those of ``robots`` that this gateway has not; the others stay its own until the commit."""
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
         """Return those of its robots ``stored`` that somebody has removed from the database."""
@@ -172,9 +172,9 @@ class SoleFence:
     def check(self, connection: Connection, robots: Collection[str]) -> None:
         """Do nothing."""
 
-    def held(self, connection: Connection, robots: Sequence[str]) -> AbstractSet[str]:
-        """Return all of them."""
-        return frozenset(robots)
+    def lost(self, connection: Connection, robots: Collection[str]) -> AbstractSet[str]:
+        """Return none of them."""
+        return frozenset()
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
         """Return those that are not stored any more."""

@@ -20,6 +20,7 @@ from hypothesis.stateful import (
     run_state_machine_as_test,
 )
 from sqlalchemy import text
+from sqlalchemy.exc import OperationalError
 
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.gateway.cluster.membership import (
@@ -200,13 +201,16 @@ class Fleet(RuleBasedStateMachine):
 
     # --- commands ---------------------------------------------------------------------------------------
 
+    def passes(self, process, robot):
+        """Whether the robot passes the fence of a gateway."""
+        fences = process.robots.fences([robot])
+        return bool(fences) and not self.run(gateways.lost, process.me, fences)
+
     @rule(name=st.sampled_from(KEYS), robot=st.sampled_from(ROBOTS))
     def check(self, name, robot):
         """What is noted as delivered before it is sent: a fenced transaction."""
-        if process := self.alive(name):
-            held = process.robots.matching(self.run(gateways.held, process.me, [robot]))
-            if robot in held:
-                process.checked.append((robot, process.robots.fence(robot), self.clock.steady()))
+        if (process := self.alive(name)) and self.passes(process, robot):
+            process.checked.append((robot, process.robots.fence(robot), self.clock.steady()))
 
     @rule(name=st.sampled_from(KEYS))
     def send(self, name):
@@ -227,11 +231,7 @@ class Fleet(RuleBasedStateMachine):
     def one_fence_one_owner(self):
         """No two gateways would pass the fence of one robot."""
         for robot in ROBOTS:
-            passing = [
-                name
-                for name, process in self.processes.items()
-                if robot in process.robots.matching(self.run(gateways.held, process.me, [robot]))
-            ]
+            passing = [name for name, process in self.processes.items() if self.passes(process, robot)]
             assert len(passing) <= 1, (robot, passing)
 
     @invariant()
@@ -346,6 +346,28 @@ def test_a_change_is_read_whenever_it_is_committed(engine):
         connection.execute(text("delete from robots"))
 
 
+def test_a_fence_holds_until_the_commit_and_not_under_an_older_number(engine):
+    a, b = Member("a", "run-a"), Member("b", "run-b")
+    owner = text("insert into robot_owners values (:robot, 'a', 'run-a', :fence)")
+    with engine.begin() as connection:
+        connection.execute(text("delete from robot_owners"))
+        for robot, fence in (("r1", 1), ("r2", 3)):
+            connection.execute(owner, {"robot": robot, "fence": fence})
+    change = text("update robot_owners set gw = 'b', run = 'run-b', fence = 9 where robot = :robot")
+    with engine.connect() as writing, engine.connect() as claiming:
+        # r2 was another gateway's in between, and r3 is nobody's.
+        assert gateways.lost(writing, a, {"r1": 1, "r2": 1, "r3": 1}) == {"r2", "r3"}
+        assert gateways.lost(claiming, b, {"r1": 1}) == {"r1"}
+        claiming.execute(text("set local lock_timeout = '50ms'"))
+        with pytest.raises(OperationalError, match="lock timeout"):
+            claiming.execute(change, {"robot": "r1"})
+        claiming.rollback()
+        writing.commit()
+        claiming.execute(change, {"robot": "r1"})
+        claiming.commit()
+        assert gateways.lost(writing, a, {"r1": 1}) == {"r1"}
+
+
 @pytest.fixture
 def fleet(engine):
     machine = type("OnPostgreSql", (Fleet,), {"engine": engine})()
@@ -444,7 +466,7 @@ def test_robots_of_a_gateway_that_left_are_claimed_at_once(fleet):
 def test_the_machine_finds_a_fence_that_is_open(fleet, monkeypatch):
     went_elsewhere(fleet)
     fleet.one_fence_one_owner()
-    monkeypatch.setattr(OwnedRobots, "matching", lambda self, stored: {r for r in ROBOTS if r in self})
+    monkeypatch.setattr(gateways, "lost", lambda connection, me, fences: set())
     with pytest.raises(AssertionError):
         fleet.one_fence_one_owner()
 

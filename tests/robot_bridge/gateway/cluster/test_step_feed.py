@@ -8,8 +8,19 @@ from collections import Counter
 from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.cluster import feeds
 from robot_bridge.gateway.cluster.feeds import StepFeed
+from robot_bridge.gateway.cluster.followers import ChangeNumbers
 from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.commands.active_command import CommandOrder
+
+
+class Alone:
+    """A fleet of one gateway."""
+
+    def others(self):
+        return []
+
+    def database_time(self):
+        return 0.0
 
 
 class Turns:
@@ -30,7 +41,9 @@ class Turns:
 async def test_hundreds_of_steps_leave_others_their_turns(two, monkeypatch):
     monkeypatch.setattr(feeds, "PIECE", 10)
     fleet = two.fleet
-    feed = StepFeed(fleet.robots, fleet.listeners, fleet.events, Exchange("a", b"k" * 32, []), two.database)
+    exchange = Exchange("a", b"k" * 32, [])
+    numbers = ChangeNumbers(exchange, Alone())
+    feed = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, numbers, two.database)
     await feed.follow()
     for number in range(40):
         await fleet.emergency._book.issue([CommandOrder(f"abort-{number:04}", "r1", Abort(), "Ada", None)])

@@ -65,9 +65,9 @@ class Desk:
         self.watch.show(View(bounds, **more))
         return self.listen()
 
-    def listen(self):
+    def listen(self, after=10.0):
         """Take in the next frame, after where everybody is was looked up again; return its params."""
-        self.fleet.clock.advance(10.0)
+        self.fleet.clock.advance(after)
         frame = self.watch.next_frame()
         if frame is None:
             self.told, self.removed = [], []
@@ -152,6 +152,25 @@ def test_who_leaves_the_view_is_untracked_and_not_removed():
     fleet.robots.remove("b")
     params = desk.listen()
     assert (desk.removed, params.get("untracked"), params["view"]["robots"]) == (["b"], None, 1)
+
+
+def test_until_it_is_looked_up_again_who_is_in_the_view_nobody_takes_the_place_of_who_is_gone():
+    fleet = Fleet(a=(1, 1), b=(2, 2))
+    desk = fleet.desk()
+    desk.listen()
+    fleet.robots.remove("a")
+    fleet.put("far", 99.0)
+    fleet.put("b", 3.0)
+    desk.listen(after=0.0)
+    assert (desk.removed, desk.told) == (["a"], ["b"])
+    # It comes back, at another gateway.
+    fleet.put("a", 4.0)
+    fleet.robots.let_go("a", "south")
+    desk.listen(after=0.0)
+    assert desk.told == ["a"]
+    fleet.put("far", 98.0)
+    assert desk.listen(after=0.0) is None
+    assert desk.at == {"a": 4.0, "b": 3.0}
 
 
 def test_another_view_tells_what_it_changes_and_nothing_twice():
