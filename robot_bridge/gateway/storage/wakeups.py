@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import os
 import time
 from collections import Counter
 from pathlib import Path
@@ -225,13 +226,15 @@ class NotifiedWakeup:
                     lost.set_exception(error)
 
         # By the socket itself: the driver's own way takes ten times the processor time for each notification.
-        number = connection.fileno()
-        loop.add_reader(number, take_in)
+        # By a second number for it: libpq closes its own as soon as the connection is lost, and a client that
+        # is accepted while the loop still watches that one would be given the same number, and not be heard.
+        number = os.dup(connection.fileno())
         try:
+            loop.add_reader(number, take_in)
             await lost
         finally:
-            # A lost connection no longer knows its number, and the next one may be given the same.
             loop.remove_reader(number)
+            os.close(number)
 
 
 class FloodError(Exception):
