@@ -171,6 +171,9 @@ LOOK_INTERVAL = 0.4
 """Seconds after which a token that was revoked elsewhere is noticed."""
 READ_AGAIN_AFTER = 0.1
 """Seconds between two readings of the accounts because of a token that is not known."""
+LOOK_UP_SHARE = 0.5
+"""of a handshake's time, after which a token that the database has not told of is answered 503: at the end of
+that time the connection is cut off without an answer."""
 REVOKED = 4003
 """Close code of a connection whose token does not hold any more."""
 ENDED = 4004
@@ -211,7 +214,7 @@ class AuthGate:
         self._may_be_open = may_be_open
         self._clock = clock
         self._reading = asyncio.Lock()
-        self._read_at = 0.0
+        self._read_at = self._tried_at = 0.0
         self._failures: dict[str, RateLimit] = {}
 
     async def open(self) -> None:
@@ -356,9 +359,11 @@ class AuthGate:
             return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         try:
             if token is not None and self.book.find(token) is None:
-                await self._read_again()
-        except StoreError as error:
-            log.error("%s; a token could not be looked up", error)
+                async with asyncio.timeout(LOOK_UP_SHARE * self.limits.handshake_s):
+                    await self._read_again()
+        except (StoreError, TimeoutError) as error:
+            reason = str(error) or f"database {self._database.where} does not answer"
+            log.error("%s; a token could not be looked up", reason)
             text = "The accounts cannot be read now: the database is away. Try again."
             return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
         if self._is_open(kind):
@@ -382,9 +387,11 @@ class AuthGate:
         async with self._reading:
             if self._read_at >= knocked:
                 return
-            await asyncio.sleep(max(0.0, self._read_at + READ_AGAIN_AFTER - knocked))
-            self._read_at = time.monotonic()
+            await asyncio.sleep(max(0.0, self._tried_at + READ_AGAIN_AFTER - time.monotonic()))
+            self._tried_at = began = time.monotonic()
             await self.book.refresh()
+            # Where that failed, those who wait behind must not take their tokens for unknown ones.
+            self._read_at = began
 
     def _fault(self, identity: Identity) -> str | None:
         if identity.token is None:

@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import os
-import signal
 import time
-from pathlib import Path
 
 import pytest
 from sqlalchemy import event, insert, select
@@ -15,6 +11,7 @@ from sqlalchemy import event, insert, select
 from robot_bridge.core.errors import StoreError, UncertainError
 from robot_bridge.gateway.storage.database import Database
 from robot_bridge.gateway.storage.schema import rr
+from tests.support.databases.frozen_server import frozen
 
 SERVERS = pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 
@@ -38,26 +35,6 @@ def add(connection, robot):
 
 def names(connection):
     return sorted(connection.scalars(select(rr.c.robot)))
-
-
-def tree_of(pid: int) -> list[int]:
-    """Return a process and all that it has started."""
-    children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
-    return [pid, *(found for child in children for found in tree_of(int(child)))]
-
-
-@contextlib.contextmanager
-def frozen(server):
-    """A server that does nothing, while its computer keeps its connections open."""
-    processes = tree_of(server.pid)
-    for pid in processes:
-        os.kill(pid, signal.SIGSTOP)
-    try:
-        yield
-    finally:
-        for pid in processes:
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(pid, signal.SIGCONT)
 
 
 @SERVERS
