@@ -244,9 +244,12 @@ class PostgreSQL(Dialect):
             connection.exec_driver_sql(f"select pg_advisory_unlock({GATEWAY_DOZES})")
 
     def interrupt(self, driver_connection: Any) -> None:
-        # A second number for the same socket: this one may be closed while the other thread uses its own.
-        with contextlib.suppress(OSError), socket.socket(fileno=os.dup(driver_connection.fileno())) as twin:
-            twin.shutdown(socket.SHUT_RDWR)
+        # One that was lost meanwhile has no number any more, which is the driver's error.
+        with contextlib.suppress(OSError, driver_error()):
+            # A second number for the same socket: this one may be closed while the other thread uses its own.
+            twin = socket.socket(fileno=os.dup(driver_connection.fileno()))
+            with twin:
+                twin.shutdown(socket.SHUT_RDWR)
 
     def deadlocked(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlstate", None) in _REPEATABLE

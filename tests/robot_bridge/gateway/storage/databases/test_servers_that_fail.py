@@ -9,7 +9,7 @@ import pytest
 from sqlalchemy import event, insert, select
 
 from robot_bridge.core.errors import StoreError, UncertainError
-from robot_bridge.gateway.storage.database import Database
+from robot_bridge.gateway.storage.database import Database, open_engine, read_address
 from robot_bridge.gateway.storage.schema import rr
 from tests.support.databases.frozen_server import frozen
 
@@ -73,6 +73,15 @@ async def test_nobody_waits_for_a_server_that_no_longer_answers(database, server
         assert [isinstance(error, StoreError) for error in await work] == [True] * 3
     assert turns > 10, "the event loop waited, too"
     assert await database.run(names) == ["r1"]
+
+
+@SERVERS
+def test_a_connection_that_is_lost_before_it_is_cut_ends_no_watch(url):
+    engine, dialect = open_engine(read_address(url))
+    with engine.connect() as connection:
+        driver = connection.connection.driver_connection
+        driver.close()
+        dialect.interrupt(driver)
 
 
 @SERVERS
