@@ -36,7 +36,7 @@ class NatsServer:
         self._file = folder / "nats.conf"
         self._log = folder / "nats.log"
         self.port = free_port()
-        self._file.write_text(f'listen: "127.0.0.1:{self.port}"\n{config}\n', encoding="utf-8")
+        self._write(config)
         self._program = nats_program()
         self._process: subprocess.Popen[bytes] | None = None
 
@@ -74,6 +74,15 @@ class NatsServer:
                     text = self._log.read_text(encoding="utf-8", errors="replace")
                     raise StageError(f"nats-server did not come up; it said:\n{text}") from None
                 time.sleep(0.02)
+
+    def reconfigure(self, config: str) -> None:
+        """Have the server that runs take another configuration, which takes it a moment."""
+        self._write(config)
+        assert self._process is not None
+        self._process.send_signal(signal.SIGHUP)
+
+    def _write(self, config: str) -> None:
+        self._file.write_text(f'listen: "127.0.0.1:{self.port}"\n{config}\n', encoding="utf-8")
 
     def freeze(self) -> None:
         """Let it stand still, as on a computer that hangs."""

@@ -29,6 +29,8 @@ Receive = Callable[[str, bytes], None]
 """Takes in a message: its subject and its content. It must not block."""
 STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
 """Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
+RIGHTS_PROBE = b"?"
+"""By this a gateway that starts sees whether it may publish on a subject; it says nothing to who hears it."""
 MOST_WAITING = 256
 """messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
 RETRY_S = 1.0
@@ -160,6 +162,8 @@ class NotifyBus:
             stack.callback(self._end_stopping)
             for subject in self._subjects:
                 await listening.execute(f'listen "{CHANNEL}.{subject}"'.encode())
+            if self._said:
+                log.warning("bus on PostgreSQL: connected again")
             self._connected, self._said = True, ""
             tasks = [
                 asyncio.create_task(self._hear(listening, receive)),

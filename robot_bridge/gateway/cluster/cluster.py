@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
+from urllib.parse import urlsplit
 
 from sqlalchemy import URL
 
@@ -50,6 +51,13 @@ class ClusterSettings:
             )
         if self.bus not in ("none", "postgresql") and not self.servers():
             raise BridgeError(f"bus {self.bus!r:.80} is none of these: {BUSES}")
+        if self.password is not None and not (
+            self.servers() and all(urlsplit(url).username for url in self.servers())
+        ):
+            raise BridgeError(
+                "--bus-password-file is for the account of a bus on NATS: name that in each URL, as in "
+                "nats://ACCOUNT@HOST:PORT, or leave the file out"
+            )
         address = self.public_address
         if address is not None and not (is_gateway_address(address) and len(address) <= LONGEST_PUBLIC):
             raise BridgeError(

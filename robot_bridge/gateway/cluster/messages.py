@@ -30,7 +30,7 @@ from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, Stop
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
 from ..storage.repositories import metadata
-from .bus import EVERYBODY, STOP, Bus, own_subject
+from .bus import EVERYBODY, RIGHTS_PROBE, STOP, Bus, own_subject
 
 log = logging.getLogger(__name__)
 
@@ -421,6 +421,8 @@ class Exchange:
 
     def receive(self, subject: str, content: bytes) -> None:
         """Take in a message as it came from a bus."""
+        if content == RIGHTS_PROBE:
+            return
         try:
             message = self._codec.decode(content)
         except BusMessageError as error:

@@ -8,14 +8,24 @@ import logging
 import random
 import threading
 from collections import deque
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterable, Iterator
 from typing import Any
 from urllib.parse import urlsplit
 
 from ...core.errors import BridgeError
 from ...core.logs import log_and_continue, log_unforeseen
 from ..monitoring import wait_at_most
-from .bus import EVERYBODY, MOST_WAITING, POSITIONS, RETRY_S, STOP, OutgoingMessages, Receive, own_subject
+from .bus import (
+    EVERYBODY,
+    MOST_WAITING,
+    POSITIONS,
+    RETRY_S,
+    RIGHTS_PROBE,
+    STOP,
+    OutgoingMessages,
+    Receive,
+    own_subject,
+)
 
 log = logging.getLogger(__name__)
 
@@ -23,6 +33,9 @@ OLDEST_NATS = (2, 10, 26)
 NATS_RETRY_S = 0.1
 """seconds from one attempt to connect to the next."""
 CONNECT_S, FLUSH_S = 2.0, 2.0
+NO_TLS = "the server does not ask for TLS, and was sent nothing"
+MOST_FAULTS = 3
+"""refusals of the server that are named."""
 CONNECTED_LOOK_S = 0.2
 """seconds after which a connection is looked at that did not say that it was lost."""
 QUIET_LOOKS, PONG_S = 10, 1.0
@@ -87,22 +100,47 @@ class NatsServers:
     async def _connect_to(self, url: str, name: str, on_error: Any, **options: Any) -> Any:
         if self._password is not None:
             options |= {"user": urlsplit(url).username, "password": self._password}
-        return await self._nats.connect(
-            url,
-            error_cb=on_error,
-            connect_timeout=CONNECT_S,
-            # A connection that is lost is made again here, not by the client: it would keep what is published
-            # meanwhile, and send that as if it were new.
-            allow_reconnect=False,
-            reconnect_time_wait=0.1,
-            max_reconnect_attempts=1,
-            ping_interval=PING_S,
-            max_outstanding_pings=2,
-            pending_size=PENDING_BYTES,
-            no_echo=False,
-            name=name,
-            **options,
-        )
+        client = self._nats.NATS()
+        if url.startswith("tls://"):
+            self._insist_on_tls(client)
+        try:
+            await client.connect(
+                url,
+                error_cb=on_error,
+                connect_timeout=CONNECT_S,
+                # A connection that is lost is made again here, not by the client: it would keep what is
+                # published meanwhile, and send that as if it were new.
+                allow_reconnect=False,
+                reconnect_time_wait=0.1,
+                max_reconnect_attempts=1,
+                ping_interval=PING_S,
+                max_outstanding_pings=2,
+                pending_size=PENDING_BYTES,
+                no_echo=False,
+                name=name,
+                **options,
+            )
+        except BaseException:
+            # The client leaves its socket open where it gives up.
+            with contextlib.suppress(Exception):
+                await client.close()
+            raise
+        return client
+
+    def _insist_on_tls(self, client: Any) -> None:
+        """Have ``client`` send nothing to a server that does not ask for TLS.
+
+        nats-py speaks TLS where the server asks for it, whatever the URL says. Without this, whoever answers
+        in the server's place is sent the password in plain text.
+        """
+        greeting = client._connect_command
+
+        def greeting_over_tls() -> Any:
+            if not client._server_info.get("tls_required"):
+                raise self._nats.errors.Error(NO_TLS)
+            return greeting()
+
+        client._connect_command = greeting_over_tls
 
 
 class NatsConnection:
@@ -143,14 +181,17 @@ class NatsConnection:
         async def log_fault(error: Exception) -> None:
             self._say(str(error))
 
+        was_lost = bool(self._said)
         async with asyncio.timeout(self._servers.patience):
             client = await self._servers.connect(
                 self._name, log_fault, disconnected_cb=ended, closed_cb=ended
             )
         try:
-            check_version(self._servers.where, client.connected_server_version)
+            check_version(client)
             await self._subscribe(client, receive)
             self.client = client
+            if was_lost:
+                log.warning("bus %s: %s is connected again", self._servers.where, self._name)
             self._said.clear()
             yield lost
         finally:
@@ -196,7 +237,10 @@ class NatsConnection:
 
     def _say(self, reason: str) -> None:
         if reason not in self._said:
-            log.warning("bus %s: %s; %s", self._servers.where, reason, self._trouble)
+            advice = advice_on(reason, self._prefix)
+            log.warning(
+                "bus %s: %s; %s%s", self._servers.where, reason, advice and f"{advice}; ", self._trouble
+            )
         self._said.add(reason)
 
 
@@ -339,11 +383,12 @@ class NatsBus:
         self._servers = NatsServers(urls, password)
         self._prefix = prefix
         self._own = own_subject(gateway)
+        self._subjects = (STOP, EVERYBODY, POSITIONS, self._own)
         self._connection = NatsConnection(
             self._servers,
             "robot-bridge",
             prefix,
-            (STOP, EVERYBODY, POSITIONS, self._own),
+            self._subjects,
             "connecting again until it works",
         )
         self._stops = StopListener(self._servers, prefix, self._connection)
@@ -365,44 +410,58 @@ class NatsBus:
         return True
 
     async def check(self) -> None:
-        """Connect for a moment.
+        """Connect for a moment, hear every subject and publish on it.
 
         :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
         """
-        where = self._servers.where
-        faults: list[str] = []
-        heard = asyncio.Event()
+        where = f"bus {self._servers.where}"
+        faults: dict[str, None] = {}
+        returned = asyncio.Event()
 
         async def add_fault(error: Exception) -> None:
-            faults.append(str(error))
-            heard.set()
+            faults[str(error)] = None
 
-        async def hear(_message: Any) -> None:
-            heard.set()
+        async def hear(message: Any) -> None:
+            if message.data == RIGHTS_PROBE:
+                returned.set()
 
         try:
             async with asyncio.timeout(self._servers.patience):
                 client = await self._servers.connect("robot-bridge", add_fault)
         except self._servers.errors as error:
-            raise BridgeError(
-                f"bus {where}: {str(error) or 'no server answers'}{_all(faults)}; check that NATS "
-                "runs there, and the account of this gateway"
-            ) from None
+            faults[str(error) or "no server answers"] = None
+            raise BridgeError(f"{where}: {self._advised(faults)}") from None
         try:
-            check_version(where, client.connected_server_version)
-            await client.subscribe(f"{self._prefix}.{self._own}", cb=hear)
-            await client.publish(f"{self._prefix}.{self._own}", b"")
-            async with asyncio.timeout(FLUSH_S):
-                await heard.wait()
+            check_version(client)
+            await self._probe_rights(client, hear)
+            if not faults:
+                async with asyncio.timeout(FLUSH_S):
+                    await returned.wait()
+        except BridgeError as error:
+            raise BridgeError(f"{where}: {error}") from None
         except TimeoutError:
-            faults.append("what this gateway publishes does not come back to it")
+            faults["what this gateway publishes does not come back to it"] = None
+        except self._servers.errors as error:
+            faults[str(error)] = None
         finally:
             await client.close()
         if faults:
-            raise BridgeError(
-                f"bus {where}: {_all(faults).lstrip(': ')}; the account of this gateway has to be "
-                f"allowed to publish and to subscribe to {self._prefix}.>"
-            )
+            raise BridgeError(f"{where}: {self._advised(faults)}")
+
+    async def _probe_rights(self, client: Any, hear: Any) -> None:
+        """Hear every subject, and publish on it; return when the server has refused what it refuses."""
+        for subject in self._subjects:
+            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
+            await client.publish(f"{self._prefix}.{subject}", RIGHTS_PROBE)
+        await client.flush(FLUSH_S)
+
+    def _advised(self, faults: Iterable[str]) -> str:
+        """Return the first of ``faults``, and what to do."""
+        named = list(faults)
+        text = "; ".join(named[:MOST_FAULTS])
+        if (more := len(named) - MOST_FAULTS) > 0:
+            text += f"; and {more} more such"
+        return f"{text}; {advice_on(text, self._prefix) or 'check that NATS runs there'}"
 
     async def run(self, receive: Receive) -> None:
         """Connect and send until cancelled; it connects again by itself."""
@@ -477,17 +536,34 @@ async def disconnection(client: Any, lost: asyncio.Event) -> None:
                     return
 
 
-def check_version(where: str, version: Any) -> None:
-    """Raise BridgeError for a server that is too old; ``version`` is what nats-py knows of it."""
+def check_version(client: Any) -> None:
+    """Raise BridgeError where the server that ``client`` is connected to is too old."""
+    version, url = client.connected_server_version, client.connected_url
     found = (version.major, version.minor, version.patch)
     if found < OLDEST_NATS:
         wanted = ".".join(map(str, OLDEST_NATS))
         raise BridgeError(
-            f"bus {where}: NATS {'.'.join(map(str, found))} lets one reader that stands still delay all "
-            f"others for seconds; install {wanted} or newer (Debian 13's package nats-server runs on Debian "
-            "12)"
+            f"at {url.hostname}:{url.port} NATS {'.'.join(map(str, found))} lets one reader that stands "
+            f"still delay all others for seconds; install {wanted} or newer (Debian 13's package nats-server "
+            "runs on Debian 12)"
         )
 
 
-def _all(faults: list[str]) -> str:
-    return f": {'; '.join(dict.fromkeys(faults))}" if faults else ""
+def advice_on(reason: str, prefix: str) -> str:
+    """Return what to do about ``reason``, for which a server or the network is not used; "" where unknown."""
+    words = reason.lower()
+    if "permissions violation" in words or "come back" in words:
+        return f"the account of this gateway has to be allowed to publish and to subscribe to {prefix}.>"
+    if "authorization" in words or "authentication" in words:
+        return (
+            "check the account in the URL, as in nats://ACCOUNT@HOST:PORT, and its password in "
+            "--bus-password-file"
+        )
+    if "certificate" in words:
+        return (
+            "connect by a name of the certificate; where its authority is your own, name that one's file in "
+            "the variable SSL_CERT_FILE"
+        )
+    if NO_TLS in reason:
+        return "give it a certificate (tls in its configuration, without allow_non_tls), or write nats://"
+    return ""

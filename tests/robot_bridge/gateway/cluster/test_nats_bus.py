@@ -9,10 +9,13 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
+from sqlalchemy import make_url
 
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster import nats_bus
-from robot_bridge.gateway.cluster.bus import EVERYBODY, STOP
+from robot_bridge.gateway.cluster.bus import EVERYBODY, STOP, own_subject
+from robot_bridge.gateway.cluster.cluster import ClusterSettings
+from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.cluster.nats_bus import NatsBus, check_version, disconnection
 from tests.support.faults.proxy import Proxy
 from tests.support.patience import BUSY, until
@@ -81,6 +84,7 @@ async def test_what_is_said_while_the_server_is_away_is_not_sent_when_it_is_back
     await until(lambda: heard)
     assert set(heard) == {(STOP, b"new")}
     assert "connecting again until it works" in caplog.text
+    assert caplog.text.count("robot-bridge is connected again") == 1
     task.cancel()
     await asyncio.gather(task, return_exceptions=True)
 
@@ -162,15 +166,131 @@ async def test_an_account_that_may_not_speak_is_named(tmp_path):
         url = server.url.replace("//", "//gw@")
         with pytest.raises(BridgeError, match=r"[Pp]ermissions [Vv]iolation.*to publish and to subscribe"):
             await NatsBus([url], "a", "fleet.f", "secret").check()
-        with pytest.raises(BridgeError, match=r"[Aa]uthorization"):
+        with pytest.raises(BridgeError, match=r"[Aa]uthorization.*--bus-password-file"):
             await NatsBus([url], "a", "fleet.f", "wrong").check()
 
 
-def test_a_server_that_is_too_old_is_refused_with_the_reason():
-    check_version("here", SimpleNamespace(major=2, minor=10, patch=26))
-    check_version("here", SimpleNamespace(major=2, minor=11, patch=0))
-    with pytest.raises(BridgeError, match=r"NATS 2\.9\.10 lets one reader.*install 2\.10\.26 or newer"):
-        check_version("here", SimpleNamespace(major=2, minor=9, patch=10))
+@pytest.mark.usefixtures("nats")
+@pytest.mark.parametrize("what", ["publish", "subscribe"])
+async def test_an_account_that_may_do_all_but_stop_is_named(tmp_path, what):
+    """Each gateway would start, and nobody would hear of it before the first emergency stop."""
+    from tests.support.nats_server import NatsServer
+
+    may = {"publish": '"fleet.>"', "subscribe": '"fleet.>"', what: '{allow: "fleet.>", deny: "fleet.*.stop"}'}
+    permissions = ", ".join(f"{key}: {value}" for key, value in may.items())
+    user = f'{{user: "gw", password: "secret", permissions: {{{permissions}}}}}'
+    with NatsServer(tmp_path, f"authorization: {{users: [{user}]}}") as server:
+        url = server.url.replace("//", "//gw@")
+        with pytest.raises(
+            BridgeError, match=r"[Pp]ermissions [Vv]iolation.*fleet\.f\.stop.*has to be allowed"
+        ):
+            await NatsBus([url], "a", "fleet.f", "secret").check()
+
+
+@pytest.mark.usefixtures("nats")
+async def test_rights_that_are_taken_away_later_are_named_with_what_to_do(tmp_path, caplog):
+    from tests.support.nats_server import NatsServer
+
+    config = 'authorization: {{users: [{{user: "gw", password: "secret", permissions: {{publish: "{}"}}}}]}}'
+    with NatsServer(tmp_path, config.format("fleet.>")) as server:
+        bus = NatsBus([server.url.replace("//", "//gw@")], "a", "fleet.f", "secret")
+        await bus.check()
+        task = asyncio.create_task(bus.run(lambda *_: None))
+        await until(lambda: bus.connected)
+        server.reconfigure(config.format("other.>"))
+        allowed = "has to be allowed to publish and to subscribe to fleet.f.>"
+
+        def is_said():
+            bus.publish(EVERYBODY, b"a wake")
+            return allowed in caplog.text
+
+        await until(is_said)
+        task.cancel()
+        await asyncio.gather(task, return_exceptions=True)
+
+
+async def test_who_asks_whether_it_may_speak_is_taken_for_no_other_fleet(nats, caplog):
+    """A second gateway of one name asks on what the first one hears."""
+    exchange = Exchange("a", b"key", [NatsBus([nats.url], "a", "fleet.f7")])
+    task = asyncio.create_task(exchange.run())
+    await until(lambda: exchange.connected)
+    await NatsBus([nats.url], "a", "fleet.f7").check()
+    stranger = NatsBus([nats.url], "b", "fleet.f7")
+    other = asyncio.create_task(stranger.run(lambda *_: None))
+    await until(lambda: stranger.connected)
+    stranger.publish(own_subject("a"), b"from elsewhere")
+    await until(lambda: "not signed by this fleet" in caplog.text)
+    # Of that one alone.
+    assert caplog.text.count("not signed by this fleet") == 1
+    for one in (task, other):
+        one.cancel()
+    await asyncio.gather(task, other, return_exceptions=True)
+
+
+@pytest.mark.usefixtures("nats")
+async def test_over_tls_an_authority_of_ones_own_is_asked_for_and_taken(tmp_path, monkeypatch):
+    from robot_bridge.gateway.auth import certificates
+    from tests.support.nats_server import NatsServer
+
+    files = certificates.create(tmp_path / "tls", ["localhost"], [])
+    tls = f'tls: {{cert_file: "{files.certificate}", key_file: "{files.key}"}}'
+    with NatsServer(tmp_path, tls) as server:
+        bus = NatsBus([f"tls://localhost:{server.port}"], "a", "fleet.f")
+        with pytest.raises(BridgeError, match=r"CERTIFICATE_VERIFY_FAILED.*SSL_CERT_FILE"):
+            await bus.check()
+        monkeypatch.setenv("SSL_CERT_FILE", str(tmp_path / "tls" / "ca.pem"))
+        await bus.check()
+
+
+async def test_whoever_is_asked_for_tls_and_has_none_is_sent_nothing():
+    """Also no password: it may be anybody who answers in the server's place."""
+    said = []
+
+    async def pose_as_server(reader, writer):
+        writer.write(b'INFO {"server_id": "x", "version": "2.11.0", "max_payload": 1048576}\r\n')
+        said.append(await reader.read(1000))
+        writer.close()
+
+    async with await asyncio.start_server(pose_as_server, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        bus = NatsBus([f"tls://gw@127.0.0.1:{port}"], "a", "fleet.f", "secret")
+        with pytest.raises(BridgeError, match=r"does not ask for TLS.*or write nats://"):
+            await bus.check()
+        await until(lambda: said)
+    assert said == [b""]
+
+
+async def test_a_server_that_is_too_old_is_refused_with_the_reason():
+    async def answer(reader, writer):
+        writer.write(b'INFO {"server_id": "x", "version": "2.9.10", "max_payload": 1048576}\r\n')
+        while b"PING" not in await reader.readline():
+            pass
+        writer.write(b"PONG\r\n")
+        await reader.read()
+        writer.close()
+
+    async with await asyncio.start_server(answer, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        old = rf"at 127.0.0.1:{port} NATS 2\.9\.10 lets one reader.*install 2\.10\.26 or newer"
+        with pytest.raises(BridgeError, match=f"^bus 127.0.0.1:{port}: {old}"):
+            await NatsBus([f"nats://127.0.0.1:{port}"], "a", "fleet.f").check()
+
+
+def test_the_oldest_server_is_taken():
+    for minor, patch in ((10, 26), (11, 0)):
+        version = SimpleNamespace(major=2, minor=minor, patch=patch)
+        check_version(
+            SimpleNamespace(connected_server_version=version, connected_url=urlsplit("nats://here:1"))
+        )
+
+
+@pytest.mark.parametrize("bus", ["postgresql", "none", "nats://n1:4222", "nats://gw@n1:4222,nats://n2:4222"])
+def test_a_password_of_no_account_is_refused(bus):
+    database = make_url("postgresql://x@localhost/y")
+    with pytest.raises(BridgeError, match=r"nats://ACCOUNT@HOST:PORT, or leave the file out"):
+        ClusterSettings("a", bus, "secret").check(database)
+    ClusterSettings("a", "nats://gw@n1:4222,tls://gw@n2", "secret").check(database)
+    ClusterSettings("a", bus).check(database)
 
 
 class Connection:
