@@ -316,7 +316,7 @@ class DatabaseWorker:
         return StoreError(self._text(error))
 
     def _text(self, error: SQLAlchemyError) -> str:
-        return f"database {self._where}: {self._dialect.cause(error)}; {self._dialect.advice}"
+        return f"database {self._where}: {self._dialect.cause(error)}; {self._dialect.advice_on(error)}"
 
 
 def _is_of_work(error: StoreError) -> bool:

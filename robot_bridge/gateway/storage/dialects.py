@@ -109,6 +109,10 @@ class Dialect:
         """Return in one line what the database said."""
         return in_one_line(getattr(error, "orig", None) or error)
 
+    def advice_on(self, error: SQLAlchemyError) -> str:
+        """Return what to do about an error."""
+        return self.advice
+
 
 # --- MariaDB 10.11 or newer, through PyMySQL ---
 
@@ -191,6 +195,7 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
 GATEWAY_DOZES = 0x666C656574
 """The number of the lock that a gateway holds while it wants to be told of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
+_READ_ONLY = "25006"
 _POSTGRESQL_LOCK_TIMEOUT = "55P03"
 
 
@@ -256,6 +261,17 @@ class PostgreSQL(Dialect):
 
     def kept_waiting(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlstate", None) == _POSTGRESQL_LOCK_TIMEOUT
+
+    def advice_on(self, error: SQLAlchemyError) -> str:
+        if getattr(getattr(error, "orig", None), "sqlstate", None) == _READ_ONLY:
+            return (
+                "the server answers and takes no writes: have default_transaction_read_only off there, or "
+                "name the primary where this one is a standby"
+            )
+        # A connection that is refused has no code.
+        if "too many" in self.cause(error) or "remaining connection slots" in self.cause(error):
+            return "raise max_connections, or the limit of this database or account: allow ten for a gateway"
+        return self.advice
 
 
 def driver_error() -> type[Exception]:

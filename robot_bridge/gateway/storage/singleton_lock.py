@@ -336,7 +336,8 @@ def _explained(url: URL, dialect: Dialect) -> Any:
     try:
         yield
     except SQLAlchemyError as error:
-        raise StoreError(f"database {shown(url)}: {dialect.cause(error)}; {dialect.advice}") from error
+        text = f"{dialect.cause(error)}; {dialect.advice_on(error)}"
+        raise StoreError(f"database {shown(url)}: {text}") from error
 
 
 def _run_in(text: str | None) -> dict[str, Any]:

@@ -37,6 +37,31 @@ def names(connection):
     return sorted(connection.scalars(select(rr.c.robot)))
 
 
+@pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+async def test_one_that_takes_no_writes_is_named_as_that(url, database):
+    """It runs, and the account may use it: to look for either would be in vain."""
+    name = f'"{database.url.database}"'
+    await database.run(
+        lambda one: one.exec_driver_sql(f"alter database {name} set default_transaction_read_only = on")
+    )
+    reader = Database(url, patience=1.0)
+    with pytest.raises(
+        StoreError, match=r"cannot execute INSERT.*takes no writes.*default_transaction_read_only"
+    ):
+        await reader.run(add, "r1")
+    await reader.close()
+
+
+@pytest.mark.parametrize("kind", ["postgresql"], indirect=True)
+async def test_one_without_a_connection_to_spare_is_named_as_that(url, database):
+    name = f'"{database.url.database}"'
+    await database.run(lambda one: one.exec_driver_sql(f"alter database {name} connection limit 0"))
+    other = Database(database.url, patience=1.0)
+    with pytest.raises(StoreError, match=r"too many connections.*raise max_connections"):
+        await other.run(names)
+    await other.close()
+
+
 @SERVERS
 async def test_a_server_that_was_restarted_between_two_pieces_of_work_is_not_noticed(database, server):
     await database.run(add, "before")
