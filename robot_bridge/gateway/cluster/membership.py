@@ -174,6 +174,8 @@ class Membership:
         self._lease = lease
         self._clock = clock
         self._clock_said_at = -OFF_AGAIN_S
+        self._other_versions = set[tuple[str, str]]()
+        """the gateways of another version, and which, as the log was told."""
 
     @property
     def name(self) -> str:
@@ -233,7 +235,6 @@ class Membership:
             await self.leave()
             raise
         await self.renew()
-        self._compare_versions()
 
     async def renew(self) -> None:
         """Renew the lease and learn who else lives.
@@ -259,6 +260,7 @@ class Membership:
         self.members = found.members
         self._compare_clocks(found)
         self._name_changes(before, set(self.others()))
+        self._compare_versions()
 
     async def _renewed(self) -> MembersRead | None:
         return await self._lease.run(gateways.renew_and_read, self.me, LEASE_S, self._clock)
@@ -301,8 +303,8 @@ class Membership:
         )
 
     def _compare_versions(self) -> None:
-        others = {m.version: m.gw for m in self.members if m.alive and m.version != self.me.version}
-        for version, name in others.items():
+        found = {(m.gw, m.version) for m in self.members if m.alive and m.version != self.me.version}
+        for name, version in sorted(found - self._other_versions):
             log.warning(
                 "gateway %s is version %s, this one (%s) is %s; let versions differ no longer than an "
                 "upgrade takes",
@@ -311,6 +313,7 @@ class Membership:
                 self.name,
                 self.me.version,
             )
+        self._other_versions = found
 
     def _compare_clocks(self, read: MembersRead) -> None:
         self.clock_offset = read.database - read.here
@@ -326,5 +329,16 @@ class Membership:
     def _name_changes(self, before: set[str], after: set[str]) -> None:
         for name in sorted(after - before):
             log.warning("gateway %s serves this fleet, too", name)
+        known = {member.gw: member for member in self.members}
         for name in sorted(before - after):
-            log.warning("gateway %s is gone, or could not renew its lease for %g s", name, LEASE_S)
+            if (member := known.get(name)) is None:
+                log.warning("gateway %s has ended; its robots connect to the others", name)
+                continue
+            log.warning(
+                "gateway %s has not renewed its lease for %g s, and the others have its robots: see whether "
+                "process %d on %s runs, and reaches the database",
+                name,
+                LEASE_S,
+                member.process,
+                member.host,
+            )

@@ -1,0 +1,119 @@
+"""What the log of a gateway says of the others of its fleet, and of its own clock; on a real PostgreSQL."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import re
+import socket
+
+import pytest
+
+from robot_bridge.core.clock import Clock
+from robot_bridge.core.errors import BridgeError
+from robot_bridge.gateway.cluster.cluster import lease_database
+from robot_bridge.gateway.cluster.membership import OFF_AGAIN_S, Membership
+from robot_bridge.gateway.storage.database import read_address
+from robot_bridge.gateway.storage.repositories import gateways
+
+
+class ClockOff(Clock):
+    """A clock that was set wrong by some seconds; ``later`` is what its steady time is ahead."""
+
+    def __init__(self, seconds):
+        self._seconds, self.later = seconds, 0.0
+
+    def time(self):
+        return super().time() + self._seconds
+
+    def steady(self):
+        return super().steady() + self.later
+
+
+@pytest.fixture
+async def lease(fleet_url):
+    database = lease_database(read_address(fleet_url))
+    await database.open()
+    yield database
+    await database.close()
+
+
+@pytest.fixture
+async def own(lease):
+    own = Membership("own", lease)
+    await own.join()
+    yield own
+    await own.leave()
+
+
+async def enter(lease, name, version, lease_s=60.0):
+    """Enter another gateway into the fleet."""
+    other = Membership(name, lease).me._replace(version=version, host="north.example.org", process=4711)
+    assert await lease.run(gateways.join, other, lease_s)
+    return other
+
+
+async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, lease, caplog):
+    ended, silent = await enter(lease, "ended", own.me.version), await enter(lease, "silent", own.me.version)
+    await own.renew()
+    assert "gateway silent serves this fleet, too" in caplog.text
+    await lease.run(gateways.leave, ended)
+    # As it is once the lease has run out.
+    assert await lease.run(gateways.renew, silent, -1.0)
+    await own.renew()
+    assert "gateway ended has ended; its robots connect to the others" in caplog.text
+    assert "gateway silent has not renewed its lease for 5 s, and the others have its robots" in caplog.text
+    assert "see whether process 4711 on north.example.org runs" in caplog.text
+    await lease.run(gateways.leave, silent)
+
+
+async def test_a_version_that_differs_is_named_at_both_and_once(own, lease, caplog):
+    other = await enter(lease, "newer", "99.0")
+    await own.renew()
+    await own.renew()
+    said = f"gateway newer is version 99.0, this one (own) is {own.me.version}; let versions differ no longer"
+    assert caplog.text.count(said) == 1
+    # It is started again under the same name, as an upgrade does, within a second.
+    await lease.run(gateways.leave, other)
+    other = await enter(lease, "newer", "99.1")
+    await own.renew()
+    assert "gateway newer is version 99.1" in caplog.text
+    late = Membership("late", lease)
+    await late.join()
+    assert f"gateway newer is version 99.1, this one (late) is {own.me.version}" in caplog.text
+    await late.leave()
+    await lease.run(gateways.leave, other)
+
+
+@pytest.mark.parametrize("seconds", [-300.0, 300.0])
+async def test_a_clock_that_is_minutes_off_is_named_once_a_minute_and_keeps_no_lease_from_holding(
+    lease, caplog, seconds
+):
+    clock = ClockOff(seconds)
+    off = Membership("off", lease, clock)
+    await off.join()
+    said = r"the clock of this computer is (299|300)\.\d s off the database's"
+    await off.renew()
+    assert len(re.findall(said, caplog.text)) == 1 and "let NTP set all clocks" in caplog.text
+    clock.later = OFF_AGAIN_S
+    await off.renew()
+    assert len(re.findall(said, caplog.text)) == 2
+    assert off.trust.holds and off.leads
+    assert abs(off.database_time() - (clock.time() - seconds)) < 30
+    await off.leave()
+
+
+async def test_whoever_runs_under_the_name_is_named_with_its_place(own, lease):
+    with pytest.raises(
+        BridgeError, match=rf"named 'own' serves this fleet: process {os.getpid()} on"
+    ) as caught:
+        await keep_renewing(own, Membership("own", lease).join())
+    assert socket.gethostname() in str(caught.value) and "--gateway-name" in str(caught.value)
+
+
+async def keep_renewing(own, work):
+    holding = asyncio.create_task(own.hold())
+    try:
+        return await work
+    finally:
+        holding.cancel()
