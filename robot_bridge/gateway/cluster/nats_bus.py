@@ -9,7 +9,7 @@ import random
 import threading
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Iterable, Iterator
-from typing import Any
+from typing import Any, ClassVar
 from urllib.parse import urlsplit
 
 from ...core.errors import BridgeError
@@ -26,6 +26,7 @@ from .bus import (
     Receive,
     own_subject,
 )
+from .messages import LARGEST
 
 log = logging.getLogger(__name__)
 
@@ -65,12 +66,13 @@ class NatsServers:
     def __init__(self, urls: list[str], password: str | None = None) -> None:
         try:
             import nats
+            from nats.aio.client import Client
         except ImportError:
             raise BridgeError(
                 "the bus nats:// needs nats-py; install it with: "
                 "pip install 'fleet-supervisor-robot-bridge[cluster]'"
             ) from None
-        self._nats = nats
+        self._nats, self._client = nats, Client
         self._urls = urls
         self._password = password
         self.errors: tuple[type[Exception], ...] = (nats.errors.Error, OSError, TimeoutError)
@@ -100,7 +102,7 @@ class NatsServers:
     async def _connect_to(self, url: str, name: str, on_error: Any, **options: Any) -> Any:
         if self._password is not None:
             options |= {"user": urlsplit(url).username, "password": self._password}
-        client = self._nats.NATS()
+        client: Any = self._client()
         if url.startswith("tls://"):
             self._insist_on_tls(client)
         try:
@@ -187,7 +189,7 @@ class NatsConnection:
                 self._name, log_fault, disconnected_cb=ended, closed_cb=ended
             )
         try:
-            check_version(client)
+            check_server(client)
             await self._subscribe(client, receive)
             self.client = client
             if was_lost:
@@ -379,6 +381,8 @@ class NatsBus:
     :raises BridgeError: when nats-py is not installed.
     """
 
+    name: ClassVar[str] = "nats"
+
     def __init__(self, urls: list[str], gateway: str, prefix: str, password: str | None = None) -> None:
         self._servers = NatsServers(urls, password)
         self._prefix = prefix
@@ -432,7 +436,7 @@ class NatsBus:
             faults[str(error) or "no server answers"] = None
             raise BridgeError(f"{where}: {self._advised(faults)}") from None
         try:
-            check_version(client)
+            check_server(client)
             await self._probe_rights(client, hear)
             if not faults:
                 async with asyncio.timeout(FLUSH_S):
@@ -536,9 +540,14 @@ async def disconnection(client: Any, lost: asyncio.Event) -> None:
                     return
 
 
-def check_version(client: Any) -> None:
-    """Raise BridgeError where the server that ``client`` is connected to is too old."""
+def check_server(client: Any) -> None:
+    """Raise BridgeError where the server that ``client`` is connected to is too old, or takes too little."""
     version, url = client.connected_server_version, client.connected_url
+    if client.max_payload < LARGEST:
+        raise BridgeError(
+            f"at {url.hostname}:{url.port} NATS takes messages of {client.max_payload} bytes, and gateways "
+            f"send {LARGEST}; set max_payload to that at least, or leave it out, in its configuration"
+        )
     found = (version.major, version.minor, version.patch)
     if found < OLDEST_NATS:
         wanted = ".".join(map(str, OLDEST_NATS))

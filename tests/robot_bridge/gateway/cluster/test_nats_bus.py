@@ -15,8 +15,8 @@ from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster import nats_bus
 from robot_bridge.gateway.cluster.bus import EVERYBODY, STOP, own_subject
 from robot_bridge.gateway.cluster.cluster import ClusterSettings
-from robot_bridge.gateway.cluster.messages import Exchange
-from robot_bridge.gateway.cluster.nats_bus import NatsBus, check_version, disconnection
+from robot_bridge.gateway.cluster.messages import LARGEST, Exchange
+from robot_bridge.gateway.cluster.nats_bus import NatsBus, check_server, disconnection
 from tests.support.faults.proxy import Proxy
 from tests.support.patience import BUSY, until
 
@@ -279,9 +279,22 @@ async def test_a_server_that_is_too_old_is_refused_with_the_reason():
 def test_the_oldest_server_is_taken():
     for minor, patch in ((10, 26), (11, 0)):
         version = SimpleNamespace(major=2, minor=minor, patch=patch)
-        check_version(
-            SimpleNamespace(connected_server_version=version, connected_url=urlsplit("nats://here:1"))
+        url = urlsplit("nats://here:1")
+        check_server(
+            SimpleNamespace(connected_server_version=version, connected_url=url, max_payload=LARGEST)
         )
+
+
+@pytest.mark.usefixtures("nats")
+async def test_a_server_that_takes_no_large_messages_is_refused(tmp_path):
+    """With many robots each message of positions would end the connection."""
+    from tests.support.nats_server import NatsServer
+
+    with (
+        NatsServer(tmp_path, f"max_payload: {LARGEST - 1}") as server,
+        pytest.raises(BridgeError, match=rf"NATS takes messages of {LARGEST - 1} bytes.*set max_payload"),
+    ):
+        await NatsBus([server.url], "a", "fleet.f").check()
 
 
 @pytest.mark.parametrize("bus", ["postgresql", "none", "nats://n1:4222", "nats://gw@n1:4222,nats://n2:4222"])
