@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import datetime
 import http.client
 import importlib.util
@@ -12,6 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from enum import StrEnum
 from functools import partial
 from pathlib import Path
@@ -25,7 +27,7 @@ from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
 from ..core.sites.site_database import is_database_address
 from .options import DatabaseOption, PasswordFileOption, SiteOption
-from .serve import gateway_settings
+from .serve import cluster_settings, gateway_settings
 
 if TYPE_CHECKING:
     from ..core.sites.site import Site
@@ -33,6 +35,8 @@ if TYPE_CHECKING:
 
 LEAST_FREE, FEW_FREE = 100e6, 1e9
 """Bytes free on the disk below which nothing is sure to be stored, and below which somebody has to act."""
+MOST_OFF_S = 2.0
+"""Seconds that this computer's clock may be off the database's."""
 ANSWER_WITHIN = 5.0
 """Seconds for a gateway that runs, and for a program of the system, to answer."""
 HEALTH_PAGE = JsonBounds(depth=8, length=1 << 20, values=10_000)
@@ -68,6 +72,25 @@ def doctor(
         typer.Option(help="The gateway's certificate (PEM).", envvar="ROBOT_BRIDGE_CERTIFICATE"),
     ] = None,
     key: Annotated[Path | None, typer.Option(help="Its key (PEM).", envvar="ROBOT_BRIDGE_KEY")] = None,
+    gateway_name: Annotated[
+        str,
+        typer.Option(
+            help="Its name, where several serve one fleet.",
+            envvar="ROBOT_BRIDGE_GATEWAY_NAME",
+        ),
+    ] = "",
+    bus: Annotated[str, typer.Option(help="What those tell each other by.", envvar="ROBOT_BRIDGE_BUS")] = "",
+    bus_password_file: Annotated[
+        Path | None,
+        typer.Option(
+            help="File with the password of the account in the URL of the bus.",
+            envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
+        ),
+    ] = None,
+    public_address: Annotated[
+        str,
+        typer.Option(help="Where robots reach this gateway.", envvar="ROBOT_BRIDGE_PUBLIC_ADDRESS"),
+    ] = "",
 ) -> None:
     """Check what a gateway needs on this computer, and say what to do.
 
@@ -80,7 +103,9 @@ def doctor(
     with TemporaryDirectory(prefix="robot-bridge-") as folder:
         state = Path(folder) if is_database_address(site) else None
         given = (database, database_password_file, host, port, certificate, key)
-        for finding in findings(gateway_settings(site, state, *given)):
+        settings = gateway_settings(site, state, *given)
+        cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)
+        for finding in findings(replace(settings, cluster=cluster)):
             typer.echo(f"{finding.level:<8} {finding.subject:<12} {finding.text}")
             worst = finding.level if finding.level is Level.FAULT else worst
     if worst is Level.FAULT:
@@ -92,6 +117,8 @@ def findings(settings: GatewaySettings) -> Iterator[Finding]:
     checks: dict[str, Callable[[GatewaySettings], Iterator[Finding]]] = {
         "site": _check_site,
         "database": _check_database,
+        "gateways": _check_gateways,
+        "bus": _check_bus,
         "certificate": _check_certificate,
         "reach": _check_reach,
         "disk": _check_disk,
@@ -147,6 +174,56 @@ def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
         yield Finding(Level.OK, "database", f"{place}: revision {report.found}")
         return
     yield Finding(Level.FAULT, "database", f"{place}: {'; '.join((*report.differences, report.advice))}")
+
+
+def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
+    """Of a fleet that several serve: whether each of them lives, and by the same version and clock."""
+    from ..gateway.monitoring import gateway_version
+    from ..gateway.storage.database import run_once
+    from ..gateway.storage.repositories import gateways
+
+    if settings.cluster is not None:
+        settings.cluster.check(settings.database)
+    if settings.database.get_backend_name() != "postgresql":
+        return
+    members, now = run_once(settings.database, lambda one: (gateways.members(one), gateways.clock(one)))
+    own = gateway_version()
+    for one in members:
+        where = f"{one.gw}: process {one.process} on {one.host}"
+        if not one.alive:
+            text = (
+                f"{where} has not renewed its lease for {-one.left:.0f} s: see whether it runs, and start it"
+            )
+            yield Finding(Level.WARNING, "gateways", text)
+        elif one.version != own:
+            text = f"{where} is version {one.version}, and this is {own}: bring all to one version"
+            yield Finding(Level.WARNING, "gateways", text)
+        else:
+            yield Finding(
+                Level.OK, "gateways", f"{where}, version {one.version}, at {one.address or 'no address'}"
+            )
+    if members and abs(off := now - time.time()) > MOST_OFF_S:
+        text = f"this computer's is {abs(off):.0f} s off the database's: let NTP set both"
+        yield Finding(Level.WARNING, "clock", text)
+
+
+def _check_bus(settings: GatewaySettings) -> Iterator[Finding]:
+    from ..gateway.storage.database import run_once
+    from ..gateway.storage.repositories import metadata
+
+    cluster = settings.cluster
+    if cluster is None:
+        return
+    if not cluster.servers():
+        yield Finding(Level.OK, "bus", cluster.bus)
+        return
+    fleet = run_once(settings.database, metadata.known_id)
+    if fleet is None:
+        text = "what its account may do is checked once a gateway has served this database"
+        yield Finding(Level.WARNING, "bus", text)
+        return
+    asyncio.run(cluster.nats_bus(fleet).check())
+    yield Finding(Level.OK, "bus", f"NATS takes and hands over what is said on fleet.{fleet}.>")
 
 
 def _check_certificate(settings: GatewaySettings) -> Iterator[Finding]:
@@ -257,6 +334,10 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     down = [name for name, link in health.get("links", {}).items() if not link["ok"]]
     if down:
         yield Finding(Level.WARNING, "gateway", f"{where}: links that are down: {', '.join(down)}")
+    buses: dict[str, bool] = health.get("cluster", {}).get("buses", {})
+    if away := [name for name, up in buses.items() if not up and name != "none"]:
+        text = f"{where}: not connected to the bus {' and '.join(away)}: its log says why"
+        yield Finding(Level.WARNING, "gateway", text)
     if problem := health["site"].get("text"):
         yield Finding(Level.FAULT, "gateway", f"{where}: {problem}")
     if failing:

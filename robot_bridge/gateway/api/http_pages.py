@@ -27,6 +27,7 @@ from ...core.sites.frame import lonlat_of
 from ...protocol import openapi
 from ...protocol.codec import decode_desk_request
 from ..auth.port import http_response
+from ..cluster.cluster import Cluster
 from ..fleet.service import Fleet
 from ..model.events import RequestHandlers
 from ..monitoring import CONTENT_TYPE, MetricReading, Metrics, Values, gateway_version
@@ -56,6 +57,8 @@ class StatusPages:
         self._database_up = False
         metrics.add(self._readings())
         metrics.add(self._link_readings())
+        if fleet.cluster is not None:
+            metrics.add(_cluster_readings(fleet.cluster))
 
     async def health(self) -> Response:
         """Return 200 when all is well and 503 when not, with JSON that says what is not."""
@@ -72,6 +75,8 @@ class StatusPages:
             "routes": self._routes(),
             **tasks,
         }
+        if (cluster := self._fleet.cluster) is not None:
+            found["cluster"] = cluster.report()
         status = http.HTTPStatus.OK if well else http.HTTPStatus.SERVICE_UNAVAILABLE
         return _page(status, "application/json", json.dumps(found).encode() + b"\n")
 
@@ -169,6 +174,37 @@ class StatusPages:
     def _task_ages(self) -> Values:
         tally = self._fleet.tally
         return {(name,): age for name in list(tally.beats) if (age := tally.age(name)) is not None}
+
+
+def _cluster_readings(cluster: Cluster) -> Iterator[MetricReading]:
+    membership, exchange = cluster.membership, cluster.exchange
+
+    def states() -> Values:
+        return {("alive",): len(membership.others()), ("heard",): len(exchange.heard())}
+
+    def buses() -> Values:
+        return {(name,): float(up) for name, up in exchange.connections().items()}
+
+    yield MetricReading(
+        "robot_bridge_gateway_info",
+        "The name of this gateway.",
+        ("gateway",),
+        lambda: {(membership.name,): 1.0},
+    )
+    yield MetricReading("robot_bridge_bus_connected", "1 while a bus is connected.", ("bus",), buses)
+    yield MetricReading(
+        "robot_bridge_other_gateways",
+        "Other gateways whose lease lives, and that are heard.",
+        ("state",),
+        states,
+    )
+    yield _single("lease_held", "1 while this gateway may command.", lambda: membership.trust.holds)
+    yield _single("leads", "1 while this one does what is done once per fleet.", lambda: membership.leads)
+    yield _single(
+        "clock_offset_seconds",
+        "Seconds that the database's clock is ahead of this computer's.",
+        lambda: membership.clock_offset,
+    )
 
 
 def _problem_of(site: SiteReport) -> dict[str, Any]:

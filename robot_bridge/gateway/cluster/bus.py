@@ -16,7 +16,7 @@ from binascii import Error as Base64Error
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 from sqlalchemy import URL, create_engine
 
@@ -45,6 +45,9 @@ def own_subject(gateway: str) -> str:
 class Bus(Protocol):
     """Carries messages from each gateway to the others, as long as it is connected."""
 
+    name: ClassVar[str]
+    """What it is, as ``--bus`` has it."""
+
     @property
     def connected(self) -> bool:
         """Whether messages get out at the moment, as far as is known."""
@@ -59,6 +62,7 @@ class Bus(Protocol):
 class NoBus:
     """The bus of a gateway that serves its fleet alone, or whose fleet is content to look once a second."""
 
+    name: ClassVar[str] = "none"
     connected = False
 
     def publish(self, subject: str, content: bytes) -> bool:
@@ -111,6 +115,8 @@ class NotifyBus:
     All are opened anew when one of the first two fails. Stops have a thread of their own: a turn of the
     loop comes after those of thousands of robots, and a notification takes several.
     """
+
+    name: ClassVar[str] = "postgresql"
 
     def __init__(self, url: URL, gateway: str) -> None:
         self._url = url

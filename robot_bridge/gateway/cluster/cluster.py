@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass
+from typing import Any
 from urllib.parse import urlsplit
 
 from sqlalchemy import URL
@@ -70,6 +71,10 @@ class ClusterSettings:
         urls = [url.strip() for url in self.bus.split(",")]
         return urls if all(url.startswith(("nats://", "tls://")) for url in urls) else []
 
+    def nats_bus(self, fleet: str) -> NatsBus:
+        """Return the bus of the fleet named ``fleet`` on the NATS servers; raises BridgeError."""
+        return NatsBus(self.servers(), self.name, f"fleet.{fleet}", self.password)
+
 
 class Cluster:
     """Membership, the robots of this gateway, and the exchange with others."""
@@ -102,6 +107,28 @@ class Cluster:
                 self.settings.name,
             )
 
+    def report(self) -> dict[str, Any]:
+        """Return how the fleet's gateways are, as far as this one knows."""
+        membership, heard = self.membership, set(self.exchange.heard())
+        others = [member for member in membership.members if member.gw != membership.name]
+        return {
+            "gateway": membership.name,
+            "lease": membership.trust.holds,
+            "leads": membership.leads,
+            "clock_offset_s": round(membership.clock_offset, 3),
+            "buses": self.exchange.connections(),
+            "others": {
+                member.gw: {
+                    "lease": member.alive,
+                    "heard": member.gw in heard,
+                    "version": member.version,
+                    "host": member.host,
+                    "process": member.process,
+                }
+                for member in others
+            },
+        }
+
     @property
     def largest_message(self) -> int:
         """How many bytes of a message the bus takes, which may have to fit into a notification."""
@@ -115,8 +142,8 @@ async def join_cluster(settings: ClusterSettings, database: Database, lease: Dat
     """
     buses: list[Bus] = []
     notify = NotifyBus(database.url, settings.name)
-    if servers := settings.servers():
-        nats = NatsBus(servers, settings.name, f"fleet.{fleet}", settings.password)
+    if settings.servers():
+        nats = settings.nats_bus(fleet)
         await nats.check()
         # Stops and wakes go both ways: each is enough.
         buses = [nats, notify]

@@ -408,6 +408,10 @@ class Exchange:
         """Whether the first bus is connected, as far as is known: all that is not urgent goes over that."""
         return self._buses[0].connected
 
+    def connections(self) -> dict[str, bool]:
+        """Return whether each bus is connected, by its name; the first one is that of all messages."""
+        return {bus.name: bus.connected for bus in self._buses}
+
     def heard(self) -> list[str]:
         """Return the other gateways that said something of late."""
         now = time.monotonic()

@@ -88,7 +88,7 @@ class Fleet:
         self.site = site
         self._database = database
         self._clock = clock
-        self._cluster = cluster
+        self.cluster = cluster
         self._announced_gateways: Gateways | None = None
         self.listeners = events.Listeners()
         """the operators' sessions, told what happens."""
@@ -265,17 +265,17 @@ class Fleet:
 
     def gateway_urls(self, endpoint: str) -> list[str] | None:
         """Return the URLs of ``endpoint`` at the gateways of the fleet, None where one serves it alone."""
-        if self._cluster is None:
+        if self.cluster is None:
             return None
-        addresses = self._cluster.membership.addresses()[:MOST_GATEWAYS]
+        addresses = self.cluster.membership.addresses()[:MOST_GATEWAYS]
         return [f"{address}{endpoint}" for address in addresses] or None
 
     def gateways_of_operators(self) -> Gateways | None:
         """Return where operators reach the gateways of the fleet, None where one serves it alone."""
-        if self._cluster is None:
+        if self.cluster is None:
             return None
         urls = self.gateway_urls(PATHS[TokenKind.OPERATOR])
-        return Gateways(self._cluster.membership.name, urls or [])
+        return Gateways(self.cluster.membership.name, urls or [])
 
     async def announce_gateways(self) -> None:
         """Tell operators where the gateways of the fleet are, unless they have been told so."""

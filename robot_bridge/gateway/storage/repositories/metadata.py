@@ -21,6 +21,12 @@ def database_id(connection: Connection) -> str:
     return fact(connection, ID, str(uuid.uuid4()))
 
 
+def known_id(connection: Connection) -> str | None:
+    """Return what tells this database from every other, None where no gateway has served it yet."""
+    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == ID))
+    return found
+
+
 def fact(connection: Connection, name: str, value: str) -> str:
     """Return what is known under ``name``; ``value``, which is noted then, where nothing is.
 
