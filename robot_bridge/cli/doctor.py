@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
-from ..core.errors import BridgeError, SiteError, counted
+from ..core.errors import BridgeError, SiteError, StoreError, counted
 from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
 from ..core.sites.site_database import is_database_address
@@ -186,7 +186,11 @@ def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
         settings.cluster.check(settings.database)
     if settings.database.get_backend_name() != "postgresql":
         return
-    members, now = run_once(settings.database, lambda one: (gateways.members(one), gateways.clock(one)))
+    try:
+        members, now = run_once(settings.database, lambda one: (gateways.members(one), gateways.clock(one)))
+    except StoreError:
+        # Which the check of the database says.
+        return
     own = gateway_version()
     for one in members:
         where = f"{one.gw}: process {one.process} on {one.host}"
@@ -217,7 +221,10 @@ def _check_bus(settings: GatewaySettings) -> Iterator[Finding]:
     if not cluster.servers():
         yield Finding(Level.OK, "bus", cluster.bus)
         return
-    fleet = run_once(settings.database, metadata.known_id)
+    try:
+        fleet = run_once(settings.database, metadata.known_id)
+    except StoreError:
+        fleet = None
     if fleet is None:
         text = "what its account may do is checked once a gateway has served this database"
         yield Finding(Level.WARNING, "bus", text)
