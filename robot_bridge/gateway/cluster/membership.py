@@ -150,6 +150,8 @@ def spared_runs(members: Sequence[Member], trust: LeaseTrust) -> list[str]:
 
 LEASE_PATIENCE_S = 2.0
 """seconds that a renewal may take: the next one is to have its turn while the lease still counts."""
+CLAIMED_S = 3 * RENEW_S
+"""seconds after the end of a lease by which the robots of that gateway are another one's."""
 CLOCK_TOLERANCE_S = 1.0
 """seconds that this computer's clock may be off the database's before the log is told."""
 OFF_AGAIN_S = 60.0
@@ -194,6 +196,11 @@ class Membership:
     def others(self) -> list[str]:
         """Return the names of the other gateways that lived at the last renewal."""
         return [member.gw for member in self.members if member.alive and member.gw != self.name]
+
+    def just_lost(self) -> list[str]:
+        """Return the gateways whose lease has run out so lately that nobody may have their robots yet."""
+        lost = [member for member in self.members if -CLAIMED_S < member.left <= 0]
+        return [member.gw for member in lost if member.gw != self.name]
 
     def database_time(self) -> float:
         """Return the time by the database's clock, which all gateways go by."""

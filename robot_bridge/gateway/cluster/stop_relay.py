@@ -210,8 +210,13 @@ class EmergencyStopRelay:
         )
 
     def _others(self) -> list[str]:
-        """Return the other gateways that are to answer: those that live, and those that are heard."""
-        return sorted({*self._membership.others(), *self._exchange.heard()})
+        """Return the other gateways that are to answer: those that live, and those that are heard.
+
+        One whose lease has just run out is among them: its robots may drive, and count as nobody's until
+        another gateway has claimed them. Without it all would seem stopped for that moment.
+        """
+        membership = self._membership
+        return sorted({*membership.others(), *membership.just_lost(), *self._exchange.heard()})
 
     # --- what comes in ------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ import pytest
 from robot_bridge.core.clock import Clock
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster.cluster import lease_database
-from robot_bridge.gateway.cluster.membership import OFF_AGAIN_S, Membership
+from robot_bridge.gateway.cluster.membership import CLAIMED_S, OFF_AGAIN_S, Membership
 from robot_bridge.gateway.storage.database import read_address
 from robot_bridge.gateway.storage.repositories import gateways
 
@@ -64,6 +64,10 @@ async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, leas
     assert "gateway ended has ended; its robots connect to the others" in caplog.text
     assert "gateway silent has not renewed its lease for 5 s, and the others have its robots" in caplog.text
     assert "see whether process 4711 on north.example.org runs" in caplog.text
+    assert own.others() == [] and own.just_lost() == ["silent"]
+    assert await lease.run(gateways.join, silent, -1.0 - CLAIMED_S)
+    await own.renew()
+    assert own.just_lost() == []
     await lease.run(gateways.leave, silent)
 
 

@@ -49,10 +49,13 @@ class Company:
     """The other gateways that live, as the database says."""
 
     def __init__(self, *names):
-        self.names = names
+        self.names, self.lost = names, ()
 
     def others(self):
         return list(self.names)
+
+    def just_lost(self):
+        return list(self.lost)
 
 
 class Lease:
@@ -129,6 +132,15 @@ async def test_an_operator_sees_how_many_gateways_have_it(place):
     # An answer to another stop says nothing of this one.
     place.say(StopSeen("c", "stop-number-other", 9, 9, 9))
     assert place.stops.report().gateways == StoppedGateways(2, 3, ["c"])
+
+
+async def test_one_whose_lease_has_just_run_out_counts_until_its_robots_are_anothers(place):
+    """Else everybody would seem to stand while its robots drive and are counted nowhere."""
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    place.company.names, place.company.lost = (), ("a",)
+    assert place.stops.report().gateways == StoppedGateways(1, 2, ["a"])
+    place.company.lost = ()
+    assert place.stops.report().gateways == StoppedGateways(1, 1, [])
 
 
 async def test_who_has_not_answered_is_called_again(place, monkeypatch):
