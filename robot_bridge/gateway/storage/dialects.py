@@ -269,6 +269,8 @@ class PostgreSQL(Dialect):
                 "name the primary where this one is a standby"
             )
         # A connection that is refused has no code.
+        if "no password supplied" in self.cause(error):
+            return "give the file with the account's password: --database-password-file"
         if "too many" in self.cause(error) or "remaining connection slots" in self.cause(error):
             return "raise max_connections, or the limit of this database or account: allow ten for a gateway"
         return self.advice

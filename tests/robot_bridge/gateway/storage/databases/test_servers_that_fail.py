@@ -62,6 +62,29 @@ async def test_one_without_a_connection_to_spare_is_named_as_that(url, database)
     await other.close()
 
 
+async def test_one_that_is_given_no_password_says_where_to_give_it(monkeypatch):
+    monkeypatch.delenv("PGPASSWORD", raising=False)
+    monkeypatch.setenv("PGPASSFILE", "/nowhere")
+
+    async def ask_for_password(reader, writer):
+        # The tests' own servers ask for none. What is 8 bytes long asks for encryption.
+        while int.from_bytes(await reader.readexactly(4), "big") == 8:
+            await reader.readexactly(4)
+            writer.write(b"N")
+        writer.write(b"R" + (8).to_bytes(4, "big") + (3).to_bytes(4, "big"))
+        await reader.read()
+        writer.close()
+
+    async with await asyncio.start_server(ask_for_password, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        other = Database(read_address(f"postgresql://gateway@127.0.0.1:{port}/fleet"), patience=1.0)
+        with pytest.raises(
+            StoreError, match=r"no password supplied; give the file .*--database-password-file"
+        ):
+            await other.run(names)
+        await other.close()
+
+
 @SERVERS
 async def test_a_server_that_was_restarted_between_two_pieces_of_work_is_not_noticed(database, server):
     await database.run(add, "before")
