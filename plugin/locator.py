@@ -24,6 +24,8 @@ MOST = 50
 """Results: nobody reads more, and the list is made again with each letter."""
 SAME = 1.0
 """The score of the very name that was looked for."""
+OTHER_CASE = 0.95
+"""The score of that name in other letters, small or capital; of several nobody knows which was meant."""
 CHOICE_FOR_S = 3.0
 """Seconds for which a choice waits for what the gateway finds."""
 
@@ -69,10 +71,17 @@ class RobotList:
         """Return the names that ``text`` is a part of, the best first."""
         return [name for _, name in self._ranked(text)]
 
+    def has(self, text: str) -> bool:
+        """Tell whether a robot is known whose very name ``text`` is, letter by letter."""
+        return bool(ranked := self._ranked(text)) and ranked[0][0] == SAME
+
     def named(self, text: str) -> str | None:
-        """Return the robot whose very name ``text`` is, None where none is known."""
-        ranked = self._ranked(text)
-        return ranked[0][1] if ranked and ranked[0][0] == SAME else None
+        """Return the robot whose very name ``text`` is, or the only one of that name in another case."""
+        ranked = self._ranked(text)[:2]
+        if not ranked or ranked[0][0] < OTHER_CASE:
+            return None
+        is_one_of_several = len(ranked) > 1 and ranked[0][0] == ranked[1][0]
+        return None if is_one_of_several else ranked[0][1]
 
     def is_listed(self, robot: str, text: str) -> bool:
         """Tell whether ``robot`` was listed when ``text`` was looked for last, and is there still."""
@@ -196,7 +205,7 @@ class RobotFilter(QgsLocatorFilter):
             return
         if self._robots.is_listed(row, typed) and self._robots.is_marked_by_hand(row):
             self._viewer.go_to(row)
-        elif self._robots.named(typed) is None and self._robots.expects_more(typed):
+        elif not self._robots.has(typed) and self._robots.expects_more(typed):
             self._waiting = Choice(typed, row, steady_time() + CHOICE_FOR_S)
         else:
             self._go_by(typed, row)
@@ -248,16 +257,18 @@ class RobotFilter(QgsLocatorFilter):
 def rank_robots(pattern: str, names: list[str]) -> list[tuple[float, str]]:
     """Return the names that ``pattern`` is a part of, each with a score from 0 to 1, the best first.
 
-    A name that is the same comes before one that begins so, and that before one that has it within, shorter
-    ones before longer ones: QGIS lists by the score.
+    A name that is the same comes before one that is so in another case, then one that begins so, then one
+    that has it within, shorter ones before longer ones: QGIS lists by the score.
     """
-    pattern = pattern.strip().casefold()
+    pattern = pattern.strip()
+    folded = pattern.casefold()
     found = []
     for name in names:
-        at = name.casefold().find(pattern)
+        at = name.casefold().find(folded)
         if at >= 0:
             begins = (0.9 if at == 0 else 0.6) - len(name) / 1000
-            found.append((SAME if len(name) == len(pattern) else begins, name))
+            is_whole = len(name) == len(folded)
+            found.append((SAME if name == pattern else OTHER_CASE if is_whole else begins, name))
     return sorted(found, key=lambda one: (-one[0], one[1]))
 
 

@@ -15,7 +15,6 @@ from ...robot_bridge.core.clock import Clock
 from ...robot_bridge.core.messages import positions
 from ...robot_bridge.core.messages.base import is_robot_name, to_json
 from ...robot_bridge.core.messages.positions import (
-    LONGEST_SEARCH,
     AlarmLimits,
     FindRobots,
     PositionForm,
@@ -138,19 +137,16 @@ class RobotSearch(QObject):
             self._asked_for = ("", "")
             return True
         result, is_first = answer.result, not self._page
-        self._page += _found_robots(result.get("robots", []), self._state.clock.steady())
-        if is_first and result.get("count", 0) > len(self._page) > 0 and self._page[-1].name < text:
-            # The gateway tells of the first by name: the very one may come after them, as 17 does after 1017.
-            self._ask(FindRobots(text, after=_before(text), limit=1))
+        more = _found_robots(result.get("robots", []), self._state.clock.steady())
+        self._page = tuple({robot.name: robot for robot in (*self._page, *more)}.values())
+        if is_first and result.get("count", 0) > len(self._page) > 0 and self._page[-1].name < text.lower():
+            # The gateway tells of the first by name: the very one may come after them, as 17 does after 1017,
+            # and in another case. Small letters come last.
+            self._ask(FindRobots(text, whole=True))
             return True
         self._answer = text, self._page
         self.answered.emit()
         return True
-
-
-def _before(text: str) -> str:
-    """Return what comes after all names before ``text``, by the order of names."""
-    return f"{text[:-1]}{chr(ord(text[-1]) - 1)}{'~' * LONGEST_SEARCH}"[:LONGEST_SEARCH]
 
 
 def _found_robots(robots: list[dict[str, Any]], now: float) -> tuple[FoundRobot, ...]:

@@ -60,7 +60,8 @@ def has_robots(gateway, *names):
 
     def find(params):
         answers.wait(5)
-        found = sorted(name for name in names if params["text"].lower() in name.lower())
+        text, is_whole = params["text"].lower(), params.get("whole", False)
+        found = sorted(name for name in names if (text == name.lower() if is_whole else text in name.lower()))
         told = [{"robot": name, **FRESH} for name in found if name > params.get("after", "")]
         return {"result": {"t": 1.0, "robots": told[: params.get("limit", 50)], "count": len(found)}}
 
@@ -148,6 +149,51 @@ def test_the_very_name_is_found_behind_many_that_hold_it(locator, gateway, wait)
     wait(lambda: "17" in locator.rows(), what="what the gateway found")
     assert locator.marked() == "17"
     assert len(gateway.requests_of("find_robots")) == 2
+
+
+def test_the_name_in_other_letters_is_found_behind_many_that_hold_it(locator, desk, gateway, wait):
+    has_robots(gateway, "Van-7", *(f"1{number}-van-7" for number in range(10, 70)), "van-70").set()
+    locator.type("rb van-7")
+    wait(lambda: "Van-7" in locator.rows(), what="what the gateway found")
+    assert locator.marked() == "Van-7"
+    locator.press(Qt.Key.Key_Return)
+    wait(lambda: desk.desk.selection.robots == ("Van-7",), what="the robot")
+
+
+def test_of_names_that_differ_by_case_all_are_listed_and_the_one_that_was_typed_first(
+    locator, desk, gateway, wait
+):
+    has_robots(gateway, "VAN-7", "Van-7", "van-7", *(f"1{number}-van-7" for number in range(10, 70))).set()
+    locator.type("rb Van-7")
+    wait(lambda: {"VAN-7", "Van-7", "van-7"} <= {*locator.rows()}, what="what the gateway found")
+    assert locator.rows()[0] == "Van-7" and {*locator.rows()[1:3]} == {"VAN-7", "van-7"}
+    locator.press(Qt.Key.Key_Return)
+    wait(lambda: desk.desk.selection.robots == ("Van-7",), what="the robot that was typed")
+
+
+def test_of_names_that_differ_by_case_the_row_that_was_chosen_is_gone_to(locator, desk, gateway, wait):
+    has_robots(gateway, "VAN-7", "Van-7").set()
+    locator.type("rb van-7")
+    wait(lambda: {*locator.rows()} == {"VAN-7", "Van-7"}, what="what the gateway found")
+    locator.press(Qt.Key.Key_Down)
+    chosen = locator.marked()
+    assert chosen == locator.rows()[1]
+    locator.press(Qt.Key.Key_Return)
+    wait(lambda: desk.desk.selection.robots == (chosen,), what="the robot of the row")
+
+
+def test_enter_waits_for_the_letters_that_were_typed_though_another_case_is_known(
+    locator, desk, gateway, wait, make_robot
+):
+    tell(gateway, make_robot("VAN1", 20, 20))
+    wait(lambda: value("robot_state('VAN1')"), what="another robot")
+    answers = has_robots(gateway, "VAN1", "van1")
+    locator.type("rb van1")
+    wait(lambda: locator.marked() == "VAN1" and searched(gateway) == ["van1"], what="the list")
+    locator.press(Qt.Key.Key_Return)
+    assert desk.desk.selection.robots == ()
+    answers.set()
+    wait(lambda: desk.desk.selection.robots == ("van1",), what="the robot that was typed")
 
 
 def test_a_search_that_is_refused_is_made_again(locator, gateway, wait):

@@ -282,7 +282,8 @@ class FoundRobots:
 class FindRobots(DeskRequest[FoundRobots]):
     """Ask for robots with ``text`` in their names, in any case; every robot where it is empty.
 
-    At most ``limit`` are told, by name; the next ones are those ``after`` the last name of these.
+    At most ``limit`` are told, by name; the next ones are those ``after`` the last name of these. With
+    ``whole`` they are those whose whole name is ``text``, in any case.
     """
 
     method = "find_robots"
@@ -291,6 +292,7 @@ class FindRobots(DeskRequest[FoundRobots]):
     text: str = ""
     after: str = ""
     limit: int = 50
+    whole: bool = False
 
     def __post_init__(self) -> None:
         for name in ("text", "after"):

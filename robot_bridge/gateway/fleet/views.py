@@ -340,9 +340,12 @@ class FleetViews:
 
     @handles(FindRobots)
     async def find(self, request: FindRobots) -> Encoded[FoundRobots]:
-        """Return the robots whose names hold a text, by name."""
-        text = request.text.lower()
-        names = [name for name in self.robots.names() if text in name.lower()]
+        """Return the robots whose names hold a text, or are that text, by name."""
+        text, known = request.text.lower(), self.robots.names()
+        if request.whole:
+            names = [name for name in known if name.lower() == text]
+        else:
+            names = [name for name in known if text in name.lower()]
         told = islice((name for name in names if name > request.after), request.limit)
         rows = reports_of(self.robots.known(told), self.clock.time(), ReportRow)
         return Encoded({"t": round(time.time(), 3), "robots": rows, "count": len(names)})

@@ -151,6 +151,7 @@ def test_a_map_travels_in_the_payload_and_inside_json(content):
         Subscribe(rate=2.0),
         Subscribe(view=View((0.0, 1.0, 2.5, 3.0), ["r1"], 100, AlarmLimits(None, 1.5, 0.0))),
         FindRobots("r", "r1", 10),
+        FindRobots("r1", whole=True),
         GetPositions(),
         GetPositions(View((0.0, 1.0, 2.5, 3.0), ["r1"], 100)),
         SetPositions([TargetPosition("r1", 1.0, 2.0, 0.5, cone=True), TargetPosition("r2", 3.0, 4.0)]),

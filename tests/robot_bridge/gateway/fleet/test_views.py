@@ -448,3 +448,10 @@ def test_robots_are_found_by_a_part_of_their_names_page_by_page():
     assert found(fleet, text="con", limit=2, after="cone-10") == (["cone-2", "icon"], 4)
     assert found(fleet) == (["Cone-9", "cone-10", "cone-2", "icon", "van"], 5)
     assert found(fleet, text="x") == ([], 0)
+
+
+def test_robots_are_found_by_their_whole_name_in_any_case():
+    fleet = Fleet(**dict.fromkeys(("Cone-1", "cone-1", "cone-10", "a-cone-1"), (1, 1)))
+    assert found(fleet, text="CONE-1", whole=True) == (["Cone-1", "cone-1"], 2)
+    assert found(fleet, text="cone-1", whole=True, limit=1, after="Cone-1") == (["cone-1"], 2)
+    assert found(fleet, text="cone", whole=True) == ([], 0)
