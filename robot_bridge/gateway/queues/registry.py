@@ -40,6 +40,8 @@ from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 T = TypeVar("T")
 TRIES, AGAIN_S = 5, 0.05
 """how often what changes queues is begun, and seconds until it is begun again."""
+RESTORED_AT_ONCE = 500
+"""robots whose tasks that ended are read in one transaction."""
 
 
 class QueueMovedError(OutdatedError):
@@ -88,8 +90,10 @@ class QueueRegistry:
         """Take up the queues that an earlier gateway left."""
         found = await self._database.run(queues.load)
         self._queues = {robot: queue for robot, queue in found.items() if self._fence.owns(robot)}
-        for robot in self._queues:
-            self._ended[robot] = await self._database.run(queues.newest_ended, robot, REPORTED_ENDED)
+        names = list(self._queues)
+        for begin in range(0, len(names), RESTORED_AT_ONCE):
+            some = names[begin : begin + RESTORED_AT_ONCE]
+            self._ended.update(await self._database.run(queues.newest_ended_of, some, REPORTED_ENDED))
         for robot in self.names():
             self._events.publish(QueueChanged(robot))
 
