@@ -20,6 +20,7 @@ class Field {
     this.robots = new Map();
     this.tasks = new Map();
     this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
+    this.unlisted = { geofence: 0, nearness: 0 };
     this.account = null;
     this.others = [];
     this.selected = null;
@@ -174,6 +175,8 @@ class Field {
     else if (method === "links") this.alarms.links = params.links.filter((one) => !one.up);
     else if (method === "suspensions") this.alarms.suspensions = params.robots;
     else if (method === "site") this._newSite();
+    // The gateway lists the newest of a geofence, the soonest of nearness, and counts the others.
+    if (method in this.unlisted) this.unlisted[method] = params.more;
     this._showAlarms();
   }
 
@@ -343,10 +346,12 @@ class Field {
       ...suspensions.map((one) => tr("robot {robot} is kept out: {text}", { robot: one.robot, text: one.reason })),
     ];
     // Of a large fleet the first thousand that are lost are named.
-    const alarms = texts.length + Math.max((this.fleet?.lost ?? 0) - lost.length, 0);
+    const unnamed = Math.max((this.fleet?.lost ?? 0) - lost.length, 0) + this.unlisted.geofence + this.unlisted.nearness;
+    const alarms = texts.length + unnamed;
     const text = alarms ? `${tr("Menu")} (${alarms} !)` : tr("Menu");
     if (by("menu").hidden && by("menu-button").textContent !== text) by("menu-button").textContent = text;
-    const list = by("alarms"), said = texts.length ? texts.slice(0, LISTED) : [tr("none")];
+    const list = by("alarms"), said = alarms ? texts.slice(0, LISTED) : [tr("none")];
+    if (alarms > said.length) said.push(tr("{n} more alarms", { n: alarms - said.length }));
     if (list.dataset.said === said.join("\n")) return;
     list.dataset.said = said.join("\n");
     list.replaceChildren(...said.map((one) => element("li", one)));

@@ -117,6 +117,7 @@ const TEXTS = {
   "x (easting), metres": ["x (kelet), méter", "x (est), metres", "x (este), metros"],
   "y (northing), metres": ["y (észak), méter", "y (nord), metres", "y (norte), metros"],
   "{text} is not a number": ["{text} nem szám", "{text} no és un nombre", "{text} no es un número"],
+  "{n} more alarms": ["még {n} riasztás", "{n} alarmes més", "{n} alarmas más"],
   "{n} more: search for them": ["még {n}: keressen rájuk", "{n} més: cerqueu-los", "{n} más: búsquelos"],
   "Robots here: {n} of {all}.": ["Robotok itt: {n}, összesen {all}.", "Robots aquí: {n} de {all}.", "Robots aquí: {n} de {all}."],
   "Robots here: {n} of {all}. Zoom in to see each.": [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import pytest
@@ -400,6 +401,51 @@ def test_axe_finds_nothing_on_any_view(phone, desk, open_phone, bridge):
     page.locator("#sign-out").tap()
     look("login")
     assert found == {}
+
+
+@pytest.fixture
+def notify(phone):
+    """The page of a viewer, and what sends it notifications of alarms in place of its gateway."""
+    page, sockets = phone("viewer"), []
+
+    def pass_on(socket):
+        gateway = socket.connect_to_server()
+        kept_back = ('"geofence"', '"nearness"')
+        gateway.on_message(
+            lambda frame: (
+                None
+                if isinstance(frame, str) and any(f'"method":{name}' in frame for name in kept_back)
+                else socket.send(frame)
+            )
+        )
+        sockets.append(socket)
+
+    page.route_web_socket(re.compile("/desk"), pass_on)
+    page.reload()
+    page.locator("#connection.up").wait_for(timeout=SLOW)
+
+    def send(method, **params):
+        sockets[-1].send(json.dumps({"jsonrpc": "2.0", "method": method, "params": params}))
+
+    return page, send
+
+
+def test_alarms_that_are_not_listed_are_counted(notify):
+    page, send = notify
+    near = {"seen": "anna", "robot": "r2", "metres": 5.0, "seconds": 0.0, "x": 1.0, "y": 2.0, "since": 3.0}
+    send("nearness", t=1.0, metres=5.0, within_s=10.0, alarms=[near] * 60, more=7)
+    text_is(page, "#menu-button", re.compile(r"\(67 !\)"))
+    page.locator("#menu-button").click()
+    rows = page.locator("#alarms li")
+    assert rows.count() == 51 and rows.last.text_content() == "17 more alarms"
+
+
+def test_the_geofences_alarms_that_are_not_listed_are_counted(notify):
+    page, send = notify
+    inside = {"robot": "r2", "kind": "keepout", "name": "Basin", "since": 1.0, "x": 1.0, "y": 2.0}
+    alarms = [{**inside, "action": "none", "outcome": "none", "current": True}] * 300
+    send("geofence", t=1.0, alarms=alarms, more=2700, keepouts=1, obstacles=0, unjudged=[], unjudged_more=0)
+    text_is(page, "#menu-button", re.compile(r"\(3000 !\)"))
 
 
 def test_a_gateway_that_is_gone_is_said_and_found_again(open_phone, bridge, tokens, robots):

@@ -60,12 +60,13 @@ async def test_a_robot_outside_is_no_alarm_and_one_inside_is_aborted_once(guarde
     assert await guarded.acknowledge_all() == []
 
 
-def seen_elsewhere(yard, place, *, located=True):
-    """Take in where gateway south says that its robot far is."""
-    table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]], dtype="<f4")
-    flags = np.array([LOCATED * located], dtype=np.uint8)
+def seen_elsewhere(yard, place, *, located=True, names=("far",)):
+    """Take in where gateway south says that its robots are."""
+    table = np.array([[*place, 0.0, 0.0, 0.0, 0.0]] * len(names), dtype="<f4")
+    flags = np.full(len(names), LOCATED * located, dtype=np.uint8)
+    rows = np.arange(len(names), dtype=np.uint32)
     yard.fleet.robots.observe_elsewhere(
-        ReportedElsewhere("south", 1, np.array([0], dtype=np.uint32), ["far"], table, flags, yard.now)
+        ReportedElsewhere("south", 1, rows, list(names), table, flags, yard.now)
     )
 
 
@@ -90,6 +91,21 @@ async def test_a_robot_of_a_gateway_that_reports_nothing_is_told_of_and_left_to_
     guarded.now += 20
     guarded.fleet.robots.age(guarded.now)
     assert (await look(guarded)).unjudged == ["far", "r1"]
+
+
+async def test_of_very_many_in_a_keepout_the_newest_are_told_and_the_others_counted(guarded):
+    names = [f"far-{number}" for number in range(3000)]
+    seen_elsewhere(guarded, IN_THE_BASIN, names=names)
+    assert len((await look(guarded)).alarms) == watch.MOST_ALARMS
+    guarded.now += 1
+    await guarded.at(*IN_THE_BASIN, v=1.0)
+    report = await look(guarded)
+    assert (report.alarms[0].robot, report.more) == ("r1", 3001 - watch.MOST_ALARMS)
+    told = guarded.news["geofence"]
+    assert (len(told["alarms"]), told["more"]) == (watch.MOST_ALARMS, report.more)
+    seen_elsewhere(guarded, IN_THE_BASIN, located=False, names=names)
+    report = await look(guarded)
+    assert (len(report.unjudged), report.unjudged_more) == (watch.MOST_UNJUDGED, 3000 - watch.MOST_UNJUDGED)
 
 
 async def test_what_another_gateway_reports_is_told_and_its_robots_are_not_judged_here(guarded):
