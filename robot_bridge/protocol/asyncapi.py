@@ -12,8 +12,7 @@ from ..core.messages.administration import PROTOCOL_VERSION
 from ..core.messages.base import DESK_REQUESTS, ROBOT_NAME, Done
 from ..core.messages.links import Playback, PlaybackReport
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
-from .json_schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, plain_text, schema_of
-from .openapi import openapi
+from .schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, openapi, plain_text, schema_of
 
 # --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
 

@@ -20,7 +20,7 @@ from robot_bridge.gateway.auth.authorisation import REVOKED
 from robot_bridge.protocol import jsonrpc
 from robot_bridge.protocol.asyncapi import documents
 from robot_bridge.protocol.codec import decode_answer, decode_desk_request, decode_request
-from robot_bridge.protocol.json_schemas import NOTIFICATIONS
+from robot_bridge.protocol.schemas import NOTIFICATIONS
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command

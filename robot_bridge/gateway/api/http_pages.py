@@ -24,7 +24,7 @@ from ...core.messages.administration import SiteReport
 from ...core.messages.base import MessageError
 from ...core.messages.safety import RobotState
 from ...core.sites.frame import lonlat_of
-from ...protocol import openapi
+from ...protocol import schemas
 from ...protocol.codec import decode_desk_request
 from ..auth.port import http_response
 from ..cluster.cluster import Cluster
@@ -249,7 +249,7 @@ class SiteQueries:
 
     def serves(self, path: str) -> bool:
         """Tell whether ``path`` is one of theirs."""
-        return path in openapi.PARAMETERS
+        return path in schemas.PARAMETERS
 
     async def answer(self, request: Request) -> Response:
         """Return GeoJSON, or a problem that says what was wrong and what to do."""
@@ -262,8 +262,8 @@ class SiteQueries:
         parts = urlsplit(request.path)
         self._under_way += 1
         try:
-            query = read_query(parts.query, openapi.PARAMETERS[parts.path])
-            features = await (self._route if parts.path == openapi.ROUTE else self._surfaces)(query)
+            query = read_query(parts.query, schemas.PARAMETERS[parts.path])
+            features = await (self._route if parts.path == schemas.ROUTE else self._surfaces)(query)
         except MessageError as error:
             return _problem(http.HTTPStatus.BAD_REQUEST, _text(parts.path, error))
         except RefusedError as error:
@@ -274,7 +274,7 @@ class SiteQueries:
         finally:
             self._under_way -= 1
         content = {"type": "FeatureCollection", "features": features}
-        return _response(http.HTTPStatus.OK, openapi.GEOJSON, json.dumps(content, allow_nan=False).encode())
+        return _response(http.HTTPStatus.OK, schemas.GEOJSON, json.dumps(content, allow_nan=False).encode())
 
     async def _surfaces(self, query: dict[str, Any]) -> list[dict[str, Any]]:
         asked = decode_desk_request("get_surface", query)
@@ -310,7 +310,7 @@ class SiteQueries:
         return found
 
 
-def read_query(text: str, parameters: Sequence[openapi.QueryParameter]) -> dict[str, Any]:
+def read_query(text: str, parameters: Sequence[schemas.QueryParameter]) -> dict[str, Any]:
     """Return what stands behind the ``?`` of an address, by the names of the desk's requests.
 
     :raises MessageError: for what is unknown, missing, there twice or no value of its kind.
@@ -337,7 +337,7 @@ def read_query(text: str, parameters: Sequence[openapi.QueryParameter]) -> dict[
         one.name for one in parameters if one.required and _NAMES.get(one.name, one.name) not in found
     ]:
         raise MessageError(f"{missing[0]} is missing; give {missing[0]}=…")
-    if found.setdefault("crs", openapi.DEGREES) == openapi.SITE_FRAME:
+    if found.setdefault("crs", schemas.DEGREES) == schemas.SITE_FRAME:
         del found["crs"]
     return found
 
@@ -352,7 +352,7 @@ def _value(name: str, text: str, schema: Mapping[str, Any]) -> Any:
     longest = schema.get("maxLength")
     if longest is not None and len(text) > longest:
         raise MessageError(f"{name} has {len(text)} characters; at most {longest} are taken")
-    return _numbers(name, text, 2) if schema is openapi.PLACE else text
+    return _numbers(name, text, 2) if schema is schemas.PLACE else text
 
 
 def _numbers(name: str, text: str, count: int) -> list[float]:
@@ -380,7 +380,7 @@ def _text(path: str, error: Exception) -> str:
 
 def _problem(status: http.HTTPStatus, detail: str, headers: Sequence[tuple[str, str]] = ()) -> Response:
     content = {"title": status.phrase, "status": status.value, "detail": detail}
-    return _response(status, openapi.PROBLEM, json.dumps(content).encode(), headers)
+    return _response(status, schemas.PROBLEM, json.dumps(content).encode(), headers)
 
 
 def _response(

@@ -10,7 +10,7 @@ import pytest
 from robot_bridge.core.messages.base import DESK_REQUESTS
 from robot_bridge.core.messages.robots import ANSWERS, REQUESTS
 from robot_bridge.protocol.asyncapi import asyncapi, documents
-from robot_bridge.protocol.json_schemas import NOTIFICATIONS
+from robot_bridge.protocol.schemas import NOTIFICATIONS
 
 NO_PARSER = 3
 

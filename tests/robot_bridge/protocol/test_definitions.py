@@ -21,7 +21,7 @@ from robot_bridge.core.messages.robots import (
 )
 from robot_bridge.protocol.asyncapi import documents, link_documents, served
 from robot_bridge.protocol.codec import decode_request
-from robot_bridge.protocol.json_schemas import HEADS, NOTIFICATIONS, plain_text, schema_of
+from robot_bridge.protocol.schemas import HEADS, NOTIFICATIONS, plain_text, schema_of
 
 OTHERS = {"asyncapi.json", "index.json", "openapi.json"}
 """Documents that are no schemas of messages."""

@@ -19,7 +19,7 @@ from robot_bridge.core.messages.base import MessageError
 from robot_bridge.core.sites.frame import lonlat_of
 from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway.api.http_pages import MOST_AT_ONCE, MOST_FIELDS, SiteQueries, read_query
-from robot_bridge.protocol.openapi import PARAMETERS, PROBLEM, ROUTE, SURFACES, openapi
+from robot_bridge.protocol.schemas import PARAMETERS, PROBLEM, ROUTE, SURFACES, openapi
 from tests.support.bridge.bridge_programs import wait_until
 
 START, GOAL = (20.0, 8.0), (92.0, 22.0)
