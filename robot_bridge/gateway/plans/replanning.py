@@ -36,8 +36,7 @@ from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.road_planning import RoadPlanner
 from . import model
-from .following import FollowedPlans
-from .persistence import save_plan
+from .following import FollowedPlans, save_plan
 
 log = logging.getLogger(__name__)
 

@@ -32,9 +32,8 @@ from ..model.events import EventBus, Listeners, handles
 from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.closures import ClosureService
-from .following import FollowedPlans, unknown_plan
+from .following import FollowedPlans, PlanMovedError, add_plan, save_plan, unknown_plan
 from .model import LONGEST_PAUSE_REASON, DrivenPlan, FollowedPlan, PlanTerms, plan_in, stops_of
-from .persistence import PlanMovedError, add_plan, save_plan
 from .replanning import Replanner, Stops
 
 log = logging.getLogger(__name__)

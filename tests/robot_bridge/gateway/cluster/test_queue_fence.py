@@ -10,7 +10,7 @@ from sqlalchemy import text
 from robot_bridge.core.messages.plans import PlanState
 from robot_bridge.core.messages.queues import QueueTask, TaskState
 from robot_bridge.gateway.model.task_queue import Queue, QueuedTask
-from robot_bridge.gateway.plans.persistence import PlanMovedError, add_plan, save_plan
+from robot_bridge.gateway.plans.following import PlanMovedError, add_plan, save_plan
 from robot_bridge.gateway.storage.database import open_engine, read_address
 from robot_bridge.gateway.storage.repositories import queues
 from robot_bridge.gateway.storage.repositories.queues import ChangedError
