@@ -11,12 +11,12 @@ from typing import Annotated
 import typer
 from sqlalchemy import Connection
 
+from ..core.errors import AccessError
 from ..core.messages.base import Role, check_robot_name
 from ..gateway.auth import accounts, audit
 from ..gateway.storage.database import read_password, shown
 from ..gateway.storage.repositories import robots as stored_robots
 from ..gateway.storage.roles.choice import has_accounts, role_manager_on
-from ..protocol.credentials import AccessError
 from .audit import act_audited, after_days, local_time, read_database
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 

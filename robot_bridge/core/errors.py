@@ -69,6 +69,10 @@ class NotReadyError(BridgeError):
     """A robot speaks that has not said Ready to this database."""
 
 
+class AccessError(BridgeError):
+    """An account, a token or a certificate that cannot be made, found or used."""
+
+
 # --- The exception family of the robot map ---
 
 

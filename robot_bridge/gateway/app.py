@@ -20,12 +20,11 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ..core.clock import ClockWatch, check_clock_at_start
-from ..core.errors import BridgeError, SiteError, StoreError
+from ..core.errors import AccessError, BridgeError, SiteError, StoreError
 from ..core.messages.administration import Stopping
 from ..core.messages.base import MessageError, check_robot_name, to_json
 from ..core.sites.site import Site, check_site, frame_mismatch, read_site
 from ..protocol.asyncapi import served
-from ..protocol.credentials import AccessError
 from .api.http_pages import HEALTH, METRICS, SiteQueries, StatusPages
 from .api.operator_server import OWN, OperatorSession
 from .api.robot_sql import SqlInterface

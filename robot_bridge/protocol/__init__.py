@@ -1,1 +1,1 @@
-"""What both ends of a WebSocket share: codec, JSON-RPC frames, credentials, schemas."""
+"""What both ends of a WebSocket share: codec, JSON-RPC frames, schemas."""

@@ -11,13 +11,12 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
-from ..core.errors import BridgeError
-from ..core.gateway_addresses import GatewayAddresses
+from ..core.errors import AccessError, BridgeError
+from ..core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
-from ..protocol.credentials import AccessError, ClientCredentials
 from .agent import Agent
 
 log = logging.getLogger(__name__)

@@ -12,8 +12,8 @@ from fnmatch import fnmatchcase
 
 from sqlalchemy import Connection, func, insert, literal, null, select, union_all, update
 
+from ...core.errors import AccessError
 from ...core.messages.base import Role, check_robot_name
-from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from ..storage.schema import links, operators, tokens
 

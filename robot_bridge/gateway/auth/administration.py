@@ -9,9 +9,8 @@ from typing import Any, TypeVar
 
 from sqlalchemy import Connection
 
-from ...core.errors import StoreError
+from ...core.errors import AccessError, StoreError
 from ...core.messages import administration
-from ...protocol.credentials import AccessError
 from ..model.events import handles
 from ..storage.database import Database
 from . import accounts, audit

@@ -12,9 +12,8 @@ from typing import Any
 from sqlalchemy import Connection, bindparam, insert, select, update
 
 from ...core.clock import SYSTEM_CLOCK, Clock
-from ...core.errors import DataRefusedError, StoreError
+from ...core.errors import AccessError, DataRefusedError, StoreError
 from ...core.logs import TroubleNews
-from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from ..storage.rows import delete_oldest
 from ..storage.schema import audit, sessions

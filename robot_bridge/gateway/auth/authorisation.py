@@ -13,10 +13,9 @@ from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
 from ...core.clock import SYSTEM_CLOCK, Clock
-from ...core.errors import StoreError, counted
+from ...core.errors import AccessError, StoreError, counted
 from ...core.messages.base import Role
 from ...core.sites.settings_tables import LimitSettings
-from ...protocol.credentials import AccessError
 from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in

@@ -20,8 +20,8 @@ from cryptography.hazmat.primitives import hashes, serialization
 from cryptography.hazmat.primitives.asymmetric import ec
 from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
+from ...core.errors import AccessError
 from ...core.files import replacement
-from ...protocol.credentials import AccessError
 
 CA_DAYS = 3650
 SERVER_DAYS = 397

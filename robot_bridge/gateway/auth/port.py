@@ -24,10 +24,9 @@ from websockets.datastructures import Headers
 from websockets.frames import CloseCode
 from websockets.http11 import Request, Response
 
-from ...core.errors import BridgeError, counted
+from ...core.errors import AccessError, BridgeError, counted
 from ...core.logs import log_unforeseen
 from ...core.sites.settings_tables import LimitSettings
-from ...protocol.credentials import AccessError
 from .accounts import chosen_protocol
 from .authorisation import AuthGate
 from .client_connection import ClientConnection

@@ -17,8 +17,8 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
-from ...core.errors import BridgeError
-from ...core.gateway_addresses import GatewayAddresses
+from ...core.errors import AccessError, BridgeError
+from ...core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ...core.logs import log_and_continue
 from ...core.messages.administration import SiteReport, site_report
 from ...core.messages.base import MessageError, check_robot_name, to_json
@@ -37,7 +37,6 @@ from ...core.parent_process import call_at_end_of_input, notify
 from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
-from ...protocol.credentials import AccessError, ClientCredentials
 from .adapter import Adapter
 from .errors import CommandRefusedError, LinkError
 from .frames import LinkFrame

@@ -18,7 +18,7 @@ import numpy as np
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidURI
 
-from ...protocol.credentials import AccessError
+from ...core.errors import AccessError
 from ..base.errors import LinkError
 from ..ros.errors import FaultError
 from . import decoding

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any, Literal
 from urllib.parse import urlsplit
 
-from ...protocol.credentials import AccessError, ClientCredentials
+from ...core.errors import AccessError
+from ...core.gateway_addresses import ClientCredentials
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings
 from ..ros.errors import FaultError

@@ -11,8 +11,9 @@ from urllib.parse import urlsplit
 import msgspec
 from msgspec import field
 
+from ...core.errors import AccessError
+from ...core.gateway_addresses import client_context
 from ...core.messages.base import ROBOT_NAME
-from ...protocol.credentials import AccessError, client_context
 from ..base.errors import LinkError
 from ..base.frames import FrameSettings, LinkFrame
 from ..base.settings import LinkSettings

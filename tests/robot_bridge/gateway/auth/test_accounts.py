@@ -8,7 +8,7 @@ import math
 
 import pytest
 
-from robot_bridge.core.errors import StoreError
+from robot_bridge.core.errors import AccessError, StoreError
 from robot_bridge.core.messages.administration import GetAudit, GetSessions
 from robot_bridge.core.messages.base import MessageError, Role
 from robot_bridge.gateway.auth import accounts, audit
@@ -17,7 +17,6 @@ from robot_bridge.gateway.auth.accounts import AccountCache, TokenKind, digest
 from robot_bridge.gateway.auth.administration import AccountAdministration
 from robot_bridge.gateway.auth.audit import AuditEntry, AuditJournal, SessionRow
 from robot_bridge.gateway.storage.schema import metadata
-from robot_bridge.protocol.credentials import AccessError
 
 
 async def test_a_token_opens_until_it_is_revoked_or_expires(database):

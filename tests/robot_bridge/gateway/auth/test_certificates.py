@@ -10,9 +10,9 @@ import subprocess
 
 import pytest
 
+from robot_bridge.core.errors import AccessError
 from robot_bridge.gateway.auth import certificates, port
 from robot_bridge.gateway.auth.port import ServerFiles, ServerTls, server_files
-from robot_bridge.protocol.credentials import AccessError
 from tests.support.patience import until
 
 

@@ -6,10 +6,11 @@ import hashlib
 
 import pytest
 
+from robot_bridge.core.errors import AccessError
+from robot_bridge.core.gateway_addresses import ClientCredentials, read_token
 from robot_bridge.gateway.auth.accounts import TokenKind, bearer, digest, new_token
 from robot_bridge.gateway.auth.client_connection import RateLimit
 from robot_bridge.gateway.auth.port import check_reach
-from robot_bridge.protocol.credentials import AccessError, ClientCredentials, read_token
 
 
 def test_no_token_comes_twice_and_each_says_whose_kind_it_is():

@@ -7,8 +7,8 @@ import json
 import pytest
 from websockets.sync.client import connect
 
+from robot_bridge.core.errors import AccessError
 from robot_bridge.gateway.auth.accounts import TokenKind, chosen_protocol, new_token, token_in
-from robot_bridge.protocol.credentials import AccessError
 from tests.support.bridge.bridge_accounts import bearing
 from tests.support.patience import START
 

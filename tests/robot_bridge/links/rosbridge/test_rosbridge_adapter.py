@@ -7,6 +7,7 @@ import json
 
 import pytest
 
+from robot_bridge.core.gateway_addresses import ClientCredentials
 from robot_bridge.core.messages.robots import SetPosEnd
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
@@ -32,7 +33,6 @@ from robot_bridge.links.rosbridge.decoding import ServiceCall, ServiceResponse
 from robot_bridge.links.rosbridge.goals import MOST_BEFORE, MOST_ENTRIES, ActionGoals, GoalBook
 from robot_bridge.links.rosbridge.graph import Graph
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
-from robot_bridge.protocol.credentials import ClientCredentials
 
 SERVER = Server("ws://127.0.0.1:9", ClientCredentials())
 

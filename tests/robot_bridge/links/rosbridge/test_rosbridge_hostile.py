@@ -11,6 +11,8 @@ import cbor2
 import pytest
 from websockets.asyncio.server import serve
 
+from robot_bridge.core.errors import AccessError
+from robot_bridge.core.gateway_addresses import ClientCredentials
 from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.rosbridge.adapter import load
@@ -18,7 +20,6 @@ from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscri
 from robot_bridge.links.rosbridge.decoding import LARGEST_FRAME
 from robot_bridge.links.rosbridge.graph import GraphWatch
 from robot_bridge.links.rosbridge.settings import Server
-from robot_bridge.protocol.credentials import AccessError, ClientCredentials
 
 GOOD = json.dumps({"op": "publish", "topic": "/r1/battery", "msg": {"percentage": 0.5}})
 BATTERY = Subscription("sensor_msgs/msg/BatteryState")

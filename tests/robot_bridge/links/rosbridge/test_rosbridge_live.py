@@ -9,9 +9,9 @@ import json
 import pytest
 from websockets.sync.client import connect
 
+from robot_bridge.core.gateway_addresses import ClientCredentials
 from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
 from robot_bridge.links.rosbridge.settings import Server
-from robot_bridge.protocol.credentials import ClientCredentials
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.cut_line import CutLine, outlast_a_cut
 from tests.support.bridge.link_process import LinkProcess
