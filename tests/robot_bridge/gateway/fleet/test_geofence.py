@@ -16,8 +16,8 @@ from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.cluster.robot_relay import REPORT_HOLDS_S
 from robot_bridge.gateway.fleet import geofence as watch
-from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S
 from robot_bridge.gateway.model.events import FenceJudged, FenceJudgedElsewhere
+from robot_bridge.gateway.model.fence_stays import LEFT_AFTER_S
 from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
 
 IN_THE_BASIN = 66.0, 32.0

@@ -12,7 +12,7 @@ from robot_bridge.core.robotmap.outlines import OutlineRow, Outlines
 from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.geopackage import Area
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
-from robot_bridge.gateway.fleet.geofence import LEFT_AFTER_S, Clearances, Stays, find_stays
+from robot_bridge.gateway.model.fence_stays import LEFT_AFTER_S, Clearances, Stays, find_stays
 
 RADIUS = 0.5
 
