@@ -2,18 +2,67 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from qgis.core import QgsApplication, QgsProject
+from qgis.core import QgsApplication, QgsProcessingProvider, QgsProject
+from qgis.PyQt.QtGui import QIcon
 
 from .expressions import ExpressionFunctions, SnapshotHolder
 from .layers.road_surfaces import SurfaceStore
-from .processing.provider import FleetProvider
+from .processing.algorithms.as_placed_report import AsPlacedReport
+from .processing.algorithms.assign_cones import AssignCones
+from .processing.algorithms.cone_layouts import ConeLayout, ImportConeLayout
+from .processing.algorithms.export_navigation_map import ExportNavigationMap
+from .processing.algorithms.export_road_network import ExportRoadNetwork
+from .processing.algorithms.export_robot_map import ExportRobotMap
+from .processing.algorithms.export_robot_map_tiles import ExportRobotMapTiles
+from .processing.algorithms.import_navigation_map import ImportNavigationMap
+from .processing.algorithms.publish_site import PublishSite
+from .processing.algorithms.read_robot_maps import CheckRobotMap, LoadRobotMap
+from .processing.algorithms.road_network import BuildRoadNetwork, CheckRoadNetwork, FindRoute
+from .processing.algorithms.road_surfaces import BuildRoadSurfaces, SurfaceAtPoint
+from .processing.algorithms.trajectories import Trajectories
 from .ui.errors import Part, remove_all
 from .ui.language import Language
 
 if TYPE_CHECKING:  # qgis_process has no window, and needs nothing of what one is made of
     from qgis.gui import QgisInterface
+
+ICON = Path(__file__).parents[1] / "resources" / "icons" / "fleet.svg"
+
+
+class FleetProvider(QgsProcessingProvider):
+    """Groups the plugin's algorithms in the Processing toolbox and in ``qgis_process``."""
+
+    def id(self):
+        return "fleet"
+
+    def name(self):
+        return "Fleet"
+
+    def icon(self):
+        return QIcon(str(ICON))
+
+    def loadAlgorithms(self):
+        self.addAlgorithm(ExportRobotMap())
+        self.addAlgorithm(ExportNavigationMap())
+        self.addAlgorithm(ImportNavigationMap())
+        self.addAlgorithm(PublishSite())
+        self.addAlgorithm(ExportRobotMapTiles())
+        self.addAlgorithm(LoadRobotMap())
+        self.addAlgorithm(CheckRobotMap())
+        self.addAlgorithm(BuildRoadNetwork())
+        self.addAlgorithm(CheckRoadNetwork())
+        self.addAlgorithm(FindRoute())
+        self.addAlgorithm(ExportRoadNetwork())
+        self.addAlgorithm(BuildRoadSurfaces())
+        self.addAlgorithm(SurfaceAtPoint())
+        self.addAlgorithm(ConeLayout())
+        self.addAlgorithm(ImportConeLayout())
+        self.addAlgorithm(AssignCones())
+        self.addAlgorithm(Trajectories())
+        self.addAlgorithm(AsPlacedReport())
 
 
 class RegisteredProvider:

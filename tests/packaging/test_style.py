@@ -59,7 +59,7 @@ FORBIDDEN = [
     ),
     ("plugin/plugin.py", "from ..robot_bridge.gateway import storage", "The plugin uses of the bridge only"),
     ("plugin/plugin.py", "from PyQt5 import QtCore", "The plugin uses Qt through qgis.PyQt"),
-    ("plugin/processing/provider.py", "from ..panel import window", "The floors of the plugin"),
+    ("plugin/processing/common/outputs.py", "from ...panel import window", "The floors of the plugin"),
 ]
 
 

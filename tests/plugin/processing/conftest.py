@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.processing.provider import FleetProvider
+from fleet_supervisor.plugin.plugin import FleetProvider
 from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
 from fleet_supervisor.robot_bridge.core.robotmap.model import RobotMap
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text

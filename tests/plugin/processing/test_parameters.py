@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 
 import pytest
+from fleet_supervisor.plugin.plugin import FleetProvider
 from fleet_supervisor.plugin.processing.common import algorithm as parameter_labels
 from fleet_supervisor.plugin.processing.common.algorithm import plain_text
-from fleet_supervisor.plugin.processing.provider import FleetProvider
 from qgis.core import (
     QgsApplication,
     QgsProcessingContext,
