@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 
 import typer
 
+from ..core.clock import SYSTEM_CLOCK
 from ..core.errors import BridgeError, SiteError, StoreError, counted
 from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
@@ -187,12 +188,12 @@ def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
     if settings.database.get_backend_name() != "postgresql":
         return
     try:
-        members, now = run_once(settings.database, lambda one: (gateways.members(one), gateways.clock(one)))
+        found = run_once(settings.database, gateways.read_members, SYSTEM_CLOCK)
     except StoreError:
         # Which the check of the database says.
         return
     own = gateway_version()
-    for one in members:
+    for one in found.members:
         where = f"{one.gw}: process {one.process} on {one.host}"
         if not one.alive:
             text = (
@@ -206,7 +207,7 @@ def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
             yield Finding(
                 Level.OK, "gateways", f"{where}, version {one.version}, at {one.address or 'no address'}"
             )
-    if members and abs(off := now - time.time()) > MOST_OFF_S:
+    if abs(off := found.database - found.here) > MOST_OFF_S:
         text = f"this computer's is {abs(off):.0f} s off the database's: let NTP set both"
         yield Finding(Level.WARNING, "clock", text)
 

@@ -125,7 +125,10 @@ def members(connection: Connection, now: float | None = None) -> list[Member]:
 
 
 class MembersRead(NamedTuple):
-    """All gateways, the database's time and this computer's clock, both of the same moment."""
+    """All gateways, the database's time and this computer's clock, both of the same moment.
+
+    Where there are none the times say nothing: they are the same.
+    """
 
     members: list[Member]
     database: float
@@ -134,12 +137,15 @@ class MembersRead(NamedTuple):
 
 def renew_and_read(connection: Connection, me: Member, lease_s: float, clock: Clock) -> MembersRead | None:
     """Let a gateway live on as :func:`renew` does; return all of them, None where its lease has run out."""
-    if not renew(connection, me, lease_s):
-        return None
+    return read_members(connection, clock) if renew(connection, me, lease_s) else None
+
+
+def read_members(connection: Connection, clock: Clock) -> MembersRead:
+    """Return all gateways that are entered, with the time of two clocks."""
     began = clock.time()
     rows = connection.execute(_MEMBERS, {"now": None}).all()
     here = (began + clock.time()) / 2
-    return MembersRead([Member(*row[:-1]) for row in rows], float(rows[-1][-1]), here)
+    return MembersRead([Member(*row[:-1]) for row in rows], float(rows[-1][-1]) if rows else here, here)
 
 
 def leave(connection: Connection, me: Member) -> None:
