@@ -16,6 +16,7 @@ from .bus import LARGEST_NOTIFICATION, Bus, NoBus, NotifyBus
 from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name
 from .messages import LARGEST, Exchange, fleet_key
 from .nats_bus import NatsBus
+from .nats_servers import nats_urls
 from .ownership import Ownership
 
 log = logging.getLogger(__name__)
@@ -68,8 +69,7 @@ class ClusterSettings:
 
     def servers(self) -> list[str]:
         """Return the URLs of NATS servers, none for another bus or for what is no such URL."""
-        urls = [url.strip() for url in self.bus.split(",")]
-        return urls if all(url.startswith(("nats://", "tls://")) for url in urls) else []
+        return nats_urls(self.bus)
 
     def nats_bus(self, fleet: str) -> NatsBus:
         """Return the bus of the fleet named ``fleet`` on the NATS servers; raises BridgeError."""

@@ -5,12 +5,10 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import random
 import threading
 from collections import deque
-from collections.abc import AsyncIterator, Callable, Iterable, Iterator
+from collections.abc import AsyncIterator, Callable, Iterator
 from typing import Any, ClassVar
-from urllib.parse import urlsplit
 
 from ...core.errors import BridgeError
 from ...core.logs import log_and_continue, log_unforeseen
@@ -20,33 +18,23 @@ from .bus import (
     MOST_WAITING,
     POSITIONS,
     RETRY_S,
-    RIGHTS_PROBE,
     STOP,
     OutgoingMessages,
     Receive,
     own_subject,
 )
-from .messages import LARGEST
+from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server
 
 log = logging.getLogger(__name__)
 
-OLDEST_NATS = (2, 10, 26)
 NATS_RETRY_S = 0.1
 """seconds from one attempt to connect to the next."""
-CONNECT_S, FLUSH_S = 2.0, 2.0
-NO_TLS = "the server does not ask for TLS, and was sent nothing"
-MOST_FAULTS = 3
-"""refusals of the server that are named."""
 CONNECTED_LOOK_S = 0.2
 """seconds after which a connection is looked at that did not say that it was lost."""
 QUIET_LOOKS, PONG_S = 10, 1.0
 """Looks at a connection by which nothing came, after which it is asked whether it stands, and seconds for the
 answer: a stop of the network is known after three seconds. One by which messages come is not asked: with many
 robots on a busy computer the answer waits behind positions for longer than that."""
-PING_S = 30
-"""seconds between pings of the client itself, two of which may be without an answer."""
-PENDING_BYTES = 4 << 20
-"""bytes that wait for a slow server."""
 LARGEST_STOP = 16 << 10
 """bytes of a message that the thread of stops hands over: no message of a stop has as many. With MOST_WAITING
 of them 4 MB wait at most; what is longer is left to the connection for all messages."""
@@ -54,95 +42,7 @@ END_S = 2.0
 """seconds for which the end of the bus waits for that thread."""
 
 
-# --- Connections: to one of some servers, and to another one when it is lost ---
-
-
-class NatsServers:
-    """The URLs of some NATS servers, and the password of the account in them.
-
-    :raises BridgeError: when nats-py is not installed.
-    """
-
-    def __init__(self, urls: list[str], password: str | None = None) -> None:
-        try:
-            import nats
-            from nats.aio.client import Client
-        except ImportError:
-            raise BridgeError(
-                "the bus nats:// needs nats-py; install it with: "
-                "pip install 'fleet-supervisor-robot-bridge[cluster]'"
-            ) from None
-        self._nats, self._client = nats, Client
-        self._urls = urls
-        self._password = password
-        self.errors: tuple[type[Exception], ...] = (nats.errors.Error, OSError, TimeoutError)
-        """what comes of servers and the network."""
-
-    @property
-    def patience(self) -> float:
-        """Seconds after which none of them has answered."""
-        return 2 * CONNECT_S * len(self._urls)
-
-    @property
-    def where(self) -> str:
-        """Where they are, without accounts."""
-        return ",".join(url.rpartition("@")[2].removeprefix("nats://") for url in self._urls)
-
-    async def connect(self, name: str, on_error: Any, **options: Any) -> Any:
-        """Connect to one of the servers as ``name``; raises what the last one brought about."""
-        urls = random.sample(self._urls, len(self._urls))  # nosec B311 # nothing secret: spreads load
-        for url in urls:
-            try:
-                return await self._connect_to(url, name, on_error, **options)
-            except self.errors:
-                if url is urls[-1]:
-                    raise
-        raise AssertionError("there is a server")
-
-    async def _connect_to(self, url: str, name: str, on_error: Any, **options: Any) -> Any:
-        if self._password is not None:
-            options |= {"user": urlsplit(url).username, "password": self._password}
-        client: Any = self._client()
-        if url.startswith("tls://"):
-            self._insist_on_tls(client)
-        try:
-            await client.connect(
-                url,
-                error_cb=on_error,
-                connect_timeout=CONNECT_S,
-                # A connection that is lost is made again here, not by the client: it would keep what is
-                # published meanwhile, and send that as if it were new.
-                allow_reconnect=False,
-                reconnect_time_wait=0.1,
-                max_reconnect_attempts=1,
-                ping_interval=PING_S,
-                max_outstanding_pings=2,
-                pending_size=PENDING_BYTES,
-                no_echo=False,
-                name=name,
-                **options,
-            )
-        except BaseException:
-            # The client leaves its socket open where it gives up.
-            with contextlib.suppress(Exception):
-                await client.close()
-            raise
-        return client
-
-    def _insist_on_tls(self, client: Any) -> None:
-        """Have ``client`` send nothing to a server that does not ask for TLS.
-
-        nats-py speaks TLS where the server asks for it, whatever the URL says. Without this, whoever answers
-        in the server's place is sent the password in plain text.
-        """
-        greeting = client._connect_command
-
-        def greeting_over_tls() -> Any:
-            if not client._server_info.get("tls_required"):
-                raise self._nats.errors.Error(NO_TLS)
-            return greeting()
-
-        client._connect_command = greeting_over_tls
+# --- A connection, and another one when it is lost ---
 
 
 class NatsConnection:
@@ -414,58 +314,8 @@ class NatsBus:
         return True
 
     async def check(self) -> None:
-        """Connect for a moment, hear every subject and publish on it.
-
-        :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
-        """
-        where = f"bus {self._servers.where}"
-        faults: dict[str, None] = {}
-        returned = asyncio.Event()
-
-        async def add_fault(error: Exception) -> None:
-            faults[str(error)] = None
-
-        async def hear(message: Any) -> None:
-            if message.data == RIGHTS_PROBE:
-                returned.set()
-
-        try:
-            async with asyncio.timeout(self._servers.patience):
-                client = await self._servers.connect("robot-bridge", add_fault)
-        except self._servers.errors as error:
-            faults[str(error) or "no server answers"] = None
-            raise BridgeError(f"{where}: {self._advised(faults)}") from None
-        try:
-            check_server(client)
-            await self._probe_rights(client, hear)
-            if not faults:
-                async with asyncio.timeout(FLUSH_S):
-                    await returned.wait()
-        except BridgeError as error:
-            raise BridgeError(f"{where}: {error}") from None
-        except TimeoutError:
-            faults["what this gateway publishes does not come back to it"] = None
-        except self._servers.errors as error:
-            faults[str(error)] = None
-        finally:
-            await client.close()
-        if faults:
-            raise BridgeError(f"{where}: {self._advised(faults)}")
-
-    async def _probe_rights(self, client: Any, hear: Any) -> None:
-        """Hear every subject, and publish on it; return when the server has refused what it refuses."""
-        for subject in self._subjects:
-            await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-            await client.publish(f"{self._prefix}.{subject}", RIGHTS_PROBE)
-        await client.flush(FLUSH_S)
-
-    def _advised(self, faults: Iterable[str]) -> str:
-        """Return the first of ``faults``, and what to do."""
-        named = list(faults)
-        text = "; ".join(named[:MOST_FAULTS])
-        if (more := len(named) - MOST_FAULTS) > 0:
-            text += f"; and {more} more such"
-        return f"{text}; {advice_on(text, self._prefix) or 'check that NATS runs there'}"
+        """Connect for a moment, hear every subject and publish on it; see :meth:`.NatsServers.check`."""
+        await self._servers.check(self._prefix, self._subjects)
 
     async def run(self, receive: Receive) -> None:
         """Connect and send until cancelled; it connects again by itself."""
@@ -538,41 +388,3 @@ async def disconnection(client: Any, lost: asyncio.Event) -> None:
                 # Whatever it is: it is not certain that others are heard.
                 if client.stats["in_msgs"] == heard:
                     return
-
-
-def check_server(client: Any) -> None:
-    """Raise BridgeError where the server that ``client`` is connected to is too old, or takes too little."""
-    version, url = client.connected_server_version, client.connected_url
-    if client.max_payload < LARGEST:
-        raise BridgeError(
-            f"at {url.hostname}:{url.port} NATS takes messages of {client.max_payload} bytes, and gateways "
-            f"send {LARGEST}; set max_payload to that at least, or leave it out, in its configuration"
-        )
-    found = (version.major, version.minor, version.patch)
-    if found < OLDEST_NATS:
-        wanted = ".".join(map(str, OLDEST_NATS))
-        raise BridgeError(
-            f"at {url.hostname}:{url.port} NATS {'.'.join(map(str, found))} lets one reader that stands "
-            f"still delay all others for seconds; install {wanted} or newer (Debian 13's package nats-server "
-            "runs on Debian 12)"
-        )
-
-
-def advice_on(reason: str, prefix: str) -> str:
-    """Return what to do about ``reason``, for which a server or the network is not used; "" where unknown."""
-    words = reason.lower()
-    if "permissions violation" in words or "come back" in words:
-        return f"the account of this gateway has to be allowed to publish and to subscribe to {prefix}.>"
-    if "authorization" in words or "authentication" in words:
-        return (
-            "check the account in the URL, as in nats://ACCOUNT@HOST:PORT, and its password in "
-            "--bus-password-file"
-        )
-    if "certificate" in words:
-        return (
-            "connect by a name of the certificate; where its authority is your own, name that one's file in "
-            "the variable SSL_CERT_FILE"
-        )
-    if NO_TLS in reason:
-        return "give it a certificate (tls in its configuration, without allow_non_tls), or write nats://"
-    return ""

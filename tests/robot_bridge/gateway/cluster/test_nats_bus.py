@@ -16,7 +16,8 @@ from robot_bridge.gateway.cluster import nats_bus
 from robot_bridge.gateway.cluster.bus import EVERYBODY, STOP, own_subject
 from robot_bridge.gateway.cluster.cluster import ClusterSettings
 from robot_bridge.gateway.cluster.messages import LARGEST, Exchange
-from robot_bridge.gateway.cluster.nats_bus import NatsBus, check_server, disconnection
+from robot_bridge.gateway.cluster.nats_bus import NatsBus, disconnection
+from robot_bridge.gateway.cluster.nats_servers import check_server
 from tests.support.faults.proxy import Proxy
 from tests.support.patience import BUSY, until
 

@@ -12,10 +12,11 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from robot_bridge.gateway.cluster import nats_bus
+from robot_bridge.gateway.cluster import nats_bus, nats_servers
 from robot_bridge.gateway.cluster.bus import EVERYBODY, MOST_WAITING, STOP
 from robot_bridge.gateway.cluster.messages import MOST_NAMED, Codec, Exchange, StopCall, StopSeen
-from robot_bridge.gateway.cluster.nats_bus import LARGEST_STOP, NatsBus, NatsServers, StopListener
+from robot_bridge.gateway.cluster.nats_bus import LARGEST_STOP, NatsBus, StopListener
+from robot_bridge.gateway.cluster.nats_servers import NatsServers
 from tests.support.nats_server import NatsServer
 from tests.support.patience import BUSY, until
 
@@ -302,7 +303,7 @@ async def test_it_ends_while_a_server_says_nothing(monkeypatch):
     with socket.create_server(("127.0.0.1", 0)) as silent:
         silent.settimeout(10 * BUSY)
         url = f"nats://127.0.0.1:{silent.getsockname()[1]}"
-        monkeypatch.setattr(nats_bus, "CONNECT_S", 1000.0)
+        monkeypatch.setattr(nats_servers, "CONNECT_S", 1000.0)
         async with listener_on(url).listening(lambda *_: None):
             connection, _ = await asyncio.to_thread(silent.accept)
         await until(lambda: not threads())
