@@ -358,18 +358,19 @@ class ReportsElsewhere:
 
     def at(self, now: float) -> dict[str, Geofence]:
         """Return the reports that hold at time ``now``, by gateway."""
-        self._reports = {
-            gateway: (came, report)
+        return {
+            gateway: report
             for gateway, (came, report) in self._reports.items()
             if now - came < REPORT_HOLDS_S
         }
-        return {gateway: report for gateway, (_, report) in self._reports.items()}
 
-    def alarm(self, robot: str, kind: FenceKind, name: str) -> FenceAlarm | None:
-        """Return what a gateway reported last of a robot in an area, in which it was before it came here."""
+    def alarm(self, robot: str, kind: FenceKind, name: str, now: float) -> FenceAlarm | None:
+        """Return what a gateway reported of a robot in an area, in which it was before it came here.
+
+        None where no report that holds at time ``now`` says so.
+        """
         same = robot, kind, name[:LONGEST_NAME]
-        reports = (report for _, report in self._reports.values())
-        alarms = (alarm for report in reports for alarm in report.alarms)
+        alarms = (alarm for report in self.at(now).values() for alarm in report.alarms)
         return next((alarm for alarm in alarms if (alarm.robot, alarm.kind, alarm.name) == same), None)
 
 

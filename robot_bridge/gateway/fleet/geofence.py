@@ -209,7 +209,7 @@ class GeofenceWatch:
         log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), x, y)
         if stay.robot in self._judged:
             return
-        known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name)
+        known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name, self._clock.steady())
         if known is not None and known.outcome in DONE:
             # It came here inside the area, was stopped where it comes from, and may be on its way out.
             stay.since, stay.outcome, stay.reason = known.since, known.outcome, known.reason

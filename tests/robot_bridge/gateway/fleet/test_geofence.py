@@ -133,11 +133,12 @@ async def test_others_hear_of_the_robots_of_this_gateway_alone(guarded):
     assert [alarm.robot for alarm in heard[-1].alarms] == ["r1"]
 
 
-async def come_from_south(yard, *alarms):
+async def come_from_south(yard, *alarms, after=0.0):
     """Have robot far, of which gateway south reports so, say Ready here in the basin; return the alarms."""
     seen_elsewhere(yard, IN_THE_BASIN)
     reported_elsewhere(yard, *alarms)
     await look(yard)
+    yard.clock.uptime += after
     await yard.ready("far")
     await yard.acknowledge_all("far")
     await yard.at(*IN_THE_BASIN, v=1.0, robot="far")
@@ -148,6 +149,12 @@ async def test_a_robot_that_was_stopped_at_another_gateway_may_drive_out(guarded
     (alarm,) = await come_from_south(guarded, basin("far"))
     assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
     assert await guarded.acknowledge_all("far") == []
+
+
+async def test_what_was_reported_of_a_robot_long_ago_does_not_keep_it_from_being_stopped(guarded):
+    (alarm,) = await come_from_south(guarded, basin("far"), after=REPORT_HOLDS_S)
+    assert (alarm.outcome, alarm.since) == ("aborted", guarded.now)
+    assert await guarded.acknowledge_all("far") == ["Abort"]
 
 
 @pytest.mark.parametrize("outcome", ["none", "asked", "failed"])
