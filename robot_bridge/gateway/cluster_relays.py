@@ -98,7 +98,7 @@ class ClusterRelays:
             ),
             "old requests": self._led(
                 "old requests",
-                lambda: every(FORGET_INTERVAL_S, self.requests.forget, "old requests", tally),
+                lambda: every(FORGET_INTERVAL_S, self._forget_old, "old requests", tally),
                 tally,
             ),
         }
@@ -108,6 +108,10 @@ class ClusterRelays:
         while True:
             self._numbers.send_beat()
             await asyncio.sleep(BEAT_INTERVAL_S)
+
+    async def _forget_old(self) -> None:
+        await self.requests.forget()
+        await self._cluster.membership.strike_gone()
 
     async def _follow_owners(self) -> None:
         takeover = self._fleet.takeover

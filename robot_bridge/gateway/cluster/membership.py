@@ -155,6 +155,8 @@ CLAIMED_S = 3 * RENEW_S
 CLOCK_TOLERANCE_S = 1.0
 """seconds that this computer's clock may be off the database's before the log is told."""
 OFF_AGAIN_S = 60.0
+GONE_S = 7 * 24 * 3600.0
+"""seconds after the end of its lease until a gateway is struck off: until then it may be started again."""
 
 
 class Membership:
@@ -296,6 +298,11 @@ class Membership:
             await self._lease.run(gateways.leave, self.me)
         except StoreError as error:
             log.warning("gateway %s could not take leave, and its lease has to run out: %s", self.name, error)
+
+    async def strike_gone(self) -> None:
+        """Strike off the gateways that have not lived for a week; raises StoreError."""
+        for name in await self._lease.run(gateways.strike_gone, GONE_S):
+            log.warning("gateway %s has not lived for %d days, and is struck off", name, GONE_S // 86400)
 
     async def _namesake(self) -> Member | None:
         """Return the gateway of this name that is entered."""

@@ -155,6 +155,15 @@ class Ownership:
         owners = {robot: self._owners[robot].gw for robot in changed}
         return OwnerChanges(lost, new, set(self._unstored), owners)
 
+    def had_elsewhere(self, robots: Iterable[str]) -> dict[str, str]:
+        """Return those of ``robots`` that another gateway had at the last read, with its name.
+
+        Those that this one has got since are not among them.
+        """
+        others = {robot for robot in robots if robot not in self._robots} - self._being_claimed
+        owners = {robot: self._owners[robot].gw for robot in others if robot in self._owners}
+        return {robot: gateway for robot, gateway in owners.items() if gateway != self._membership.name}
+
     def note_followed(self) -> None:
         """Note that what :meth:`refresh` returned last is known everywhere in this gateway."""
         self._changed.clear()

@@ -128,25 +128,18 @@ class Takeover:
             await self._meet(strange, changes.gateways)
         came_to = {gateway for robot, gateway in changes.gateways.items() if robot in changes.lost}
         for robot, gateway in changes.gateways.items():
-            if self._follow(robot, gateway):
+            known = self._robots.gateway_of(robot)
+            if known is not None and known != gateway:
+                self._robots.let_go(robot, gateway)
                 came_to.add(gateway)
+        # Lost while they were let in, and known as this gateway's again by that.
+        for robot, gateway in self._ownership.had_elsewhere(one.name for one in self._robots.own()).items():
+            self._drop(robot, gateway)
+            came_to.add(gateway)
         # What those said of these robots before this gateway knew that they have them was not taken in.
         for gateway in sorted(came_to):
             self._exchange.wake("positions", gateway)
         self._ownership.note_followed()
-
-    def _follow(self, robot: str, gateway: str) -> bool:
-        """Know a robot as that of ``gateway``; tell whether it was known as of another one, or of this."""
-        known = self._robots.gateway_of(robot)
-        if known is not None:
-            if has_moved := known != gateway:
-                self._robots.let_go(robot, gateway)
-            return has_moved
-        if self._ownership.owns(robot) or gateway == self._exchange.gateway or robot not in self._robots:
-            return False
-        # It was lost while it was let in, and was known as this gateway's again by that.
-        self._drop(robot, gateway)
-        return True
 
     async def _meet(self, names: Collection[str], gateways: dict[str, str]) -> None:
         """Get to know robots that other gateways have."""

@@ -103,6 +103,7 @@ _MEMBERS = text(
     "from gateways order by since, gw"
 )
 _LEAVE = text("delete from gateways where gw = :gw and run = :run")
+_STRIKE_GONE = text(f"delete from gateways g where g.lease_until < {_NOW} - :age returning gw")  # nosec B608 # names of ours
 
 
 def join(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
@@ -151,6 +152,11 @@ def read_members(connection: Connection, clock: Clock) -> MembersRead:
 def leave(connection: Connection, me: Member) -> None:
     """Strike a gateway off: its robots are nobody's at once."""
     connection.execute(_LEAVE, {"gw": me.gw, "run": me.run})
+
+
+def strike_gone(connection: Connection, age_s: float, now: float | None = None) -> list[str]:
+    """Strike off the gateways whose lease ran out more than ``age_s`` seconds ago; return their names."""
+    return sorted(connection.scalars(_STRIKE_GONE, {"age": age_s, "now": now}))
 
 
 # --- Who has which robot ---

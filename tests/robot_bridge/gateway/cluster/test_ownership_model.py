@@ -312,6 +312,16 @@ def test_a_gateway_of_the_version_before_is_a_member_without_an_address(engine):
         assert gateways.members(connection, 53.0)[1].address == "ws://10.0.0.2:1"
 
 
+def test_a_gateway_that_does_not_come_back_is_struck_off(engine):
+    with engine.begin() as connection:
+        connection.execute(text("delete from gateways"))
+        for name, now in (("gone", 0.0), ("dead", 90.0), ("alive", 100.0)):
+            assert gateways.join(connection, Member(name, f"run-{name}"), LEASE_S, now)
+        assert gateways.strike_gone(connection, 50.0, 102.0) == ["gone"]
+        assert [one.gw for one in gateways.members(connection, 102.0)] == ["dead", "alive"]
+        assert gateways.strike_gone(connection, 50.0, 102.0) == []
+
+
 def test_a_change_is_read_whenever_it_is_committed(engine):
     """A transaction that begins before another and ends after it is not passed over."""
     stored = "insert into robots (name, magic, link, received_at, ended_in_order) values (:r, 1, 'sql', 0, 0)"

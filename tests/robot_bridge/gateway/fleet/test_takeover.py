@@ -31,6 +31,9 @@ class Ownership:
     def forget(self, robots):
         self.forgotten += robots
 
+    def had_elsewhere(self, _robots):
+        return {}
+
 
 @pytest.fixture
 def ownership():
@@ -125,7 +128,7 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
 
 async def test_a_robot_that_was_lost_while_it_was_let_in_here_is_dropped_by_the_next_look(ownership):
     known, left, woken = Robots(), [], []
-    for robot in ("mine", "astray", "doubtful"):
+    for robot in ("mine", "astray"):
         known.ready(robot, 1, "websocket", 0.0)
     exchange = SimpleNamespace(gateway="a", wake=lambda what, gateway: woken.append((what, gateway)))
     ignored, held = SimpleNamespace(drop=lambda _robots: None), SimpleNamespace(forget=lambda _robot: None)
@@ -134,17 +137,13 @@ async def test_a_robot_that_was_lost_while_it_was_let_in_here_is_dropped_by_the_
     takeover = Takeover(ownership, exchange, known, ignored, ignored, held, ignored, None, None, events)
 
     async def refresh():
-        # That "mine" has come here since was not read yet; "doubtful" is read once more.
-        return OwnerChanges(set(), set(), set(), {"mine": "b", "astray": "b", "doubtful": "a", "new": "b"})
+        return OwnerChanges(set(), set(), set(), {})
 
-    async def meet(*_):
-        pass
-
-    ownership.refresh, ownership.note_followed, takeover._meet = refresh, lambda: None, meet
-    ownership.owns = lambda robot: robot == "mine"
+    ownership.refresh, ownership.note_followed = refresh, lambda: None
+    ownership.had_elsewhere = lambda robots: {robot: "b" for robot in robots if robot == "astray"}
     await takeover.follow()
     assert left == [RobotLeft("astray", "b")] and woken == [("positions", "b")]
-    assert [known.gateway_of(robot) for robot in ("mine", "astray", "doubtful")] == [None, "b", None]
+    assert [known.gateway_of(robot) for robot in ("mine", "astray")] == [None, "b"]
 
 
 class OwnersTable:
@@ -233,6 +232,20 @@ async def test_a_robot_whose_claim_is_under_way_is_taken_up_by_who_waits_for_tha
     table.answering.set()
     assert await claim and owned.owns("r1")
     assert (await followed(owned)).new == set()
+
+
+async def test_robots_that_another_gateway_has_are_named_unless_they_are_claimed_here(owned, table):
+    names = ["mine", "theirs", "claimed", "new"]
+    table.write(mine=here(1), theirs=elsewhere(2), claimed=elsewhere(3))
+    await followed(owned)
+    assert owned.had_elsewhere(names) == {"theirs": "b", "claimed": "b"}
+    claim = asyncio.create_task(owned.claim("claimed"))
+    while table.owners["claimed"] != here(7):
+        await asyncio.sleep(0.001)
+    assert owned.had_elsewhere(names) == {"theirs": "b"}
+    table.answering.set()
+    assert await claim
+    assert owned.had_elsewhere(names) == {"theirs": "b"}, "what was read before says otherwise"
 
 
 async def test_robots_that_are_not_stored_are_named_each_time(owned, table):
