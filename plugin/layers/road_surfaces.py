@@ -189,15 +189,8 @@ class SurfaceStore(QObject):
         :raises FleetError: as :meth:`read`.
         """
         self._watch.watch(layers)
-        task = SurfaceTask(self._sources(layers))
-        key, age = _key(layers), self._age
-
-        def keep() -> None:
-            # What changed while it was read has to be read once more.
-            if task.surfaces is not None and age == self._age:
-                self._maps[key] = task.surfaces
-
-        task.taskCompleted.connect(keep)
+        task = SurfaceTask(self._sources(layers), _key(layers), self._age)
+        task.read.connect(self._keep)
         return task
 
     def remove(self) -> None:
@@ -212,6 +205,11 @@ class SurfaceStore(QObject):
         scope.appendScope(QgsExpressionContextUtils.projectScope(project))
         return surface_sources(layers, project.crs(), project.transformContext(), scope)
 
+    def _keep(self, task: SurfaceTask) -> None:
+        # What changed while it was read has to be read once more.
+        if task.surfaces is not None and task.age == self._age:
+            self._maps[task.key] = task.surfaces
+
     def _forget(self) -> None:
         self._age += 1
         self._maps.clear()
@@ -219,10 +217,17 @@ class SurfaceStore(QObject):
 
 
 class SurfaceTask(QgsTask):
-    """Reads surfaces in a worker: ``surfaces`` is there afterwards, or ``why`` not."""
+    """Reads surfaces in a worker: ``surfaces`` is there afterwards, or ``why`` not.
 
-    def __init__(self, sources: SurfaceSources):
+    ``read`` has the task, in the window's thread, before ``taskCompleted``. ``key`` and ``age`` are the
+    store's.
+    """
+
+    read = pyqtSignal(object)
+
+    def __init__(self, sources: SurfaceSources, key: Key, age: int):
         super().__init__(tr("Reading road surfaces"), QgsTask.Flag.CanCancel)
+        self.key, self.age = key, age
         self._sources = sources
         self._feedback = QgsFeedback()
         self.surfaces: SurfaceMap | None = None
@@ -234,6 +239,12 @@ class SurfaceTask(QgsTask):
         except FleetError as error:
             self.why = str(error)
         return self.surfaces is not None
+
+    def finished(self, done: bool) -> None:
+        # No closure that holds the task may be connected to its signals: Qt calls what is left of it when
+        # Python has collected the two, and QGIS crashes. Methods get the task with the signal.
+        if done:
+            self.read.emit(self)
 
     def cancel(self) -> None:
         self._feedback.cancel()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 from collections import Counter
 from pathlib import Path
+from types import FunctionType
 
 from qgis.core import QgsApplication, QgsProject
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, QMetaMethod, QThread, QTimer
@@ -57,3 +58,13 @@ def connected_to(*objects):
             if hasattr(signal, "emit"):
                 found[f"{kind.className()}.{name}"] += one.receivers(signal)
     return found
+
+
+def slots_that_hold(sender):
+    """Return the closures that are connected to signals of ``sender`` and hold it themselves.
+
+    Where Python collects the two together, it may empty the closure before PyQt disconnects it. A sender
+    that lives on in C++, as a task of QGIS's does, then calls what is left, and the program crashes.
+    """
+    slots = [one for one in gc.get_referents(sender) if isinstance(one, FunctionType)]
+    return [one for one in slots if any(cell.cell_contents is sender for cell in one.__closure__ or ())]

@@ -204,7 +204,7 @@ class SurfaceTool(QgsMapTool):
         self._clicked = None
         QToolTip.hideText()
         if self._task is not None:
-            self._task.taskCompleted.disconnect(self._answer)
+            self._task.taskCompleted.disconnect(self._have_read)
             self._task.taskTerminated.disconnect(self._complain)
             self._task.cancel()
             self._task = None
@@ -230,12 +230,16 @@ class SurfaceTool(QgsMapTool):
                 )
             )
         self._task = self._store.task(layers)
-        self._task.taskCompleted.connect(self._answer)
+        self._task.taskCompleted.connect(self._have_read)
         self._task.taskTerminated.connect(self._complain)
         QgsApplication.taskManager().addTask(self._task)
 
-    def _answer(self) -> None:
+    def _have_read(self) -> None:
         self._task = None
+        self._answer()
+
+    def _answer(self) -> None:
+        # Somebody else may have read the surfaces sooner: the tool's own task is held until it has ended.
         place, surfaces = self._clicked, self._surfaces()
         if surfaces is None:
             # A layer has changed meanwhile.

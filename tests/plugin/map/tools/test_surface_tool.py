@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import time
 
 import pytest
@@ -22,6 +23,7 @@ from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QToolTip
 
+from tests.support.left_behind import slots_that_hold
 from tests.support.patience import BUSY
 
 ORIGIN = (488000.0, 5190000.0)
@@ -120,6 +122,23 @@ def test_a_click_before_the_surfaces_are_read_is_answered_when_they_are(entry, l
     iface.click(50, 50)
     until(lambda: iface.said, "the click is answered")
     assert iface.said[0][0].startswith("Asphalt")
+
+
+def test_a_click_answered_from_what_others_read_leaves_the_reading_to_its_end(entry, layer, iface):
+    entry.action.trigger()
+    task = entry.tool._task
+    assert not slots_that_hold(task), (
+        "collected together with such a slot, the task crashes QGIS when it ends"
+    )
+    # As the watch for robots off the road does when a desk connects.
+    entry.tool._store.read([layer])
+    iface.click(50, 50)
+    assert iface.said[0][0].startswith("Asphalt")
+    assert entry.tool._task is task
+    del task
+    gc.collect()
+    until(lambda: entry.tool._task is None, "the reading has ended")
+    assert len(iface.said) == 1
 
 
 def test_what_is_drawn_while_the_tool_is_in_hand_counts(ready, layer, iface):
