@@ -70,9 +70,8 @@ class Thumbnails(QObject):
         image = answer.get("image")
         if not isinstance(image, str) or not self._folder.isValid():
             return False
-        task = ThumbnailTask(image, self._path(number))
-        task.taskCompleted.connect(lambda: self._ended(number, task, done=True))
-        task.taskTerminated.connect(lambda: self._ended(number, task, done=False))
+        task = ThumbnailTask(number, image, self._path(number))
+        task.ended.connect(self._ended)
         self._tasks[number] = task
         QgsApplication.taskManager().addTask(task)
         return True
@@ -100,7 +99,8 @@ class Thumbnails(QObject):
     def _path(self, number: int) -> Path:
         return Path(self._folder.path()) / f"observation-{number}.png"
 
-    def _ended(self, number: int, task: ThumbnailTask, *, done: bool) -> None:
+    def _ended(self, task: ThumbnailTask, done: bool) -> None:
+        number = task.number
         if self._tasks.get(number) is not task:
             return
         del self._tasks[number]
@@ -112,10 +112,17 @@ class Thumbnails(QObject):
 
 
 class ThumbnailTask(DecodeTask):
-    """Makes an image of base64 and writes it, small, to ``file``."""
+    """Makes an image of base64 and writes it, small, to ``file``.
 
-    def __init__(self, text: str, file: Path):
+    ``ended`` has the task, in the window's thread, and whether the file is there. ``number`` is that of the
+    observation.
+    """
+
+    ended = pyqtSignal(object, bool)
+
+    def __init__(self, number: int, text: str, file: Path):
         super().__init__(text)
+        self.number = number
         self._file = file
 
     def run(self) -> bool:
@@ -125,6 +132,10 @@ class ThumbnailTask(DecodeTask):
         small = self.image.scaled(QSize(SIDE, SIDE), Qt.AspectRatioMode.KeepAspectRatio, smooth)
         self.image = None
         return small.save(str(self._file), "PNG")
+
+    def finished(self, done: bool) -> None:
+        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
+        self.ended.emit(self, done)
 
 
 PAGE = 500

@@ -51,6 +51,10 @@ class PlanEditor(QObject):
         self.settings: plan_settings.PlanSettings = plan_settings.read_settings(desk.project)
         self.draft: PlanProposal | None = None
         self.task: PlanTask | None = None
+        self._closures: Sequence[ClosureReport] = ()
+        """Those that the task goes by."""
+        self._then: Callable[[PlanProposal], None] = self._put
+        """What gets the plan that the task makes."""
         self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
@@ -116,10 +120,8 @@ class PlanEditor(QObject):
             raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
         apart_m, closures = self.settings.apart_m, self._desk.roads.closures
         task = PlanTask(title, lambda task: ground.with_plan(work(task), apart_m, closures))
-        task.made.connect(lambda draft: self._made(task, draft, closures, then))
-        task.refused.connect(lambda why: self._refused(task, why))
-        task.taskTerminated.connect(lambda: self._ended(task))
-        self.task = task
+        task.ended.connect(self._ended)
+        self.task, self._closures, self._then = task, closures, then
         QgsApplication.taskManager().addTask(task)
         self.changed.emit()
 
@@ -221,17 +223,18 @@ class PlanEditor(QObject):
         then(draft)
         self.changed.emit()
 
-    def _refused(self, task: PlanTask, why: str) -> None:
-        if task is self.task:
-            self.task = None
-            self.changed.emit()
-            self.refused.emit(why)
-
     def _ended(self, task: PlanTask) -> None:
-        if task is self.task and task.isCanceled():
-            # Cancelled in QGIS's own list of tasks.
-            self.task = None
-            self.changed.emit()
+        if task is not self.task:
+            return
+        # Cancelled it was in QGIS's own list of tasks.
+        cancelled = task.isCanceled()
+        if task.draft is not None and not cancelled:
+            self._made(task, task.draft, self._closures, self._then)
+            return
+        self.task = None
+        self.changed.emit()
+        if not cancelled:
+            self.refused.emit(task.why)
 
     def _frame(self) -> SiteFrame:
         if self._desk.state.site is None:

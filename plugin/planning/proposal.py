@@ -304,19 +304,18 @@ def _looked_at(
 
 
 class PlanTask(QgsTask):
-    """Does ``work``, which is given the task.
+    """Does ``work``, which is given the task: ``draft`` is there afterwards, or ``why`` not.
 
-    Unless cancelled, ``made`` or ``refused`` is emitted in the window's thread.
+    ``ended`` has the task, in the window's thread, whether it was cancelled or not.
     """
 
-    made = pyqtSignal(object)
-    refused = pyqtSignal(str)
+    ended = pyqtSignal(object)
 
     def __init__(self, title: str, work: Callable[[PlanTask], PlanProposal]):
         super().__init__(title, QgsTask.Flag.CanCancel)
         self._work = work
-        self._draft: PlanProposal | None = None
-        self._why = ""
+        self.draft: PlanProposal | None = None
+        self.why = ""
         self.share = 0.0
         """How much is done, 0 to 1; known when QGIS has deleted the task, too."""
         self.left = threading.Event()
@@ -324,27 +323,23 @@ class PlanTask(QgsTask):
 
     def run(self) -> bool:
         try:
-            self._draft = self._work(self)
+            self.draft = self._work(self)
         except AssignmentCancelledError:
             pass
         except (AssignmentError, RoadsError, FleetError) as error:
-            self._why = str(error)
+            self.why = str(error)
         except Exception:
-            self._why = tr(
+            self.why = tr(
                 "The plan could not be made. Please report this:\n{traceback}",
                 traceback=traceback.format_exc(),
             )
         finally:
             self.left.set()
-        return self._draft is not None
+        return self.draft is not None
 
     def finished(self, done: bool) -> None:
-        if self.isCanceled():
-            return
-        if self._draft is not None:
-            self.made.emit(self._draft)
-        else:
-            self.refused.emit(self._why)
+        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
+        self.ended.emit(self)
 
     def report_progress(self, share: float) -> bool:
         """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""

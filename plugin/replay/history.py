@@ -368,6 +368,8 @@ class HistoryDownload(QObject):
         self._key = ""
         self._query: GetTrajectory | None = None
         self._task: SortHistoryTask | None = None
+        self._text = ""
+        """What is told when the task has ended well."""
         self.history = History()
         self.reached = 0.0
         """The time of the newest position that is there."""
@@ -441,15 +443,15 @@ class HistoryDownload(QObject):
     def _end(self, text: str) -> None:
         self._key = ""
         self._drop_task()
-        task = self._task = SortHistoryTask(self.history)
-        task.taskCompleted.connect(lambda: self._arranged(task, text))
-        task.taskTerminated.connect(lambda: self._arranged(task, tr("What came could not be put in order.")))
-        QgsApplication.taskManager().addTask(task)
+        self._text = text
+        self._task = SortHistoryTask(self.history)
+        self._task.ended.connect(self._arranged)
+        QgsApplication.taskManager().addTask(self._task)
 
-    def _arranged(self, task: SortHistoryTask, text: str) -> None:
+    def _arranged(self, task: SortHistoryTask, done: bool) -> None:
         if task is self._task:
             self._task = None
-            self.ended.emit(text)
+            self.ended.emit(self._text if done else tr("What came could not be put in order."))
 
     def _drop_task(self) -> None:
         task, self._task = self._task, None
@@ -458,7 +460,12 @@ class HistoryDownload(QObject):
 
 
 class SortHistoryTask(QgsTask):
-    """Puts a history in order beside the window; nobody else touches it meanwhile."""
+    """Puts a history in order beside the window; nobody else touches it meanwhile.
+
+    ``ended`` has the task, in the window's thread, and whether it is in order.
+    """
+
+    ended = pyqtSignal(object, bool)
 
     def __init__(self, history: History):
         super().__init__(tr("Putting positions in order"), QgsTask.Flag.CanCancel)
@@ -466,3 +473,7 @@ class SortHistoryTask(QgsTask):
 
     def run(self) -> bool:
         return len(self._history.table) == len(self._history)
+
+    def finished(self, done: bool) -> None:
+        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
+        self.ended.emit(self, done)

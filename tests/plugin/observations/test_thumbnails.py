@@ -14,6 +14,8 @@ from fleet_supervisor.robot_bridge.core.messages.records import observation_repo
 from qgis.PyQt.QtCore import QBuffer, QObject, pyqtSignal
 from qgis.PyQt.QtGui import QColor, QImage
 
+from tests.support.left_behind import slots_that_hold
+
 
 @pytest.fixture
 def photo(qgis_app):
@@ -84,6 +86,7 @@ def test_what_is_being_made_of_others_is_given_up(thumbnails, photo, made, wait)
     thumbnails.made.connect(ended.append)
     thumbnails.failed.connect(ended.append)
     thumbnails.make(1, photo)
+    assert not slots_that_hold(thumbnails._tasks[1]), "let go of, the task may crash QGIS when it ends"
     thumbnails.keep({2})
     assert not thumbnails.has(1)
     made(2)

@@ -11,6 +11,7 @@ from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget
 
 from tests.plugin.planning.panel_parts import ABOARD, CARRIES, E, N, cones_of, planned, press, untick, write
+from tests.support.left_behind import slots_that_hold
 
 
 def test_a_preview_gives_each_robot_the_cones_near_to_it_and_sends_nothing(panel, gateway, wait, iface):
@@ -36,6 +37,7 @@ def test_a_good_plan_is_made_with_progress_and_can_be_given_up(panel, wait, endl
     press(panel, "fleet_plan_solve")
     wait(lambda: panel.drafts.task is not None and panel.drafts.task.progress() > 0, 20, "progress")
     assert not panel.preview.isEnabled()
+    assert not slots_that_hold(panel.drafts.task), "let go of, the task may crash QGIS when it ends"
     press(panel, "fleet_plan_cancel")
     wait(lambda: not panel.drafts.busy, 10, "the end")
     assert panel.drafts.draft is None and panel.preview.isEnabled()

@@ -16,6 +16,8 @@ from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QTimer
 from qgis.PyQt.QtWidgets import QApplication
 
+from tests.support.left_behind import slots_that_hold
+
 LAYER = "Trajectories (replay)"
 LOW = 375
 """Pixels that the panel has above QGIS's layers on a screen of 800."""
@@ -124,6 +126,14 @@ def test_of_a_history_that_is_fetched_anew_nothing_more_is_shown(loaded, wait):
     assert not loaded._showing.is_busy
     wait(lambda: not loaded.is_busy, what="the new one")
     assert len(loaded.fetching.history) == 10 and lines()
+
+
+def test_what_is_put_in_order_may_be_let_go_of_before_it_is(loaded, wait):
+    loaded.fetching._end("")
+    assert not slots_that_hold(loaded.fetching._task), "let go of, the task may crash QGIS when it ends"
+    loaded.load()
+    wait(lambda: not loaded.is_busy, what="the new one")
+    assert len(loaded.fetching.history) == 10
 
 
 def test_while_time_is_held_the_map_goes_on_until_it_is_whole_and_follows_its_view(
