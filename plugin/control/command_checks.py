@@ -424,6 +424,49 @@ def _target_text(x: float, y: float, target: OtherTarget, away: float) -> str:
     )
 
 
+# --- What stands where a command leads to ---
+
+STANDS_M_S = 0.05
+CLEAR_OF_CONES_M = 0.5
+
+
+def check_standing(draft: PendingCommand, state: FleetState) -> Findings:
+    """Warn where a draft ends at a robot that stands and has nowhere to go, or at a cone that was put down.
+
+    A queue comes to its places later: robots may have left by then, cones have not.
+    """
+    if draft.kind == START:
+        return Findings()
+    ends = np.array(draft.points if draft.kind == TARGETS else draft.points[-1:], dtype=np.float64)
+    texts = [] if draft.kind == TARGETS else list(_robots_at(ends[0], draft.robot, state))
+    cones = [one for one in state.placed_cones if one.collected_at is None]
+    if cones:
+        places = np.array([(one.x, one.y) for one in cones])
+        for end, number, _ in sorted(zip(*pairs_between(ends, places, CLEAR_OF_CONES_M), strict=True)):
+            cone = cones[number]
+            texts.append(
+                tr(
+                    "({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, "
+                    "{cone_y:.2f}.",
+                    x=ends[end, 0],
+                    y=ends[end, 1],
+                    robot=cone.robot,
+                    cone_x=cone.x,
+                    cone_y=cone.y,
+                )
+            )
+    return Findings(warnings=tuple(texts))
+
+
+def _robots_at(end: npt.NDArray[np.float64], but: str, state: FleetState) -> Iterator[str]:
+    robots = state.robots.arrays(state.clock.steady())
+    near = np.hypot(*(robots.xy - end).T) < CLEAR_M
+    for row in np.flatnonzero(near & ~(np.abs(robots.v) >= STANDS_M_S)).tolist():
+        robot = robots.names[row]
+        if robot != but and state.commands.task_of(robot) is None:
+            yield tr("({x:.2f}, {y:.2f}) m is where {robot} stands.", x=end[0], y=end[1], robot=robot)
+
+
 # --- All checks of a command ---
 
 
@@ -461,7 +504,7 @@ class CommandChecks(QObject):
         found += yield from self._layers.check_command(draft, placement, afresh)
         found += draft.way.findings
         # At the end, so that nobody is sent there meanwhile.
-        found += self._targets.check_command(draft)
+        found += self._targets.check_command(draft) + check_standing(draft, self._state)
         robot = self._state.robot(draft.robot)
         found += check_last_seen(draft, robot) + check_abilities(draft, robot)
         found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)

@@ -1053,6 +1053,16 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, {cone_y:.2f}.</source>
+            <translation>({x:.2f}, {y:.2f}) m és on hi ha un con: {robot} el va posar a {cone_x:.2f}, {cone_y:.2f}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where {robot} stands.</source>
+            <translation>({x:.2f}, {y:.2f}) m és on està aturat {robot}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m és a {away:.2f} m de {what} de {robot} a {other_x:.2f}, {other_y:.2f}: deixeu {clear_m:g} m entre objectius.</translation>
         </message>

@@ -1053,6 +1053,16 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, {cone_y:.2f}.</source>
+            <translation>({x:.2f}, {y:.2f}) m es donde hay un cono: {robot} lo puso en {cone_x:.2f}, {cone_y:.2f}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where {robot} stands.</source>
+            <translation>({x:.2f}, {y:.2f}) m es donde está parado {robot}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m está a {away:.2f} m de {what} de {robot} en {other_x:.2f}, {other_y:.2f}: deje {clear_m:g} m entre objetivos.</translation>
         </message>

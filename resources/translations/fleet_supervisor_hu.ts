@@ -1047,6 +1047,16 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, {cone_y:.2f}.</source>
+            <translation>({x:.2f}, {y:.2f}) m helyén bója áll: {robot} rakta le itt: {cone_x:.2f}, {cone_y:.2f}.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
+            <source>({x:.2f}, {y:.2f}) m is where {robot} stands.</source>
+            <translation>({x:.2f}, {y:.2f}) m helyén {robot} áll.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>({x:.2f}, {y:.2f}) m is {away:.2f} m from {what} of {robot} at {other_x:.2f}, {other_y:.2f}: keep {clear_m:g} m between targets.</source>
             <translation>({x:.2f}, {y:.2f}) m {away:.2f} m-re van ettől: {what}, {robot}, itt: {other_x:.2f}, {other_y:.2f}; tartson {clear_m:g} m-t a célok között.</translation>
         </message>

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
+from fleet_supervisor.robot_bridge.core.messages.records import PlacementReport
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
@@ -157,6 +159,46 @@ def test_a_target_too_near_to_the_end_of_another_robots_route_is_refused(cone, g
     cone.wait(lambda: cone.window.desk.state.commands.task_of("r2") is None)
     cone.click((70, 55.5))
     assert "Not to be sent" not in cone.draft_text
+
+
+def test_a_target_where_another_robot_stands_is_warned_of(cone, gateway, make_robot, wait):
+    # r2 stands at (80, 60) but says that it drives.
+    cone.click((80, 60.5))
+    assert "stands" not in cone.draft_text
+    gateway.show(make_robot("r2", 80, 60, v=0.0))
+    wait(lambda: cone.window.desk.state.report_of("r2").v == 0.0)
+    # At the end of a check a robot has come to stand there that did not before.
+    cone.key(Qt.Key.Key_Return)
+    assert cone.complained("only now this is known: (80.")
+    assert cone.nothing_sent() and "is where r2 stands." in cone.draft_text
+    cone.click((80, 61.5))
+    assert "stands" not in cone.draft_text
+    cone.window.desk.selection.select("r2")
+    cone.click((80, 60.5))
+    assert "stands" not in cone.draft_text
+    cone.window.desk.selection.select("r1")
+    asked_for_by(gateway, "anna", "r2")
+    wait(lambda: cone.window.desk.state.commands.task_of("r2") is not None)
+    cone.click((80, 60.5))
+    assert "stands" not in cone.draft_text
+
+
+def test_a_target_where_a_cone_stands_is_warned_of_until_that_is_collected(cone, gateway, wait):
+    put_down = PlacementReport(
+        1, "t", "r2", 70.0, 55.0, 70.1, 55.2, theta=0.0, deviation=0.2, placed_at=1.7e9, command="c"
+    )
+    gateway.tell("placement", to_json(put_down))
+    wait(lambda: len(cone.window.desk.state.placed_cones) == 1)
+    cone.click((70, 55))
+    assert "m is where a cone stands: r2 put it down at 70.10, 55.20." in cone.draft_text
+    cone.key(Qt.Key.Key_Return)
+    assert cone.sent()["robot"] == "r1"
+    cone.click((70, 56))
+    assert "stands" not in cone.draft_text
+    gateway.tell("placement", to_json(replace(put_down, collected_at=1.8e9, collected_by="r1")))
+    wait(lambda: all(one.collected_at for one in cone.window.desk.state.placed_cones))
+    cone.click((70, 55))
+    assert "stands" not in cone.draft_text
 
 
 def asked_for_by(gateway, operator, robot="r1"):
