@@ -28,6 +28,8 @@ AROUND_TEXT = 3
 """Pixels above and below a text."""
 AROUND_BUTTON_TEXT = 6
 """Pixels of a button at either side of its text."""
+UNDERLINE = 3
+"""Pixels of the line beneath a title in a colour."""
 MOST_COUNTED = 99
 """The largest number that stands on a tab."""
 
@@ -228,7 +230,27 @@ class ElidedButton(QToolButton):
 
 
 class _SteadyTabBar(QTabBar):
-    """Asks for room for the longest title of each tab, which is its data."""
+    """Asks for room for the longest title of each tab, which is its data, and underlines some in colours."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._lines: dict[int, QColor] = {}
+
+    def underline(self, tab: int, colour: QColor | None) -> None:
+        """Draw a line of ``colour`` at the foot of a tab; None for none."""
+        if self._lines.get(tab) == colour:
+            return
+        self._lines.pop(tab, None)
+        if colour is not None:
+            self._lines[tab] = colour
+        self.update()
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        super().paintEvent(event)
+        with painting(self) as painter:
+            for tab, colour in self._lines.items():
+                place = self.tabRect(tab)
+                painter.fillRect(place.adjusted(2, place.height() - UNDERLINE, -2, 0), colour)
 
     def tabSizeHint(self, index: int) -> QSize:
         hint = super().tabSizeHint(index)
@@ -244,7 +266,8 @@ class SteadyTabs(QTabWidget):
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
-        self.setTabBar(_SteadyTabBar())
+        self._bar = _SteadyTabBar()
+        self.setTabBar(self._bar)
         self.setDocumentMode(True)
         font = self.tabBar().font()
         font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
@@ -262,9 +285,13 @@ class SteadyTabs(QTabWidget):
         self.setTabText(self.indexOf(page), _counted(title, number) if number else title)
 
     def show_colour(self, page: QWidget, colour: QColor | None) -> None:
-        """Show the title of a page in ``colour``, None for the usual one."""
+        """Show the title of a page in ``colour`` and underline it, None for the usual way.
+
+        QGIS's dark themes give the letters of every tab a colour of their own.
+        """
         plain = self.palette().color(QPalette.ColorRole.WindowText)
         self.tabBar().setTabTextColor(self.indexOf(page), colour or plain)
+        self._bar.underline(self.indexOf(page), colour)
 
 
 def _counted(title: str, number: int) -> str:

@@ -81,6 +81,22 @@ def test_the_tab_shows_that_there_are_conflicts(at_desk, tell):
     assert bar.tabTextColor(tab) != plain
 
 
+def test_the_tab_shows_them_in_a_theme_that_colours_the_letters_of_tabs(at_desk, tell):
+    """As QGIS's themes Night Mapping and Blend of Gray do."""
+    at_desk.dock.window().setStyleSheet("QTabBar::tab { color: #eeeeee; background-color: #323232; }")
+    bar, tab = at_desk.dock.tabs.tabBar(), at_desk.dock.tabs.indexOf(at_desk.dock.conflict_panel)
+
+    def colours():
+        image = bar.grab(bar.tabRect(tab)).toImage()
+        return {image.pixelColor(x, y).name() for x in range(image.width()) for y in range(image.height())}
+
+    plain = colours()
+    tell(meeting("r1", "r2"))
+    assert bar.tabTextColor(tab).name() in colours() - plain
+    tell()
+    assert colours() == plain
+
+
 def test_the_map_keeps_its_width_whatever_the_panel_has_to_tell(conflicts, tell, gateway, iface, wait):
     """It would move beneath the mouse of who is about to click, and be drawn anew."""
     before = iface.canvas.width()
