@@ -224,13 +224,16 @@ class RoadPlanner:
 
     def _reported(self, route: Route, start: Point, goal: Point, speed: float) -> RouteReport:
         dense = self._dense(route, start, goal)
+        driven = float(np.hypot(*np.diff(dense.points, axis=0).T).sum())
+        # To its first road and from its last one no road limits a robot's speed.
+        seconds = route.seconds_at(speed) + max(0.0, driven - route.metres) / speed
         metres: dict[str, float] = {}
         for surface, length in zip(route.surfaces, route.lengths.tolist(), strict=True):
             metres[surface] = metres.get(surface, 0.0) + length
         return RouteReport(
             points=_rounded(dense.points, start, goal),
-            metres=round(float(np.hypot(*np.diff(dense.points, axis=0).T).sum()), 2),
-            seconds=round(route.seconds_at(speed), 1),
+            metres=round(driven, 2),
+            seconds=round(seconds, 1),
             surfaces=[SurfaceMetres(surface, round(length, 2)) for surface, length in metres.items()],
             tight=[(round(x, 2), round(y, 2)) for x, y in dense.tight.tolist()],
             off_goal=round(route.off_goal, 2),

@@ -180,6 +180,19 @@ def test_seconds_are_the_robots_and_not_the_roads(sample, setting, shown, second
     assert straight.seconds == pytest.approx(100.0 / setting, abs=0.1)
 
 
+@pytest.mark.parametrize(
+    ("start", "goal", "metres"), [((0.0, 15.0), (100.0, 0.0), 115.0), ((0.0, 15.0), (5.0, -15.0), 35.0)]
+)
+def test_the_way_to_the_road_and_from_it_takes_time_as_well(sample, start, goal, metres):
+    road = Centreline(np.array([(0, 0), (100, 0)], float), 6.0, "asphalt", speed_ms=13.9)
+    site = replace(sample, centrelines=(road,), keepouts=())
+    report = RoadPlanner(Served(lambda: site)).route(start, goal)
+    speed = site.settings.routes.speed_ms
+    # Corners are rounded, which is a little shorter.
+    assert metres - 5.0 < report.metres <= metres
+    assert report.seconds == pytest.approx(report.metres / speed, abs=3.0)
+
+
 def test_a_road_without_a_surface_has_that_of_the_area_that_it_lies_on(sample):
     yard = Surface((np.array([(-5, -5), (60, -5), (60, 5), (-5, 5)], float),), "asphalt")
     roads = [
