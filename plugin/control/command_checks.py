@@ -17,7 +17,7 @@ from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.queues import TaskState
 from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import Ability, RobotState
-from ..gateway_client.command_cache import CommandCache, command_in_words
+from ..gateway_client.command_cache import CommandCache, command_in_words, is_cone_put_down, place_of
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import RobotView
@@ -439,23 +439,37 @@ def check_standing(draft: PendingCommand, state: FleetState) -> Findings:
         return Findings()
     ends = np.array(draft.points if draft.kind == TARGETS else draft.points[-1:], dtype=np.float64)
     texts = [] if draft.kind == TARGETS else list(_robots_at(ends[0], draft.robot, state))
-    cones = [one for one in state.placed_cones if one.collected_at is None]
+    cones = list(_cones_put_down(state))
     if cones:
-        places = np.array([(one.x, one.y) for one in cones])
+        places = np.array([place for _, place in cones])
         for end, number, _ in sorted(zip(*pairs_between(ends, places, CLEAR_OF_CONES_M), strict=True)):
-            cone = cones[number]
+            robot, (cone_x, cone_y) = cones[number]
             texts.append(
                 tr(
                     "({x:.2f}, {y:.2f}) m is where a cone stands: {robot} put it down at {cone_x:.2f}, "
                     "{cone_y:.2f}.",
                     x=ends[end, 0],
                     y=ends[end, 1],
-                    robot=cone.robot,
-                    cone_x=cone.x,
-                    cone_y=cone.y,
+                    robot=robot,
+                    cone_x=cone_x,
+                    cone_y=cone_y,
                 )
             )
     return Findings(warnings=tuple(texts))
+
+
+def _cones_put_down(state: FleetState) -> Iterator[tuple[str, Point]]:
+    """Return who put which cone where: those of queues, collected ones not, and those of single targets."""
+    known = set()
+    for cone in state.placed_cones:
+        known.add(cone.command)
+        if cone.collected_at is None:
+            yield cone.robot, (cone.x, cone.y)
+    for report in state.commands:
+        if is_cone_put_down(report) and report.command not in known:
+            place = place_of(report)
+            if place is not None:
+                yield report.robot, place
 
 
 def _robots_at(end: npt.NDArray[np.float64], but: str, state: FleetState) -> Iterator[str]:
@@ -504,7 +518,9 @@ class CommandChecks(QObject):
         found += yield from self._layers.check_command(draft, placement, afresh)
         found += draft.way.findings
         # At the end, so that nobody is sent there meanwhile.
-        found += self._targets.check_command(draft) + check_standing(draft, self._state)
+        found += self._targets.check_command(draft)
+        # First what a robot would run into: the panel has room for a few lines.
+        found = check_standing(draft, self._state) + found
         robot = self._state.robot(draft.robot)
         found += check_last_seen(draft, robot) + check_abilities(draft, robot)
         found += check_orders(draft, self._state.commands.task_of(draft.robot), self._state.link.operator)

@@ -219,6 +219,12 @@ def place_of(report: CommandReport) -> tuple[float, float] | None:
     return None
 
 
+def is_cone_put_down(report: CommandReport) -> bool:
+    """Tell whether a robot reached a target, straight or along a path, with a cone for it."""
+    is_cone = report.op in DRIVE_OPERATIONS and report.params.get("cone") is True
+    return is_cone and report.state is CommandState.REACHED
+
+
 def _metres(value: object) -> str:
     return f"{value:.2f}" if isinstance(value, (int, float)) else "?"
 

@@ -33,11 +33,11 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.geometry import headings_of
 from ...robot_bridge.core.messages.administration import SiteReport
-from ...robot_bridge.core.messages.commands import CommandReport, CommandState
+from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.roads import ClosureReport, ConflictReport
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
-from ..gateway_client.command_cache import DRIVE_OPERATIONS, place_of
+from ..gateway_client.command_cache import is_cone_put_down, place_of
 from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.robot_states import STATES, RobotStates
 from ..gateway_client.state_words import ROBOT_STATES
@@ -491,7 +491,7 @@ class StandingCones(QObject):
         self._layer.remove()
 
     def _add_reached(self, reports: Iterable[CommandReport]) -> None:
-        new = {report.command: report for report in reports if _is_cone_put_down(report)}
+        new = {report.command: report for report in reports if is_cone_put_down(report)}
         if new:
             self._reached.update(new)
             for command in list(self._reached)[:-MOST]:
@@ -520,11 +520,6 @@ class StandingCones(QObject):
             if command not in known and place is not None:
                 at = report.steps[-1].at if report.steps else None
                 yield [place], [report.robot, "", date_and_time(at), report.deviation]
-
-
-def _is_cone_put_down(report: CommandReport) -> bool:
-    is_cone = report.op in DRIVE_OPERATIONS and report.params.get("cone") is True
-    return is_cone and report.state is CommandState.REACHED
 
 
 def _style_cones(layer: QgsVectorLayer) -> None:

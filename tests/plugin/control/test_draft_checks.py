@@ -201,6 +201,16 @@ def test_a_target_where_a_cone_stands_is_warned_of_until_that_is_collected(cone,
     assert "stands" not in cone.draft_text
 
 
+def test_a_target_where_a_cone_of_a_single_target_stands_is_warned_of(cone, gateway, wait):
+    asked_for_by(gateway, "anna", "r2")
+    gateway.step("of-anna", CommandState.REACHED, "r2")
+    wait(lambda: cone.window.desk.state.commands.reached_by("r2") is not None)
+    cone.click((90, 20.3))
+    assert "m is where a cone stands: r2 put it down at 90.00, 20.00." in cone.draft_text
+    cone.click((90, 21))
+    assert "stands" not in cone.draft_text
+
+
 def asked_for_by(gateway, operator, robot="r1"):
     report = gateway._queue(f"of-{operator}", robot, "SetPosEnd", {"x": 90.0, "y": 20.0, "cone": True})
     gateway.commands[report.command] = replace(report, operator=operator)
