@@ -3,7 +3,8 @@
 Python knows that an object holds what is connected to its signals. Where that function holds the object in
 turn, and nothing else in Python does, Python takes both for garbage, though Qt still has the object: the next
 signal calls a function that is gone, and QGIS crashes. What is made by its class stays while Qt has it; what
-Qt hands out (``table.horizontalHeader()``) does not. So only what is made in the same function may be held.
+Qt hands out (``table.horizontalHeader()``) does not, and nor does a task, which QGIS lets go of when it has
+ended. So only what is made in the same function, and is no task, may be held.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def _made_by_their_class(function: ast.AST) -> Iterator[str]:
     for node in ast.walk(function):
         if isinstance(node, ast.Assign) and isinstance(node.value, ast.Call):
             name = node.value.func
-            if isinstance(name, ast.Name) and name.id[0].isupper():
+            if isinstance(name, ast.Name) and name.id[0].isupper() and not name.id.endswith("Task"):
                 yield from (target.id for target in node.targets if isinstance(target, ast.Name))
 
 
@@ -80,6 +81,7 @@ def test_nothing_in_the_plugin_is_kept_alive_by_its_own_signals_only(root):
         "def fit(header):\n    def resized():\n        print(header)\n    header.resized.connect(resized)",
         "def fit(header):\n    header.resized.connect(partial(print, header))",
         "def fit(bars):\n    for bar in bars:\n        bar.moved.connect(lambda bar=bar: print(bar))",
+        "def ask(self):\n    self.task = task = ReadTask()\n    task.ended.connect(lambda: print(task))",
     ],
 )
 def test_what_holds_its_own_sender_is_found(code):
@@ -90,7 +92,8 @@ def test_what_holds_its_own_sender_is_found(code):
     "code",
     [
         "def ask(self):\n    button = QPushButton(self)\n    button.clicked.connect(lambda: print(button))",
-        "def ask(self):\n    self.task = task = Task()\n    task.ended.connect(lambda: print(task))",
+        "def ask(self):\n    self.timer = timer = QTimer()\n    timer.timeout.connect(lambda: print(timer))",
+        "def ask(self):\n    self.task = task = ReadTask()\n    task.ended.connect(self.fit)",
         "def fit(self, header):\n    header.resized.connect(self.fit)",
         "def fit(header, name):\n    header.resized.connect(lambda: print(name))",
     ],
