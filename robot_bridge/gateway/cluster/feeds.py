@@ -93,6 +93,9 @@ class StepFeed:
             await asyncio.sleep(0)
         self._newest = max([self._newest, *(id for id, _ in found)])
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
+        if len(found) == commands.STEPS_AT_ONCE:
+            # There may be more, which are no new change to anybody.
+            self._follower.wake()
 
     async def _learn_open(self) -> None:
         """Tell what robots are doing that came to be another gateway's; raises StoreError."""

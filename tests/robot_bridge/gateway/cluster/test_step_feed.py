@@ -11,6 +11,8 @@ from robot_bridge.gateway.cluster.feeds import StepFeed
 from robot_bridge.gateway.cluster.followers import ChangeNumbers
 from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.storage.repositories import commands
+from tests.support.patience import BUSY
 
 
 class Alone:
@@ -38,16 +40,25 @@ class Turns:
             await asyncio.sleep(0)
 
 
+def step_feed(two, database=None):
+    fleet, exchange = two.fleet, Exchange("a", b"k" * 32, [])
+    numbers = ChangeNumbers(exchange, Alone())
+    return StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, numbers, database or two.database)
+
+
+async def abort(two, times):
+    """Issue Aborts of r1, which is at another gateway from then on."""
+    for number in range(times):
+        order = CommandOrder(f"abort-{number:04}", "r1", Abort(), "Ada", None)
+        await two.fleet.emergency._book.issue([order])
+    two.fleet.robots.let_go("r1", "south")
+
+
 async def test_hundreds_of_steps_leave_others_their_turns(two, monkeypatch):
     monkeypatch.setattr(feeds, "PIECE", 10)
-    fleet = two.fleet
-    exchange = Exchange("a", b"k" * 32, [])
-    numbers = ChangeNumbers(exchange, Alone())
-    feed = StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, numbers, two.database)
+    fleet, feed = two.fleet, step_feed(two)
     await feed.follow()
-    for number in range(40):
-        await fleet.emergency._book.issue([CommandOrder(f"abort-{number:04}", "r1", Abort(), "Ada", None)])
-    fleet.robots.let_go("r1", "south")
+    await abort(two, 40)
     turns = Turns()
     fleet.listeners.add(turns)
     counting = asyncio.create_task(turns.count())
@@ -55,3 +66,21 @@ async def test_hundreds_of_steps_leave_others_their_turns(two, monkeypatch):
     counting.cancel()
     assert sum(turns.heard.values()) == 40
     assert max(turns.heard.values()) <= 10
+
+
+async def test_more_steps_than_are_read_at_once_wait_for_no_other_change(two, monkeypatch):
+    monkeypatch.setattr(commands, "STEP_MARGIN", 2)
+    feed = step_feed(two)
+    await feed.follow()
+    await abort(two, 100)
+    monkeypatch.setattr(commands, "STEPS_AT_ONCE", 10)
+    turns = Turns()
+    two.fleet.listeners.add(turns)
+    following = asyncio.create_task(feed.run())
+    try:
+        async with asyncio.timeout(10 * BUSY):
+            while sum(turns.heard.values()) < 100:
+                await asyncio.sleep(0.01)
+    finally:
+        following.cancel()
+        await asyncio.gather(following, return_exceptions=True)
