@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Iterable, Mapping
+from itertools import islice
 from typing import Generic, Protocol, TypeVar
 
 import msgspec
@@ -42,6 +43,8 @@ PIECE = 50
 
 # --- Steps of commands, told to the operators of this gateway ---
 
+LEFT_AT_ONCE = 1000
+"""robots whose commands are read together: PostgreSQL takes 65535 values in a statement."""
 MOVING = (SetPosEnd.__name__, SetPath.__name__)
 """The commands that robots are busy with."""
 
@@ -77,10 +80,7 @@ class StepFeed:
     async def follow(self) -> None:
         """Tell operators of the steps since the last look; raises StoreError."""
         if self._newest is None:
-            self._newest = await self._database.read(commands.newest_step)
-            self._seen = {id for id, _ in await self._database.read(commands.steps_after, self._margin())}
-            self._left.update(self._robots.commanded_elsewhere())
-            await self._learn_open()
+            await self._begin()
             return
         await self._learn_open()
         found = await self._database.read(commands.steps_after, self._margin())
@@ -97,11 +97,25 @@ class StepFeed:
             # There may be more, which are no new change to anybody.
             self._follower.wake()
 
+    async def _begin(self) -> None:
+        """Know the steps that there are, and what robots are doing; raises StoreError."""
+        newest = await self._database.read(commands.newest_step)
+        known = await self._database.read(commands.steps_after, newest - commands.STEP_MARGIN)
+        self._left.update(self._robots.commanded_elsewhere())
+        await self._learn_open()
+        self._newest, self._seen = newest, {id for id, _ in known}
+
     async def _learn_open(self) -> None:
         """Tell what robots are doing that came to be another gateway's; raises StoreError."""
-        robots, self._left = self._left, set()
-        for found in await self._database.read(commands.still_open, sorted(robots)) if robots else []:
-            self._note_doing(found.report)
+        while some := set(islice(self._left, LEFT_AT_ONCE)):
+            self._left -= some
+            try:
+                found = await self._database.read(commands.still_open, sorted(some))
+            except StoreError:
+                self._left |= some
+                raise
+            for one in found:
+                self._note_doing(one.report)
 
     def _margin(self) -> int:
         return (self._newest or 0) - commands.STEP_MARGIN

@@ -5,12 +5,16 @@ from __future__ import annotations
 import asyncio
 from collections import Counter
 
-from robot_bridge.core.messages.robots import Abort
+import pytest
+
+from robot_bridge.core.errors import StoreError
+from robot_bridge.core.messages.robots import Abort, SetPosEnd
 from robot_bridge.gateway.cluster import feeds
 from robot_bridge.gateway.cluster.feeds import StepFeed
 from robot_bridge.gateway.cluster.followers import ChangeNumbers
 from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.commands.active_command import CommandOrder
+from robot_bridge.gateway.model.events import RobotLeft
 from robot_bridge.gateway.storage.repositories import commands
 from tests.support.patience import BUSY
 
@@ -23,6 +27,19 @@ class Alone:
 
     def database_time(self):
         return 0.0
+
+
+class Unreliable:
+    """A database that cannot be reached as ``work`` is read for the first time."""
+
+    def __init__(self, database, work):
+        self._database, self._work = database, work
+
+    async def read(self, work, *arguments):
+        if work is self._work:
+            self._work = None
+            raise StoreError("the database is away")
+        return await self._database.read(work, *arguments)
 
 
 class Turns:
@@ -44,6 +61,13 @@ def step_feed(two, database=None):
     fleet, exchange = two.fleet, Exchange("a", b"k" * 32, [])
     numbers = ChangeNumbers(exchange, Alone())
     return StepFeed(fleet.robots, fleet.listeners, fleet.events, exchange, numbers, database or two.database)
+
+
+async def send_away(two):
+    """Send r1 somewhere; return the command's id."""
+    order = CommandOrder("drive-0001", "r1", SetPosEnd(2.0, 3.0), "Ada", None)
+    await two.fleet.emergency._book.issue([order])
+    return order.command
 
 
 async def abort(two, times):
@@ -84,3 +108,31 @@ async def test_more_steps_than_are_read_at_once_wait_for_no_other_change(two, mo
     finally:
         following.cancel()
         await asyncio.gather(following, return_exceptions=True)
+
+
+async def test_what_a_robot_does_that_went_elsewhere_is_learnt_though_the_database_was_away(two):
+    feed = step_feed(two, Unreliable(two.database, commands.still_open))
+    await feed.follow()
+    command = await send_away(two)
+    await feed.follow()
+    two.fleet.robots.let_go("r1", "south")
+    two.fleet.robots.assign("r1", None)
+    two.fleet.events.publish(RobotLeft("r1", "south"))
+    with pytest.raises(StoreError):
+        await feed.follow()
+    await feed.follow()
+    assert two.fleet.robots.get("r1").command == command
+
+
+async def test_a_first_look_that_fails_is_made_again(two):
+    command = await send_away(two)
+    two.fleet.robots.let_go("r1", "south")
+    two.fleet.robots.assign("r1", None)
+    feed = step_feed(two, Unreliable(two.database, commands.steps_after))
+    with pytest.raises(StoreError):
+        await feed.follow()
+    turns = Turns()
+    two.fleet.listeners.add(turns)
+    await feed.follow()
+    assert two.fleet.robots.get("r1").command == command
+    assert not turns.heard
