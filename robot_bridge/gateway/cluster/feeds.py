@@ -310,8 +310,9 @@ class QueueFeed:
         self._exchange = exchange
         self._numbers = numbers
         self._schedule = LookSchedule("queues", numbers)
-        self._has_left = False
-        """whether robots that were here have another gateway since the last look."""
+        self._must_look = False
+        """whether to look whatever others say: robots that were here have left since the last look began, or
+        it has failed."""
         self._database = database
         self._changed: set[str] = set()
         self._has_changed = asyncio.Event()
@@ -332,7 +333,7 @@ class QueueFeed:
         try:
             while True:
                 if loop.time() - looked_at >= LOOK_S:
-                    if self._has_left or self._schedule.is_due:
+                    if self._must_look or self._schedule.is_due:
                         await self._find_changes()
                     self._name_changed_robots()
                     looked_at = loop.time()
@@ -345,7 +346,15 @@ class QueueFeed:
 
     async def _find_changes(self) -> None:
         """Find the queues that have changed since the last look, whoever told of that; raises StoreError."""
+        self._must_look = False
         self._schedule.begin_look()
+        try:
+            await self._compare_versions()
+        except StoreError:
+            self._must_look = True
+            raise
+
+    async def _compare_versions(self) -> None:
         mine = await self._database.read(queues.revisions_of, self._exchange.gateway)
         for robot, revision in mine.items():
             if self._is_here(robot) and self._own.get(robot).revision != revision:
@@ -354,7 +363,6 @@ class QueueFeed:
         before, self._versions = self._versions, found
         if before is not None:
             self._named.update(robot for robot, version in found.items() if before.get(robot) != version)
-        self._has_left = False
 
     def _name_changed_robots(self) -> None:
         """Have operators told of the queues whose robots are not as they were: that stands in the report."""
@@ -413,7 +421,7 @@ class QueueFeed:
         self._is_named.set()
 
     def _note_left(self, _left: RobotLeft) -> None:
-        self._has_left = True
+        self._must_look = True
 
     def _note(self, reported: QueueReported) -> None:
         self._numbers.add_change("queues")
