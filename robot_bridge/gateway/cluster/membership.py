@@ -178,6 +178,9 @@ class Membership:
         self._lease = lease
         self._clock = clock
         self._clock_said_at = -OFF_AGAIN_S
+        self._missed_until: dict[str, float] = {}
+        """until when, by the steady clock, those count as just lost that were missing as this gateway could
+        renew its lease again."""
         self._other_versions = set[tuple[str, str]]()
         """the gateways of another version, and which, as the log was told."""
 
@@ -200,9 +203,13 @@ class Membership:
         return [member.gw for member in self.members if member.alive and member.gw != self.name]
 
     def just_lost(self) -> list[str]:
-        """Return the gateways whose lease has run out so lately that nobody may have their robots yet."""
-        lost = [member for member in self.members if -CLAIMED_S < member.left <= 0]
-        return [member.gw for member in lost if member.gw != self.name]
+        """Return the gateways whose lease has run out so lately that nobody may have their robots yet.
+
+        When the database was away nobody claims them for :data:`LEASE_S` after it is back.
+        """
+        now, until = self._clock.steady(), self._missed_until
+        lost = [member for member in self.members if not member.alive and member.gw != self.name]
+        return [one.gw for one in lost if one.left > -CLAIMED_S or now < until.get(one.gw, -math.inf)]
 
     def database_time(self) -> float:
         """Return the time by the database's clock, which all gateways go by."""
@@ -268,6 +275,7 @@ class Membership:
         before = set(self.others())
         self.members = found.members
         self._compare_clocks(found)
+        self._note_missed(before.difference(self.others()))
         self._name_changes(before, set(self.others()))
         self._compare_versions()
 
@@ -339,6 +347,11 @@ class Membership:
                 "this gateway do not fit the others': let NTP set all clocks",
                 abs(self.clock_offset),
             )
+
+    def _note_missed(self, lost: Iterable[str]) -> None:
+        if not self.trust.is_unbroken:
+            until = self._clock.steady() + LEASE_S + CLAIMED_S
+            self._missed_until.update(dict.fromkeys(lost, until))
 
     def _name_changes(self, before: set[str], after: set[str]) -> None:
         for name in sorted(after - before):

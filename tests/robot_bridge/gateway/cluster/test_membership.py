@@ -12,7 +12,7 @@ import pytest
 from robot_bridge.core.clock import Clock
 from robot_bridge.core.errors import BridgeError
 from robot_bridge.gateway.cluster.cluster import lease_database
-from robot_bridge.gateway.cluster.membership import CLAIMED_S, OFF_AGAIN_S, Membership
+from robot_bridge.gateway.cluster.membership import CLAIMED_S, LEASE_S, OFF_AGAIN_S, RENEW_S, Membership
 from robot_bridge.gateway.storage.database import read_address
 from robot_bridge.gateway.storage.repositories import gateways
 
@@ -39,8 +39,13 @@ async def lease(fleet_url):
 
 
 @pytest.fixture
-async def own(lease):
-    own = Membership("own", lease)
+def clock():
+    return ClockOff(0.0)
+
+
+@pytest.fixture
+async def own(lease, clock):
+    own = Membership("own", lease, clock)
     await own.join()
     yield own
     await own.leave()
@@ -53,7 +58,10 @@ async def enter(lease, name, version, lease_s=60.0):
     return other
 
 
-async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, lease, caplog):
+async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, lease, clock, caplog):
+    while not own.trust.is_unbroken:
+        clock.later += RENEW_S
+        await own.renew()
     ended, silent = await enter(lease, "ended", own.me.version), await enter(lease, "silent", own.me.version)
     await own.renew()
     assert "gateway silent serves this fleet, too" in caplog.text
@@ -69,6 +77,22 @@ async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, leas
     await own.renew()
     assert own.just_lost() == []
     await lease.run(gateways.leave, silent)
+
+
+async def test_one_that_died_while_the_database_was_away_is_missed_until_its_robots_are_claimed(
+    own, lease, clock
+):
+    """Nobody claims them at once then: all gateways seem dead to the first one that is back."""
+    died = await enter(lease, "died", own.me.version)
+    await own.renew()
+    clock.later = 60.0
+    assert await lease.run(gateways.renew, died, -60.0)
+    await own.renew()
+    assert died.run in own.spared_runs()
+    assert own.others() == [] and own.just_lost() == ["died"]
+    clock.later += LEASE_S + CLAIMED_S
+    assert own.just_lost() == []
+    await lease.run(gateways.leave, died)
 
 
 async def test_a_version_that_differs_is_named_at_both_and_once(own, lease, caplog):
