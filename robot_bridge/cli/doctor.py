@@ -343,7 +343,7 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     if down:
         yield Finding(Level.WARNING, "gateway", f"{where}: links that are down: {', '.join(down)}")
     buses: dict[str, bool] = health.get("cluster", {}).get("buses", {})
-    if away := [name for name, up in buses.items() if not up and name != "none"]:
+    if away := [name for name, up in buses.items() if not up]:
         text = f"{where}: not connected to the bus {' and '.join(away)}: its log says why"
         yield Finding(Level.WARNING, "gateway", text)
     if problem := health["site"].get("text"):

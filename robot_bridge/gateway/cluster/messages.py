@@ -30,7 +30,7 @@ from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, Stop
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
 from ..storage.repositories import metadata
-from .bus import EVERYBODY, RIGHTS_PROBE, STOP, Bus, own_subject
+from .bus import EVERYBODY, RIGHTS_PROBE, STOP, Bus, NoBus, own_subject
 
 log = logging.getLogger(__name__)
 
@@ -410,7 +410,7 @@ class Exchange:
 
     def connections(self) -> dict[str, bool]:
         """Return whether each bus is connected, by its name; the first one is that of all messages."""
-        return {bus.name: bus.connected for bus in self._buses}
+        return {bus.name: bus.connected for bus in self._buses if not isinstance(bus, NoBus)}
 
     def heard(self) -> list[str]:
         """Return the other gateways that said something of late."""

@@ -19,6 +19,7 @@ from robot_bridge.gateway.cluster.bus import (
     MOST_WAITING,
     POSITIONS,
     STOP,
+    NoBus,
     NotifyBus,
     OutgoingMessages,
     own_subject,
@@ -165,6 +166,12 @@ def test_stops_and_wakes_go_over_every_bus_and_positions_over_the_first():
     assert [subject for subject, _ in first.sent] == [STOP, "wake.b", POSITIONS]
     assert [subject for subject, _ in second.sent] == [STOP, "wake.b"]
     assert not Exchange("a", KEY, [Recorder(connected=False)]).send(STOP, CALL)
+
+
+def test_a_fleet_without_a_bus_has_none_that_is_not_connected():
+    """Whoever watches over it would be alarmed for ever."""
+    exchange = Exchange("a", b"key", [NoBus()])
+    assert exchange.connections() == {} and not exchange.connected
 
 
 def test_one_that_fails_to_take_a_message_in_keeps_it_from_no_other(caplog):
