@@ -19,6 +19,7 @@ class Fleet:
 
     def __init__(self):
         self.now, self.lost, self.living = 1000.0, False, ["a", "b"]
+        self.lost_messages = 0
         self.places = {}
 
     def add(self, name):
@@ -47,6 +48,7 @@ class Place:
         return self.fleet.now
 
     def publish(self, subject, content):
+        self.fleet.lost_messages += self.fleet.lost
         for place in self.fleet.places.values():
             if not self.fleet.lost and place is not self:
                 place.exchange.receive(subject, content)
@@ -187,7 +189,7 @@ async def test_a_follower_looks_when_it_is_woken_and_for_a_lost_wake(fleet, monk
         await until(lambda: here.looks == 2)
         fleet.lost = True
         second.note_change()
-        await asyncio.sleep(2 * followers.WAKE_S)
+        await until(lambda: fleet.lost_messages)
         fleet.lost = False
         fleet.beat()
         await until(lambda: here.looks == 3)
