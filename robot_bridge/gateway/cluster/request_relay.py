@@ -288,10 +288,14 @@ class RequestRelay:
         """Begin with what waits for robots of this gateway; raises StoreError."""
         if not await self._database.read(gateways.is_asked, self._membership.me):
             return
-        for request in await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE):
+        begun = await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE)
+        for request in begun:
             task = asyncio.create_task(self._do(request))
             self._doing.add(task)
             task.add_done_callback(self._doing.discard)
+        if len(begun) == MOST_AT_ONCE:
+            # More may wait, Aborts of a whole fleet among them, for which nobody wakes this gateway again.
+            self._asked.set()
 
     async def forget(self) -> None:
         """Delete what nobody has collected for an hour; raises StoreError."""
