@@ -89,10 +89,6 @@ class OwnedRobots:
     def __len__(self) -> int:
         return len(self._fences)
 
-    def fence(self, robot: str) -> int | None:
-        """Return the fence under which this gateway has a robot, None where it has not."""
-        return self._fences.get(robot)
-
     def claimed(self, me: Member, claims: Mapping[str, Claimed]) -> set[str]:
         """Take over robots that were claimed; return those of which nothing is known here any more.
 
@@ -128,7 +124,7 @@ class OwnedRobots:
     def fences(self, robots: Iterable[str]) -> dict[str, int]:
         """Return the fences of those of ``robots`` that this gateway has."""
         fences = self._fences
-        return {robot: fences[robot] for robot in robots if robot in fences}
+        return {robot: fence for robot in robots if (fence := fences.get(robot)) is not None}
 
 
 def leads(me: Member, members: Sequence[Member]) -> bool:

@@ -202,7 +202,6 @@ _LOST = text(
     select robot from fences except select robot from held
     """
 )
-_OWNED = text("select robot, fence from robot_owners where gw = :gw and run = :run")
 # A row of what is there beside those of owners, which say null in its place.
 _ABOUT = "select null, null, null, count(*), null, cast(pg_snapshot_xmin(pg_current_snapshot()) as text)"
 _OWNERS = "select o.robot, o.gw, o.run, o.fence, r.name is not null, null from robot_owners o"
@@ -255,11 +254,6 @@ def lost(connection: Connection, me: Member, fences: Mapping[str, int]) -> set[s
     """Return the robots that a gateway has not under ``fences``; the others stay its own until the commit."""
     values: dict[str, Any] = {"gw": me.gw, "run": me.run, "fences": msgspec.json.encode(fences).decode()}
     return set(connection.scalars(_LOST, values))
-
-
-def owned(connection: Connection, me: Member) -> dict[str, int]:
-    """Return the fences of all robots that a gateway has."""
-    return dict(connection.execute(_OWNED, {"gw": me.gw, "run": me.run}).all())
 
 
 def owners_since(connection: Connection, since: str | None) -> OwnersRead:

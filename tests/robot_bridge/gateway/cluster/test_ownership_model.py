@@ -194,7 +194,12 @@ class Fleet(RuleBasedStateMachine):
     def look(self, name):
         """Wakes may be lost: a look comes whenever it comes."""
         if process := self.alive(name):
-            stored = self.run(gateways.owned, process.me)
+            me, owners = process.me, self.run(gateways.owners_since, None).owners
+            stored = {
+                robot: owner.fence
+                for robot, owner in owners.items()
+                if (owner.gw, owner.run) == (me.gw, me.run)
+            }
             lost, new = process.robots.compare(stored)
             process.robots.forget(lost)
             process.robots.gained({robot: stored[robot] for robot in new})
@@ -210,7 +215,8 @@ class Fleet(RuleBasedStateMachine):
     def check(self, name, robot):
         """What is noted as delivered before it is sent: a fenced transaction."""
         if (process := self.alive(name)) and self.passes(process, robot):
-            process.checked.append((robot, process.robots.fence(robot), self.clock.steady()))
+            fence = process.robots.fences([robot])[robot]
+            process.checked.append((robot, fence, self.clock.steady()))
 
     @rule(name=st.sampled_from(KEYS))
     def send(self, name):
