@@ -80,15 +80,6 @@ class PoseOrder:
 # Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the gateway's,
 # by which alone a robot is fresh, stale or lost.
 
-
-class RobotSelection(NamedTuple):
-    """Some robots by name, found once where it is asked often which of them have changed."""
-
-    names: Sequence[str]
-    own: RobotRows
-    others: RobotRows
-
-
 RobotPose = tuple[str, SendPos]
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
@@ -151,6 +142,14 @@ class Robot:
     def can(self, ability: Ability) -> bool:
         """Tell whether it did not declare that it cannot do this."""
         return self.abilities is None or ability in self.abilities.split()
+
+
+class RobotSelection(NamedTuple):
+    """Some robots by name, found once where it is asked often which of them have changed."""
+
+    names: Sequence[str]
+    own: RobotRows
+    others: RobotRows
 
 
 class Robots:
