@@ -190,6 +190,12 @@ _CLAIM_NEW = text(
     on conflict (robot) do nothing returning robot, fence
     """
 )
+_HELD = text(
+    "select robot, fence from robot_owners where robot = any(:robots) and gw = :gw and run = :run "
+    "order by robot for share"
+)
+FEW = 100
+"""robots whose fences are compared here: what compares them in the database takes that 0.7 ms more."""
 _LOST = text(
     """
     with fences as (
@@ -252,7 +258,11 @@ def claim_left(
 
 def lost(connection: Connection, me: Member, fences: Mapping[str, int]) -> set[str]:
     """Return the robots that a gateway has not under ``fences``; the others stay its own until the commit."""
-    values: dict[str, Any] = {"gw": me.gw, "run": me.run, "fences": msgspec.json.encode(fences).decode()}
+    values: dict[str, Any] = {"gw": me.gw, "run": me.run}
+    if len(fences) <= FEW:
+        held: dict[str, int] = dict(connection.execute(_HELD, {**values, "robots": list(fences)}).all())
+        return {robot for robot, fence in fences.items() if held.get(robot) != fence}
+    values["fences"] = msgspec.json.encode(fences).decode()
     return set(connection.scalars(_LOST, values))
 
 

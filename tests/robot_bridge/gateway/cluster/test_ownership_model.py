@@ -362,7 +362,9 @@ def test_a_change_is_read_whenever_it_is_committed(engine):
         connection.execute(text("delete from robots"))
 
 
-def test_a_fence_holds_until_the_commit_and_not_under_an_older_number(engine):
+@pytest.mark.parametrize("few", [0, 100])
+def test_a_fence_holds_until_the_commit_and_not_under_an_older_number(engine, monkeypatch, few):
+    monkeypatch.setattr(gateways, "FEW", few)
     a, b = Member("a", "run-a"), Member("b", "run-b")
     owner = text("insert into robot_owners values (:robot, 'a', 'run-a', :fence)")
     with engine.begin() as connection:
