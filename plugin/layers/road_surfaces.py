@@ -27,6 +27,7 @@ from ...robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...robot_bridge.core.sites.frame import utm_zone_of
 from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
+from ..ui.scheduling import SignallingTask
 from .crs import check_site_crs
 from .layer_source import LayerWatch, ObstacleSource, obstacle_sources
 from .road_layers import read_surfaces
@@ -190,7 +191,7 @@ class SurfaceStore(QObject):
         """
         self._watch.watch(layers)
         task = SurfaceTask(self._sources(layers), _key(layers), self._age)
-        task.read.connect(self._keep)
+        task.ended.connect(self._keep)
         return task
 
     def remove(self) -> None:
@@ -205,9 +206,9 @@ class SurfaceStore(QObject):
         scope.appendScope(QgsExpressionContextUtils.projectScope(project))
         return surface_sources(layers, project.crs(), project.transformContext(), scope)
 
-    def _keep(self, task: SurfaceTask) -> None:
+    def _keep(self, task: SurfaceTask, done: bool) -> None:
         # What changed while it was read has to be read once more.
-        if task.surfaces is not None and task.age == self._age:
+        if done and task.surfaces is not None and task.age == self._age:
             self._maps[task.key] = task.surfaces
 
     def _forget(self) -> None:
@@ -216,14 +217,11 @@ class SurfaceStore(QObject):
         self.forgotten.emit()
 
 
-class SurfaceTask(QgsTask):
+class SurfaceTask(SignallingTask):
     """Reads surfaces in a worker: ``surfaces`` is there afterwards, or ``why`` not.
 
-    ``read`` has the task, in the window's thread, before ``taskCompleted``. ``key`` and ``age`` are the
-    store's.
+    ``key`` and ``age`` are the store's.
     """
-
-    read = pyqtSignal(object)
 
     def __init__(self, sources: SurfaceSources, key: Key, age: int):
         super().__init__(tr("Reading road surfaces"), QgsTask.Flag.CanCancel)
@@ -239,12 +237,6 @@ class SurfaceTask(QgsTask):
         except FleetError as error:
             self.why = str(error)
         return self.surfaces is not None
-
-    def finished(self, done: bool) -> None:
-        # No closure that holds the task may be connected to its signals: Qt calls what is left of it when
-        # Python has collected the two, and QGIS crashes. Methods get the task with the signal.
-        if done:
-            self.read.emit(self)
 
     def cancel(self) -> None:
         self._feedback.cancel()

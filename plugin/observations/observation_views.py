@@ -112,13 +112,7 @@ class Thumbnails(QObject):
 
 
 class ThumbnailTask(DecodeTask):
-    """Makes an image of base64 and writes it, small, to ``file``.
-
-    ``ended`` has the task, in the window's thread, and whether the file is there. ``number`` is that of the
-    observation.
-    """
-
-    ended = pyqtSignal(object, bool)
+    """Makes an image of base64 and writes it, small, to ``file``; ``number`` is that of the observation."""
 
     def __init__(self, number: int, text: str, file: Path):
         super().__init__(text)
@@ -132,10 +126,6 @@ class ThumbnailTask(DecodeTask):
         small = self.image.scaled(QSize(SIDE, SIDE), Qt.AspectRatioMode.KeepAspectRatio, smooth)
         self.image = None
         return small.save(str(self._file), "PNG")
-
-    def finished(self, done: bool) -> None:
-        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
-        self.ended.emit(self, done)
 
 
 PAGE = 500

@@ -37,6 +37,7 @@ from ..gateway_client.state_words import task_state_in_words as task_state
 from ..layers.site_transform import PositionCrs
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import date_and_time, last_seen_in_words, time_of_day, tr
+from ..ui.scheduling import SignallingTask
 from ..ui.steady_widgets import ElidedText
 from ..ui.tables import shrink_view
 from .alarms.board import AlarmBoard, alarm_state_in_words
@@ -218,7 +219,7 @@ class LastImage(QObject):
         self.changed.emit()
 
 
-class DecodeTask(QgsTask):
+class DecodeTask(SignallingTask):
     """Makes an image of base64, reduced where it is large."""
 
     def __init__(self, text: str):

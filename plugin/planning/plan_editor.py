@@ -223,7 +223,7 @@ class PlanEditor(QObject):
         then(draft)
         self.changed.emit()
 
-    def _ended(self, task: PlanTask) -> None:
+    def _ended(self, task: PlanTask, _done: bool) -> None:
         if task is not self.task:
             return
         # Cancelled it was in QGIS's own list of tasks.

@@ -16,7 +16,7 @@ from qgis.core import (
     QgsProject,
     QgsTask,
 )
-from qgis.PyQt.QtCore import QObject, pyqtSignal
+from qgis.PyQt.QtCore import QObject
 
 from ...robot_bridge.core.assignment.clearance import ClearTravel, Floats, NearMeeting, NearOrByRoad, meetings
 from ...robot_bridge.core.assignment.job import (
@@ -42,7 +42,7 @@ from ..layers.roles import KEEPOUT, ROAD_CENTRELINE, LayerExpressions, layers_wi
 from ..layers.site_transform import SiteGeoreference
 from ..ui.errors import FleetError
 from ..ui.language import tr
-from ..ui.scheduling import CooperativeTask, Steps, run_to_end
+from ..ui.scheduling import CooperativeTask, SignallingTask, Steps, run_to_end
 from .plan_settings import PlanSettings
 
 # --- Paths: straight or by road, around standing cones and robots ---
@@ -303,13 +303,8 @@ def _looked_at(
 # --- Makes a plan beside the window's thread, with progress and cancel ---
 
 
-class PlanTask(QgsTask):
-    """Does ``work``, which is given the task: ``draft`` is there afterwards, or ``why`` not.
-
-    ``ended`` has the task, in the window's thread, whether it was cancelled or not.
-    """
-
-    ended = pyqtSignal(object)
+class PlanTask(SignallingTask):
+    """Does ``work``, which is given the task: ``draft`` is there afterwards, or ``why`` not."""
 
     def __init__(self, title: str, work: Callable[[PlanTask], PlanProposal]):
         super().__init__(title, QgsTask.Flag.CanCancel)
@@ -336,10 +331,6 @@ class PlanTask(QgsTask):
         finally:
             self.left.set()
         return self.draft is not None
-
-    def finished(self, done: bool) -> None:
-        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
-        self.ended.emit(self)
 
     def report_progress(self, share: float) -> bool:
         """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""

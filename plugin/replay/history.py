@@ -22,7 +22,7 @@ from ..gateway_client.robot_states import STATES as HISTORY_STATES
 from ..gateway_client.robot_states import RobotArrays
 from ..ui.errors import FleetError
 from ..ui.language import tr
-from ..ui.scheduling import CooperativeTask, Steps
+from ..ui.scheduling import CooperativeTask, SignallingTask, Steps
 
 AT_ONCE = 100
 """Commands that are looked through in one step of a slice."""
@@ -459,13 +459,8 @@ class HistoryDownload(QObject):
             task.cancel()
 
 
-class SortHistoryTask(QgsTask):
-    """Puts a history in order beside the window; nobody else touches it meanwhile.
-
-    ``ended`` has the task, in the window's thread, and whether it is in order.
-    """
-
-    ended = pyqtSignal(object, bool)
+class SortHistoryTask(SignallingTask):
+    """Puts a history in order beside the window; nobody else touches it meanwhile."""
 
     def __init__(self, history: History):
         super().__init__(tr("Putting positions in order"), QgsTask.Flag.CanCancel)
@@ -473,7 +468,3 @@ class SortHistoryTask(QgsTask):
 
     def run(self) -> bool:
         return len(self._history.table) == len(self._history)
-
-    def finished(self, done: bool) -> None:
-        # With the task, so that no closure need hold it: Python could collect it before Qt calls it.
-        self.ended.emit(self, done)

@@ -1,11 +1,12 @@
-"""Scheduling in the window's thread: long work in slices, and slots for periodic updates."""
+"""Scheduling: long work in slices of the window's thread or as a task of QGIS, and slots for updates."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from typing import Any, TypeVar
 
-from qgis.PyQt.QtCore import QObject, QTimer
+from qgis.core import QgsTask
+from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
 from .errors import FleetError
@@ -178,6 +179,20 @@ PULL_EVERY_MS = 50
 PULLS_IN_HALF_A_SECOND = 500 // PULL_EVERY_MS
 _STRIDE = 3
 """Pulls between the turns of two who asked one after the other: ten of them have a pull each."""
+
+
+class SignallingTask(QgsTask):
+    """A task of which ``ended`` has the task itself, in the window's thread, and whether it was done.
+
+    So no closure that holds the task need be connected to its signals. Where nothing else holds it, Python
+    collects the two together, Qt calls what is left of the closure, and QGIS crashes. ``ended`` comes before
+    ``taskCompleted`` and ``taskTerminated``, and also where the task was cancelled.
+    """
+
+    ended = pyqtSignal(object, bool)
+
+    def finished(self, done: bool) -> None:
+        self.ended.emit(self, done)
 
 
 class UpdateScheduler:
