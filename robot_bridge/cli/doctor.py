@@ -27,7 +27,7 @@ from ..core.errors import BridgeError, SiteError, StoreError, counted
 from ..core.json_decoder import JsonBounds, decode_json
 from ..core.logs import set_up_log
 from ..core.sites.site_database import is_database_address
-from .options import DatabaseOption, PasswordFileOption, SiteOption
+from .options import BusPasswordFileOption, DatabaseOption, PasswordFileOption, SiteOption
 from .serve import cluster_settings, gateway_settings
 
 if TYPE_CHECKING:
@@ -81,13 +81,7 @@ def doctor(
         ),
     ] = "",
     bus: Annotated[str, typer.Option(help="What those tell each other by.", envvar="ROBOT_BRIDGE_BUS")] = "",
-    bus_password_file: Annotated[
-        Path | None,
-        typer.Option(
-            help="File with the password of the account in the URL of the bus.",
-            envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
-        ),
-    ] = None,
+    bus_password_file: BusPasswordFileOption = None,
     public_address: Annotated[
         str,
         typer.Option(help="Where robots reach this gateway.", envvar="ROBOT_BRIDGE_PUBLIC_ADDRESS"),

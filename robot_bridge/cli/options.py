@@ -39,6 +39,14 @@ PasswordFileOption = Annotated[
         help="File with the database account's password; a command line can be seen by others.",
     ),
 ]
+BusPasswordFileOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--bus-password-file",
+        envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
+        help="File with the password of the account in the URL of the bus.",
+    ),
+]
 UntilStdinCloses = Annotated[bool, typer.Option("--until-stdin-closes", hidden=True)]
 """For who starts a program that must not outlive it, however it ends."""
 

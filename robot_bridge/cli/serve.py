@@ -71,13 +71,7 @@ def serve(
             envvar="ROBOT_BRIDGE_BUS",
         ),
     ] = "",
-    bus_password_file: Annotated[
-        Path | None,
-        typer.Option(
-            help="File with the password of the account in the URL of the bus.",
-            envvar="ROBOT_BRIDGE_BUS_PASSWORD_FILE",
-        ),
-    ] = None,
+    bus_password_file: options.BusPasswordFileOption = None,
     public_address: Annotated[
         str,
         typer.Option(

@@ -22,7 +22,7 @@ LOOK_S = 1.0
 """seconds between two looks while it is not known whether anything has changed."""
 ANYWAY_S = 10.0
 """seconds after which somebody looks though no gateway has changed anything."""
-HEARD_S = 2.5
+BEAT_HOLDS_S = 2.5
 """seconds for which a beat counts: one or two of the next may be late."""
 WAKE_S = 0.02
 """seconds for which changes here wait for one another before other gateways are woken."""
@@ -56,7 +56,7 @@ class ChangeNumbers:
 
         None where one of them has not said of late: it may have changed anything.
         """
-        after = self._membership.database_time() - HEARD_S
+        after = self._membership.database_time() - BEAT_HOLDS_S
         found = {self._exchange.gateway: self._own.get(topic, 0)}
         for gateway in self._membership.others():
             beat = self._beats.get(gateway)

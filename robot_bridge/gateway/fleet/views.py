@@ -38,7 +38,7 @@ from ...core.messages.positions import (
 )
 from ..model.events import Encoded, handles
 from ..model.robot_columns import ACCURACY, BATTERY, DOUBTED, LOST, STATES, X, Y
-from ..model.robots import Robot, Robots
+from ..model.robots import Robot, Robots, RobotSelection
 from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
 
@@ -363,9 +363,8 @@ class ViewWatch:
         self._places: FleetPlaces | None = None
         """those by which it was chosen whom to tell of."""
         self._chosen: list[str] = []
-        self._selected = self._chosen
-        self._selection = views.robots.select(self._selected)
-        """what is known of whom it was chosen to tell of."""
+        self._selection: RobotSelection | None = None
+        """what is known of those; None once others were chosen."""
         self._is_dense = False
         self._told: set[str] = set()
         self._seen = EVERYTHING
@@ -383,14 +382,15 @@ class ViewWatch:
         news: dict[str, Any] = {}
         removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in told]
         fresh: list[Robot] = []
-        if self._selected is not self._chosen or robots.is_outdated(self._selection):
-            self._selected, self._selection = self._chosen, robots.select(self._chosen)
-            self._told = set(self._selection.names)
-            fresh = robots.known(name for name in self._selection.names if name not in told)
+        selection = self._selection
+        if selection is None or robots.is_outdated(selection):
+            self._selection = selection = robots.select(self._chosen)
+            self._told = set(selection.names)
+            fresh = robots.known(name for name in selection.names if name not in told)
             if untracked := sorted(told - self._told - set(removed)):
                 news["untracked"] = untracked
         met = {robot.name for robot in fresh}
-        fresh += [robot for robot in robots.changed_of(self._selection, seen) if robot.name not in met]
+        fresh += [robot for robot in robots.changed_of(selection, seen) if robot.name not in met]
         if fleet != self._seen_view:
             news["view"] = _told(fleet)
         self._seen, self._seen_view = robots.revision, fleet
@@ -415,7 +415,7 @@ class ViewWatch:
         self._is_dense = len(rows) > view.most * (DENSE_UNTIL if self._is_dense else 1.0)
         alarmed, alarms = places.alarmed(view.alarms)
         one_by_one = [] if self._is_dense else [places.names[row] for row in rows]
-        self._chosen = list(dict.fromkeys([*view.always, *alarmed, *one_by_one]))
+        self._chosen, self._selection = list(dict.fromkeys([*view.always, *alarmed, *one_by_one])), None
         return FleetView(
             robots=len(places.names),
             **places.counts,

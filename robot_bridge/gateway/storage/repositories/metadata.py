@@ -23,8 +23,7 @@ def database_id(connection: Connection) -> str:
 
 def known_id(connection: Connection) -> str | None:
     """Return what tells this database from every other, None where no gateway has served it yet."""
-    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == ID))
-    return found
+    return _known(connection, ID)
 
 
 def fact(connection: Connection, name: str, value: str) -> str:
@@ -32,19 +31,17 @@ def fact(connection: Connection, name: str, value: str) -> str:
 
     Several gateways may ask at once, and are told the same.
     """
-    query = select(bridge.c.value).where(bridge.c.name == name)
-    if (found := connection.scalar(query)) is None:
+    if (found := _known(connection, name)) is None:
         kind = postgresql.insert if connection.dialect.name == "postgresql" else insert
         add = kind(bridge).values(name=name, value=value)
         connection.execute(add.on_conflict_do_nothing() if isinstance(add, postgresql.Insert) else add)
-        found = connection.scalar(query)
+        found = _known(connection, name)
     return str(found)
 
 
 def chosen_site(connection: Connection) -> str | None:
     """Return the name of the folder of the site that a supervisor chose, None if none did."""
-    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == _SITE))
-    return found
+    return _known(connection, _SITE)
 
 
 def choose_site(connection: Connection, folder: str) -> None:
@@ -58,6 +55,11 @@ def choose_site(connection: Connection, folder: str) -> None:
 def forget_site(connection: Connection) -> None:
     """Forget which site a supervisor chose."""
     connection.execute(delete(bridge).where(bridge.c.name == _SITE))
+
+
+def _known(connection: Connection, name: str) -> str | None:
+    found: str | None = connection.scalar(select(bridge.c.value).where(bridge.c.name == name))
+    return found
 
 
 # --- When something was stored last ---

@@ -109,7 +109,7 @@ async def test_a_change_while_the_database_is_read_is_looked_up_next(fleet, sche
 
 async def test_a_gateway_that_is_silent_may_change_anything(fleet, schedule):
     fleet.lost = True
-    fleet.now += followers.HEARD_S + 0.1
+    fleet.now += followers.BEAT_HOLDS_S + 0.1
     fleet.beat()
     assert schedule.is_due
     schedule.begin_look()
