@@ -50,6 +50,10 @@ class Desk(Wire):
         """Wait until each robot has said where it is."""
         self.until(lambda: all(self.robots.get(name, {}).get("x") is not None for name in names), seconds)
 
+    def wait_for_abilities(self, robot: str, *abilities: str, seconds: float = 20.0) -> None:
+        """Wait until a robot has declared ``abilities``: a link finds a robot's servers one by one."""
+        self.until(lambda: set(abilities) <= self._abilities(robot), seconds)
+
     def wait_for_step(self, command: str, state: str, seconds: float = 30.0) -> dict[str, Any]:
         """Wait until a command is in ``state``; return its report."""
         self.until(lambda: self.commands.get(command, {}).get("state") == state, seconds)
@@ -58,6 +62,9 @@ class Desk(Wire):
     def state(self) -> str:
         known = {"plans": self.plans, "robots": self.robots, "commands": self.commands}
         return json.dumps({**known, "queues": self.queues}, indent=1)
+
+    def _abilities(self, robot: str) -> set[str]:
+        return set((self.robots.get(robot, {}).get("abilities") or "").split())
 
     def _hear(self, frame: dict[str, Any]) -> None:
         method, params = frame["method"], frame.get("params")

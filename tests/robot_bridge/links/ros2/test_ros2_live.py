@@ -84,15 +84,16 @@ def desk(bridge):
 
 @pytest.fixture
 def robot(adapter, nodes, desk):
-    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen."""
+    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen, and able."""
     started = []
 
-    def start(*options, seen=True, **more):
+    def start(*options, seen=True, able="targets", **more):
         name = f"robot{next(NUMBERS)}"
         nodes.start(name, *options, **more)
         started.append(name)
         if seen:
             desk.wait_for_robots(name, seconds=BUSY * 10)
+            desk.wait_for_abilities(name, able)
         return name
 
     yield start
@@ -107,7 +108,7 @@ def steps(desk, command):
 
 
 def test_a_cone_target_is_driven_reached_and_placed(desk, robot, nodes):
-    name = robot(*FAST)
+    name = robot(*FAST, able="cones")
     assert desk.robots[name]["x"] == pytest.approx(20.0)
     desk.until(lambda: desk.robots[name].get("battery") == 0.75, 20)
     desk.send(f"go-{name}", name, "SetPosEnd", x=40.0, y=8.0, cone=True)
@@ -118,7 +119,7 @@ def test_a_cone_target_is_driven_reached_and_placed(desk, robot, nodes):
 
 
 def test_a_route_is_followed_point_by_point(desk, robot, nodes):
-    name = robot(*FAST)
+    name = robot(*FAST, able="paths")
     points = [[20.0, 8.0], [30.0, 8.0], [30.0, 12.0]]
     desk.send(f"path-{name}", name, "SetPath", points=points)
     desk.wait_for_step(f"path-{name}", "reached", 8)
@@ -131,7 +132,7 @@ def test_a_route_is_followed_point_by_point(desk, robot, nodes):
     [("navigate_through_poses", "NavigateThroughPoses"), ("follow_waypoints", "FollowWaypoints")],
 )
 def test_a_route_is_driven_by_what_the_robot_offers(desk, robot, nodes, action, kind):
-    name = robot(*FAST, "--actions", action)
+    name = robot(*FAST, "--actions", action, able="paths")
     points = [[20.0, 8.0], [22.0, 8.0], [22.0, 10.0]]
     desk.send(f"path-{name}", name, "SetPath", points=points)
     desk.wait_for_step(f"path-{name}", "reached", 8)
@@ -140,7 +141,7 @@ def test_a_route_is_driven_by_what_the_robot_offers(desk, robot, nodes, action, 
 
 
 def test_a_route_whose_points_were_missed_has_failed(desk, robot):
-    name = robot(*FAST, "--actions", "follow_waypoints", "--odd", "misses")
+    name = robot(*FAST, "--actions", "follow_waypoints", "--odd", "misses", able="paths")
     desk.send(f"path-{name}", name, "SetPath", points=[[20.0, 8.0], [22.0, 8.0], [22.0, 10.0]])
     desk.wait_for_step(f"path-{name}", "failed", 8)
     assert "left out points of the path: 3" in steps(desk, f"path-{name}")[-1]["reason"]
@@ -162,7 +163,7 @@ def test_nav2_that_is_started_later_makes_its_robot_able(desk, robot, nodes):
     desk.until(lambda: "paths" not in (desk.robots[name].get("abilities") or ""), 20)
     nodes.start(f"{name}-nav2", *FAST, "--odd", "silent", node=name)
     try:
-        desk.until(lambda: "paths" in (desk.robots[name].get("abilities") or ""), 20)
+        desk.wait_for_abilities(name, "paths")
     finally:
         nodes.end(f"{name}-nav2")
 
@@ -293,7 +294,7 @@ def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, 
         other.start()
         nodes.start(name, *FAST, domain=nodes.other_domain)
         wait_until(lambda: f"/{name}/follow_path has the FollowPath of jazzy or kilted" in other.output(), 30)
-        desk.until(lambda: "targets" in (desk.robots.get(name, {}).get("abilities") or ""), 20)
+        desk.wait_for_abilities(name, "targets")
         assert "paths" not in desk.robots[name]["abilities"]
         desk.send(f"go-{name}", name, "SetPosEnd", x=25.0, y=8.0)
         desk.wait_for_step(f"go-{name}", "reached", 10)

@@ -86,15 +86,16 @@ def desk(bridge):
 
 @pytest.fixture
 def robot(adapter, nodes, desk):
-    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen."""
+    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen, and able."""
     started = []
 
-    def start(*options, seen=True):
+    def start(*options, seen=True, able="targets"):
         name = f"distant{next(NUMBERS)}"
         nodes.start(name, *options)
         started.append(name)
         if seen:
             desk.wait_for_robots(name, seconds=BUSY * 10)
+            desk.wait_for_abilities(name, able)
         return name
 
     yield start
@@ -109,7 +110,7 @@ def reason(desk, command):
 
 
 def test_a_cone_target_is_driven_reached_and_placed(desk, robot, nodes):
-    name = robot(*FAST)
+    name = robot(*FAST, able="cones")
     assert desk.robots[name]["x"] == pytest.approx(20.0)
     desk.until(lambda: desk.robots[name].get("battery") == 0.75, 20)
     desk.send(f"go-{name}", name, "SetPosEnd", x=40.0, y=8.0, cone=True)
@@ -134,7 +135,7 @@ def test_masks_come_latched_and_the_map_is_a_service_too(robot, nodes, server):
 
 
 def test_a_route_is_followed_point_by_point(desk, robot, nodes):
-    name = robot(*FAST)
+    name = robot(*FAST, able="paths")
     points = [[20.0, 8.0], [30.0, 8.0], [30.0, 12.0]]
     desk.send(f"path-{name}", name, "SetPath", points=points)
     desk.wait_for_step(f"path-{name}", "reached", 8)
