@@ -84,7 +84,7 @@ def desk(bridge):
 
 @pytest.fixture
 def robot(adapter, nodes, desk):
-    """Start a robot that no other test has: ``robot(*options)`` returns its name when it is seen, and able."""
+    """Start a robot that no other test has: ``robot(*options)`` returns its name when seen, and able."""
     started = []
 
     def start(*options, seen=True, able="targets", **more):
