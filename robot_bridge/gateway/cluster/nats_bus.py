@@ -23,7 +23,7 @@ from .bus import (
     Receive,
     own_subject,
 )
-from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server
+from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server, wait_until_processed
 
 log = logging.getLogger(__name__)
 
@@ -135,7 +135,7 @@ class NatsConnection:
         for subject in self._subjects:
             # Each has a queue of its own: no stop waits behind positions.
             await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
-        await client.flush(FLUSH_S)
+        await wait_until_processed(client)
 
     def _say(self, reason: str) -> None:
         if reason not in self._said:

@@ -157,12 +157,22 @@ class NatsServers:
             raise BridgeError(f"{where}: {_advised(faults, prefix)}")
 
 
+async def wait_until_processed(client: Any) -> None:
+    """Return when the server has processed all that ``client`` was asked to send it before.
+
+    nats-py writes the ping of ``flush`` ahead of what still waits for the turn of its writing task. By the
+    answer that task has had its turn, and the second ping comes last.
+    """
+    for _ in range(2):
+        await client.flush(FLUSH_S)
+
+
 async def _probe_rights(client: Any, subjects: Iterable[str], hear: Any) -> None:
     """Hear every subject, and publish on it; return when the server has refused what it refuses."""
     for subject in subjects:
         await client.subscribe(subject, cb=hear)
         await client.publish(subject, RIGHTS_PROBE)
-    await client.flush(FLUSH_S)
+    await wait_until_processed(client)
 
 
 def _advised(faults: Iterable[str], prefix: str) -> str:

@@ -11,6 +11,7 @@ from types import SimpleNamespace
 from urllib.parse import urlsplit
 
 import pytest
+from nats.aio.transport import TcpTransport
 
 from robot_bridge.gateway.cluster import nats_bus, nats_servers
 from robot_bridge.gateway.cluster.bus import EVERYBODY, MOST_WAITING, STOP
@@ -109,6 +110,24 @@ async def test_a_stop_takes_one_turn_of_the_loop(nats, monkeypatch):
         assert heard == [(STOP, b"a stop")]
         # As it was without the thread, in case that hears nothing.
         await until(lambda: heard == 2 * [(STOP, b"a stop")])
+
+
+async def test_it_is_connected_once_the_server_has_its_subscription(nats, monkeypatch):
+    """nats-py writes the ping of ``flush`` before what still waits to be written: its answer says nothing."""
+    written = bytearray()
+
+    class Recorded(TcpTransport):
+        def write(self, payload):
+            written.extend(payload)
+            super().write(payload)
+
+        def writelines(self, payload):
+            written.extend(b"".join(payload))
+            super().writelines(payload)
+
+    monkeypatch.setattr("nats.aio.client.TcpTransport", Recorded)
+    async with listening(nats.url):
+        assert b"SUB " in written and written.rindex(b"PING") > written.rindex(b"SUB ")
 
 
 async def test_it_hears_stops_alone(nats):
