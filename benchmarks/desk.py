@@ -10,8 +10,13 @@ from benchmarks import desk_canvas, desk_drafts, desk_fleet
 from benchmarks.clock import Spread, in_a_process, table
 from benchmarks.page import Part, goal
 from benchmarks.trial import size
+from robot_bridge.core.messages.positions import MOST_IN_VIEW
 
 NUMBERS = size((100, 1000, 10_000), (100,))
+MOST_SHOWN = size(MOST_IN_VIEW, 200)
+"""robots in view up to which a gateway tells of each, and in a fleet up to which the panel asks for all."""
+DENSE = 21_000
+"""robots on a square of which the canvas shows a part."""
 RATES = size((10, 20), (20,))
 POINTS = size(1000, 100)
 FEW_ROBOTS = size(1000, 50)
@@ -33,6 +38,10 @@ robots written to the vector layer; each robot is written once a second, so that
 more of the updates write.
 
 {overlay}
+
+A fleet of more than {most_shown} robots is told of by view, and more than {most_shown} robots in a view as a
+density: {inside} robots on the canvas are taken in, prepared and painted in {density:.1f} ms. So the row of
+{last} is of robots that are told of one by one all the same, as by a gateway that knows no views.
 
 The same robots as a memory layer, moved by `changeGeometryValues` and repainted {memory_rate:.0f} times a
 second, without headings, trails and names: *cost* is what its update takes on the window's thread, *frames*
@@ -97,7 +106,8 @@ print(json.dumps(told))
 def measure(data: Path) -> Part:
     """Measure each in a process of its own."""
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
-    overlay = {number: _run("overlay", data, number) for number in NUMBERS}
+    overlay = {number: _run("overlay", data, number) for number in sorted({*NUMBERS, MOST_SHOWN})}
+    density = _run("density", data, DENSE)
     layer = {number: _run("layer", data, number) for number in NUMBERS}
     lists = {number: _run_lists(data, number) for number in NUMBERS}
     drafts = in_a_process(f"from benchmarks.desk_drafts import drafts\ndrafts({str(data)!r}, {POINTS})")
@@ -107,6 +117,8 @@ def measure(data: Path) -> Part:
     text = TEXT.format(
         **_constants(data),
         overlay=_overlay(overlay),
+        **{"most_shown": MOST_SHOWN, "inside": density["inside"], "last": NUMBERS[-1]},
+        density=Spread(*density["ms"]),
         layer=table(
             ["robots", "cost, ms", "frames/s"],
             [[n, *(f"{Spread(*r[name]):.1f}" for name in ("ms", "frames"))] for n, r in layer.items()],

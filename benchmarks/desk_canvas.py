@@ -147,7 +147,10 @@ def overlay(data: str, number: int) -> None:
 
 
 def density(data: str, number: int) -> None:
-    """Print the window's thread's milliseconds of computing for an update of a density of so many robots."""
+    """Print the window's thread's milliseconds of computing for an update of a density.
+
+    ``number`` robots are on a square as wide as the canvas: printed is also how many are on the canvas.
+    """
     stage = Stage(data, FEW)
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
@@ -167,9 +170,9 @@ def density(data: str, number: int) -> None:
         view.show_now()
         stage.canvas.viewport().repaint()
         times.append((time.thread_time() - began) * 1e3)
-    shown = desk.state.robots.fleet.density
-    assert shown is not None, "a density is shown"
-    stage.end({"ms": spread(times[WARM_UP:]), "megabytes": megabytes()})
+    shown = desk.state.robots.fleet
+    assert shown.density is not None, "a density is shown"
+    stage.end({"ms": spread(times[WARM_UP:]), "inside": shown.inside, "megabytes": megabytes()})
 
 
 def _repainting(stage: Stage) -> Spread:
