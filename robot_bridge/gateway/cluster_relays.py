@@ -7,19 +7,18 @@ from collections.abc import Callable, Mapping
 
 from .cluster.cluster import Cluster
 from .cluster.feeds import ObservationRelay, PlacementRelay, QueueFeed, StepFeed
-from .cluster.followers import LOOK_S, ChangeNumbers, Followed, Follower
+from .cluster.followers import ChangeNumbers, Followed, Follower
 from .cluster.messages import Wake
 from .cluster.request_relay import RequestRelay
 from .cluster.robot_relay import DetailRelay, FenceRelay, PositionRelay
 from .cluster.stop_relay import EmergencyStopRelay
 from .fleet.service import Fleet
-from .model.events import Answering, PlanChanged, SiteChosen
+from .model.events import Answering, ClosuresChanged, PlanChanged, SiteChosen
 from .monitoring import Counters, Work, every, wait_at_most
 from .storage.database import Database
 
 BEAT_INTERVAL_S = 1.0
 OWNERS_INTERVAL_S = 1.0
-CLOSURES_INTERVAL_S = 1.0
 ADDRESSES_INTERVAL_S = 1.0
 FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
@@ -59,11 +58,12 @@ class ClusterRelays:
         self._queues = QueueFeed(fleet.robots, fleet.queue_context.book, *shared)
         self._placements = PlacementRelay(*shared)
         self._observations = ObservationRelay(fleet.observations, *shared)
-        # A site that cannot be served may be published better, and plans go on by what their robots do.
-        self._sites = Follower("site", sites, exchange, self._numbers, LOOK_S)
+        self._sites = Follower("site", sites, exchange, self._numbers)
         fleet.events.subscribe(SiteChosen, lambda _: self._sites.note_change())
-        self._plans = Follower("plans", plans, exchange, self._numbers, LOOK_S)
+        self._plans = Follower("plans", plans, exchange, self._numbers)
         fleet.events.subscribe(PlanChanged, lambda _: self._plans.note_change())
+        self._closures = Follower("closures", fleet.roads.closures, exchange, self._numbers)
+        fleet.events.subscribe(ClosuresChanged, lambda _: self._closures.note_change())
         self._owners_changed = asyncio.Event()
         exchange.subscribe(Wake, self._woken)
 
@@ -90,9 +90,7 @@ class ClusterRelays:
             "placements of others": self._placements.run,
             "plans": self._plans.run,
             "site of others": self._sites.run,
-            "closures of others": lambda: every(
-                CLOSURES_INTERVAL_S, self._fleet.roads.closures.follow, "closures of others", tally
-            ),
+            "closures of others": self._closures.run,
             "addresses": lambda: every(
                 ADDRESSES_INTERVAL_S, self._fleet.announce_gateways, "addresses", tally
             ),

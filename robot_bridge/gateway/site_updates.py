@@ -341,6 +341,11 @@ class SiteWatch:
             await self._serve(folder, stamp, site)
             return self._maps.report
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether what was chosen cannot be served here: it may be published better."""
+        return self._maps.report.problem is not None
+
     async def follow(self) -> None:
         """Serve what was chosen at another gateway of the fleet; raises StoreError.
 

@@ -52,6 +52,8 @@ MOVING = (SetPosEnd.__name__, SetPath.__name__)
 class StepFeed:
     """Follows the steps of commands of others' robots, and wakes others when robots here take one."""
 
+    goes_on = False
+
     def __init__(
         self,
         robots: Robots,
@@ -186,6 +188,8 @@ class RecordAnnouncer(Generic[Told]):
 class PlacementRelay:
     """Follows which cones robots of other gateways put down and collect, and wakes others."""
 
+    goes_on = False
+
     def __init__(
         self,
         listeners: Listeners,
@@ -227,6 +231,8 @@ class ObservedMaps(Protocol):
 
 class ObservationRelay:
     """Follows what robots of other gateways saw and operators there accepted, and wakes others."""
+
+    goes_on = False
 
     def __init__(
         self,

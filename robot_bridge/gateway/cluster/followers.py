@@ -70,12 +70,11 @@ class ChangeNumbers:
 
 
 class LookSchedule:
-    """When it is time to look for changes of a kind, ``at_least_every`` so many seconds."""
+    """When it is time to look for changes of a kind."""
 
-    def __init__(self, topic: WakeTopic, numbers: ChangeNumbers, at_least_every: float = ANYWAY_S) -> None:
+    def __init__(self, topic: WakeTopic, numbers: ChangeNumbers) -> None:
         self._topic: WakeTopic = topic
         self._numbers = numbers
-        self._at_least_every = at_least_every
         self._known: Mapping[str, int] | None = None
         self._begun_at = 0.0
 
@@ -88,11 +87,15 @@ class LookSchedule:
         """Whether something may have changed since the last look began."""
         newest = self._numbers.newest(self._topic)
         looked = asyncio.get_running_loop().time() - self._begun_at
-        return newest is None or newest != self._known or looked >= self._at_least_every
+        return newest is None or newest != self._known or looked >= ANYWAY_S
 
 
 class Followed(Protocol):
     """What is stored in the database, and known at each gateway."""
+
+    @property
+    def goes_on(self) -> bool:
+        """Whether it may change though no gateway stores anything: then it is looked at each second."""
 
     async def follow(self) -> None:
         """Take in what has changed since the last look; raises StoreError."""
@@ -107,14 +110,12 @@ class Follower:
         followed: Followed,
         exchange: Exchange,
         numbers: ChangeNumbers,
-        at_least_every: float = ANYWAY_S,
     ) -> None:
-        """:param at_least_every: seconds, for what follows more than the changes of other gateways."""
         self._topic: WakeTopic = topic
         self._followed = followed
         self._exchange = exchange
         self._numbers = numbers
-        self._schedule = LookSchedule(topic, numbers, at_least_every)
+        self._schedule = LookSchedule(topic, numbers)
         self._woken = asyncio.Event()
         self._changed = asyncio.Event()
         exchange.subscribe(Wake, self._hear)
@@ -144,7 +145,7 @@ class Follower:
     async def _wait_until_due(self) -> None:
         while not self._woken.is_set():
             await wait_at_most(self._woken, LOOK_S)
-            if self._schedule.is_due:
+            if self._schedule.is_due or self._followed.goes_on:
                 return
 
     def _hear(self, wake: Wake) -> None:

@@ -102,6 +102,7 @@ WakeTopic = Literal[
     "placements",
     "plans",
     "queues",
+    "closures",
     "positions",
 ]
 """What another gateway had better look at; ``positions`` asks it for all of its robots."""

@@ -123,6 +123,7 @@ class Fleet:
             clock,
             planner if isinstance(planner, RoadPlanner) else None,
             self.listeners,
+            self.events,
         )
         rules.add(self.emergency)
         rules.add(self.roads.closures)

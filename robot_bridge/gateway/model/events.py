@@ -80,6 +80,14 @@ class PlanChanged:
 
 
 @dataclass(frozen=True)
+class ClosuresChanged:
+    """A road was closed or opened; that is stored, or may be."""
+
+    def __str__(self) -> str:
+        return "the closed roads"
+
+
+@dataclass(frozen=True)
 class QueueChanged:
     """A robot's queue may have something to send."""
 

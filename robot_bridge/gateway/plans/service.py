@@ -235,6 +235,11 @@ class PlanService:
             await self._plans.follow(one)
             return await self._plans.change(one, PlanState.CLEARED, operator, None, proposal=None, held={})
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether there are plans: they go on by what their robots do."""
+        return bool(self._plans.all())
+
     async def follow(self) -> None:
         """Follow all plans; called twice a second. Raises StoreError."""
         async with self._plans.lock:

@@ -27,7 +27,7 @@ from ..commands.persistence import Also, AlsoOf
 from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..model.arrival import Point
-from ..model.events import Listeners, handles
+from ..model.events import ClosuresChanged, EventBus, Listeners, handles
 from ..site.places import ServedSite
 from ..storage.database import Database
 from ..storage.repositories import closures, requests
@@ -220,12 +220,14 @@ class ClosureService:
         roads: RoadPlanner | None,
         detours: Detours,
         listeners: Listeners,
+        events: EventBus,
     ) -> None:
         self._database = database
         self._clock = clock
         self._roads = roads
         self._detours = detours
         self._listeners = listeners
+        self._events = events
         self._rows: dict[str, ClosureRow] = {}
         self._edges: dict[str, int] = {}
         self._considered: deque[tuple[SetPath, ClosedRoads, str | None]] = deque(maxlen=MOST_CONSIDERED)
@@ -285,10 +287,15 @@ class ClosureService:
             await self._put([row])
         return messages.RoadClosed(self._reported(row), await self._lead_round(row))
 
+    @property
+    def goes_on(self) -> bool:
+        """Whether it has to be looked up what is stored."""
+        return self._doubtful
+
     async def follow(self) -> None:
         """Take in what other gateways of the fleet closed and opened; raises StoreError."""
         stored = await self._database.read(closures.in_force)
-        if {row.id for row in stored} != self._rows.keys():
+        if self._doubtful or {row.id for row in stored} != self._rows.keys():
             self._doubtful = True
             async with self._looked_up():
                 return
@@ -387,6 +394,8 @@ class ClosureService:
         except UncertainError:
             self._doubtful = True
             raise
+        finally:
+            self._events.publish(ClosuresChanged())
 
     async def _open(self, row: ClosureRow, by: str) -> messages.ClosureReport:
         at = self._clock.time()

@@ -19,7 +19,7 @@ from ..commands.requests import CommandRequests
 from ..commands.service import CommandService
 from ..commands.validation import WaitingRobots
 from ..model.arrival import Point
-from ..model.events import Listeners, handles
+from ..model.events import EventBus, Listeners, handles
 from ..model.robots import Robots
 from ..monitoring import Steps
 from ..site.places import ServedSite, route_in_site_frame
@@ -309,6 +309,7 @@ class RoadTraffic:
         clock: Clock,
         planner: RoadPlanner | None,
         listeners: Listeners,
+        events: EventBus,
     ) -> None:
         self.planner = planner
         self._site = site
@@ -316,7 +317,7 @@ class RoadTraffic:
         self._steps = Steps("roads")
         self.ways = RobotPaths(robots, commands)
         detours = Detours(self.ways, planner, orders, queues, commands, site)
-        self.closures = ClosureService(database, clock, planner, detours, listeners)
+        self.closures = ClosureService(database, clock, planner, detours, listeners, events)
         self.waiting = YieldManager(database, robots, commands, detours, waiting)
         self.traffic = TrafficControl(
             clock,

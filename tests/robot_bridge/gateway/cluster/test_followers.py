@@ -151,18 +151,17 @@ async def test_a_gateway_that_starts_again_begins_with_other_numbers(fleet, sche
     assert schedule.is_due
 
 
-async def test_somebody_looks_anyway_once_in_a_while(fleet, schedule):
+async def test_somebody_looks_anyway_once_in_a_while(schedule, monkeypatch):
     assert not schedule.is_due
-    hasty = LookSchedule("steps", fleet.places["a"].numbers, at_least_every=0.0)
-    hasty.begin_look()
-    assert hasty.is_due
+    monkeypatch.setattr(followers, "ANYWAY_S", 0.0)
+    assert schedule.is_due
 
 
 class Followed:
     """What is followed; it counts the looks."""
 
     def __init__(self):
-        self.looks = 0
+        self.looks, self.goes_on = 0, False
 
     async def follow(self):
         self.looks += 1
@@ -197,3 +196,13 @@ async def test_a_follower_looks_when_it_is_woken_and_for_a_lost_wake(fleet, monk
         await until(lambda: here.looks == 4)
         for task in tasks:
             task.cancel()
+
+
+async def test_what_goes_on_by_itself_is_looked_at_each_second(fleet, monkeypatch):
+    monkeypatch.setattr(followers, "LOOK_S", 0.02)
+    followed, place = Followed(), fleet.places["a"]
+    task = asyncio.create_task(Follower("plans", followed, place.exchange, place.numbers).run())
+    await until(lambda: followed.looks == 1)
+    followed.goes_on = True
+    await until(lambda: followed.looks == 3)
+    task.cancel()

@@ -101,6 +101,21 @@ def test_a_gateway_takes_the_choice_when_it_starts(pair):
     assert pair.b.desk("Eve").site["id"] == "south"
 
 
+def test_a_road_that_is_closed_at_one_gateway_is_closed_at_all(pair):
+    ada, (ben, told) = pair.a.desk("Ada"), hearing(pair.b)
+
+    def closed_at_b():
+        reports = [frame["params"]["closures"] for frame in told if frame["method"] == "closures"]
+        return [one["closure"] for one in reports[-1]] if reports else None
+
+    ada.ask("close_road", {"closure": "closure-1", "x": 50.0, "y": 8.0})
+    ben.until(lambda: closed_at_b() == ["closure-1"])
+    (closure,) = ben.ask("get_closures", {})["closures"]
+    assert closure["edges"] > 0 and closure["closed_by"] == "Ada"
+    ben.ask("open_road", {"closure": "closure-1"})
+    wait_until(lambda: not ada.ask("get_closures", {})["closures"])
+
+
 def sources_on_the_map_of(robot):
     """Return the sources of the obstacles on the map that a robot is sent around (20, 8)."""
     robot.calls.clear()
