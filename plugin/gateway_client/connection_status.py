@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import socket
 import ssl
 from dataclasses import dataclass, field
@@ -392,7 +394,8 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> GatewayLi
                 reason=error.reason or error,
             )
         )
-    if isinstance(error, ConnectionRefusedError) or "Connect call failed" in str(error):
+    if isinstance(error, ConnectionRefusedError) or f"[Errno {errno.ECONNREFUSED}]" in str(error):
+        # Of a host with several addresses asyncio names each failure in words alone.
         return GatewayLinkError(
             tr(
                 "Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct "
@@ -424,7 +427,8 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> GatewayLi
             tr(
                 "{place} cannot be reached: {reason}. Check network and URL.",
                 place=place,
-                reason=error.strerror or error,
+                # What asyncio writes in its place names the call and not what was wrong.
+                reason=os.strerror(error.errno) if error.errno else error,
             )
         )
     return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import errno
 import gc
 import socket
 import threading
@@ -11,9 +12,10 @@ import warnings
 
 import pytest
 from fleet_supervisor.plugin.gateway_client.connection import ConnectionThread
-from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase
+from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionPhase, explain
 from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
 from fleet_supervisor.plugin.ui.errors import AddressError, NotSentError
+from fleet_supervisor.plugin.ui.vendored import websocket_library
 from fleet_supervisor.robot_bridge.core.clock import steady_time
 from qgis.PyQt.QtCore import QThread
 
@@ -85,6 +87,35 @@ def test_nothing_listening_is_said_with_place_and_remedy(connection, wait):
     reason = reason_when(connection, wait, ConnectionPhase.RETRYING)
     assert reason.startswith(f"Nothing listens at 127.0.0.1:{port}.")
     assert "robot-bridge serve" in reason
+
+
+@pytest.mark.parametrize(
+    ("error", "says"),
+    [
+        (
+            # As asyncio writes them: of one address in place of the reason, of several with their numbers.
+            OSError(errno.EHOSTUNREACH, "Connect call failed ('10.9.0.2', 8765)"),
+            "10.9.0.2:8765 cannot be reached: No route to host. Check network and URL.",
+        ),
+        (
+            OSError(
+                "Multiple exceptions: [Errno 111] Connect call failed ('::1', 8765, 0, 0), "
+                "[Errno 111] Connect call failed ('127.0.0.1', 8765)"
+            ),
+            "Nothing listens at 10.9.0.2:8765. Start the gateway",
+        ),
+        (
+            OSError(
+                "Multiple exceptions: [Errno 113] Connect call failed ('10.9.0.2', 8765), "
+                "[Errno 101] Connect call failed ('fd00::2', 8765, 0, 0)"
+            ),
+            "10.9.0.2:8765 cannot be reached: Multiple exceptions: [Errno 113]",
+        ),
+    ],
+)
+def test_a_computer_that_is_off_is_not_taken_for_one_without_a_gateway(error, says):
+    exceptions = websocket_library().exceptions
+    assert str(explain(error, "ws://10.9.0.2:8765/desk", exceptions)).startswith(says)
 
 
 @pytest.mark.parametrize(
