@@ -340,6 +340,7 @@ class CommandLog(QWidget):
 def _tree(model: LogModel) -> QTreeView:
     view = QTreeView()
     view.setObjectName("fleet_command_log")
+    view.setAccessibleName(tr("Commands"))
     view.setModel(model)
     view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
     view.setAlternatingRowColors(True)
@@ -357,6 +358,7 @@ def _tree(model: LogModel) -> QTreeView:
 def _choices(name: str, tip: str) -> QComboBox:
     box = QComboBox()
     box.setObjectName(name)
+    box.setAccessibleName(tip)
     box.setToolTip(tip)
     box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
     box.setMinimumContentsLength(8)

@@ -359,6 +359,7 @@ def _pair_of(conflict: ConflictReport) -> Pair:
 def _conflict_list() -> QListWidget:
     view = QListWidget()
     view.setObjectName("fleet_conflict_list")
+    view.setAccessibleName(tr("Conflicts"))
     view.setSelectionMode(QAbstractItemView.SelectionMode.SingleSelection)
     view.setAlternatingRowColors(True)
     view.setUniformItemSizes(True)

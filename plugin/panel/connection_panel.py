@@ -45,6 +45,9 @@ BY_CONNECTION = tr("of the connection's authentication; enter another one for th
 class AccessFields(QWidget):
     """Token, whether QGIS keeps it, and CA file. The token itself goes into no settings file."""
 
+    entered = pyqtSignal()
+    """Enter was pressed in a field."""
+
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setVisible(False)
@@ -65,6 +68,8 @@ class AccessFields(QWidget):
         hint = tr("the site's ca.pem; empty for public authorities")
         self._ca.lineEdit().setPlaceholderText(hint)
         self._ca.lineEdit().setToolTip(hint)
+        for line in (self._token, self._ca.lineEdit()):
+            line.returnPressed.connect(self.entered)
         self._lay_out()
 
     def show_kept(self, url: str) -> None:
@@ -147,6 +152,7 @@ class ConnectionMenu(QObject):
         self.button = QToolButton()
         self.button.setObjectName("fleet_connections_button")
         self.button.setIcon(QIcon(str(ICONS / "connections.svg")))
+        self.button.setAccessibleName(tr("Connections"))
         self.button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self.button.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.menu = QMenu(self.button)
@@ -233,13 +239,14 @@ class ConnectionPanel(QWidget):
         self._url = QLineEdit(settings.value(URL_KEY, DEFAULT_URL) or DEFAULT_URL)
         self._url.setObjectName("fleet_url")
         self._url.setPlaceholderText(DEFAULT_URL)
-        self._url.returnPressed.connect(lambda: connect.isChecked() or connect.trigger())
         self._operator = QLineEdit(settings.value(OPERATOR_KEY, "") or _user())
         self._operator.setObjectName("fleet_operator")
         self._operator.setToolTip(tr("Who you are: it stands beside every command in every log"))
         self.menu = ConnectionMenu(self._connections, self)
         self.menu.chosen.connect(self.use)
         self._access = AccessFields()
+        for enter in (self._url.returnPressed, self._operator.returnPressed, self._access.entered):
+            enter.connect(lambda: connect.isChecked() or connect.trigger())
         self._more = _more_button()
         self._more.toggled.connect(self._access.setVisible)
         self._state = _state_text()

@@ -121,17 +121,20 @@ class SharingSplitter(QSplitter):
         self._share = (self.sizes()[0] - self._least()) / max(1, self._free())
 
 
+# The keyboard's place is a frame of two lines: the style's own, one faint line, is lost on these colours.
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
     " border-radius: 4px; padding: 7px; }"
     "QPushButton:hover { background: #D93636; }"
     "QPushButton:pressed { background: #8E0000; }"
+    "QPushButton:focus { border: 4px double white; padding: 4px; }"
 )
 EMERGENCY_STYLE = (
     "QPushButton { background: #FFC400; color: #7F0000; font-weight: bold; border: 2px solid #C62828;"
     " border-radius: 4px; padding: 6px; }"
     "QPushButton:hover { background: #FFD54A; }"
     "QPushButton:pressed { background: #E0A800; }"
+    "QPushButton:focus { border: 4px double #7F0000; padding: 4px; }"
 )
 
 LEAST_WIDTH = 404
@@ -165,6 +168,7 @@ class FleetDock(QgsDockWidget):
         self.tabs.setObjectName("fleet_tabs")
         self._lay_out(actions)
         self.setToggleVisibilityAction(actions.panel)
+        self.setFocusProxy(self.table)
         self.conflict_panel.counted.connect(self._count_conflicts)
         desk.state.updated.connect(self._show_link)
         desk.state.link_changed.connect(self._show_link)

@@ -300,6 +300,7 @@ class TaskList(QTreeView):
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_queue_tasks")
+        self.setAccessibleName(tr("Queue"))
         self.tasks = TaskModel(self)
         self.setModel(self.tasks)
         self.setRootIsDecorated(False)

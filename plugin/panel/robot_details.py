@@ -433,6 +433,7 @@ class _Picture(QLabel):
 def _tree() -> QTreeWidget:
     tree = QTreeWidget()
     tree.setObjectName("fleet_details")
+    tree.setAccessibleName(tr("Robot"))
     tree.setColumnCount(2)
     tree.setHeaderHidden(True)
     tree.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)

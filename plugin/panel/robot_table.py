@@ -64,6 +64,7 @@ class RobotTableView(QTableView):
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_robot_table")
+        self.setAccessibleName(tr("Robots"))
         self._desk = desk
         self._turn = desk.beat.turn()
         self._marking = self._is_reset = False
@@ -341,6 +342,7 @@ def _search_field() -> QgsFilterLineEdit:
 def _choice_of_robots() -> QComboBox:
     box = QComboBox()
     box.setObjectName("fleet_robot_filter")
+    box.setAccessibleName(tr("Filter"))
     box.addItems([ROBOT_CHOICES[which] for which in RobotChoice])
     box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
     box.setMinimumContentsLength(11)

@@ -150,6 +150,7 @@ class FleetWindow(QObject):
             action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
             # A click on the button of the tool in hand keeps it, as QGIS's own do.
             action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
+        actions.panel.triggered.connect(self._give_keyboard)
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.sending.send)
         actions.cancel.triggered.connect(lambda: desk.drafts.set_command(None))
@@ -170,6 +171,11 @@ class FleetWindow(QObject):
         self._project_match.over.connect(self.notices.take_down)
         desk.state.link_changed.connect(self._show_link)
         desk.state.gateways_changed.connect(self._keep_gateways)
+
+    def _give_keyboard(self, opened: bool) -> None:
+        """Let who opened the panel by its key go on in it by keys: connected, no letter leads into it."""
+        if opened:
+            self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def _follow(self, mode: FollowMode, on: bool) -> None:
         if on:

@@ -130,6 +130,7 @@ class QuestionDialog(QDialog):
         line = ReasonLine()
         line.setObjectName(name)
         line.setPlaceholderText(hint)
+        line.setAccessibleName(hint)
         line.setToolTip(hint)
         line.setMaxLength(longest)
         if self._is_safe:

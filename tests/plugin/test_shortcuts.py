@@ -44,6 +44,14 @@ def test_f8_takes_the_cone_tool_and_f9_hides_the_panel(plugin, iface):
     assert (not plugin.window.dock.isHidden()) is not was_shown
 
 
+def test_f9_opens_the_panel_with_the_keyboard_in_its_robots(plugin, iface, wait):
+    dock = plugin.window.dock
+    dock.hide()
+    iface.activateWindow()
+    QTest.keyClick(iface, Qt.Key.Key_F9)
+    wait(lambda: not dock.isHidden() and dock.table.hasFocus(), what="the keyboard in the table of robots")
+
+
 def test_tab_leads_through_the_connection_in_its_order(plugin, iface):
     panel = plugin.window.dock.connection_panel
     plugin.window.dock.show()

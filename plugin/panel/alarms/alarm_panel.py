@@ -308,6 +308,7 @@ class AlarmPanel(QWidget):
     def _set_up_view(self) -> None:
         view = self._view
         view.setObjectName("fleet_alarms")
+        view.setAccessibleName(tr("Alarms"))
         view.setModel(self._model)
         view.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
         view.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from itertools import pairwise
 
+import numpy as np
 import pytest
 from fleet_supervisor.plugin.ui.actions import KEYS, with_letters
 from fleet_supervisor.plugin.ui.language import CONTEXT, FOLDER
 from qgis.gui import QgsGui
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QEvent, Qt, QTranslator
-from qgis.PyQt.QtGui import QFocusEvent
+from qgis.PyQt.QtGui import QFocusEvent, QImage
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import (
     QAbstractButton,
@@ -98,6 +99,51 @@ def test_buttons_show_no_letters(plugin):
     dock = plugin.window.dock
     for name in ("fleet_abort_all_button", "fleet_emergency_stop_button", "fleet_connect_button"):
         assert "&" not in dock.findChild(QWidget, name).text()
+
+
+@pytest.mark.parametrize("name", ["fleet_abort_all_button", "fleet_emergency_stop_button"])
+def test_it_is_plainly_seen_which_stop_has_the_keyboard(plugin, wait, name):
+    """On their colours the style's own line round the text is lost."""
+    dock = plugin.window.dock
+    dock.show()
+    dock.activateWindow()
+    button = dock.findChild(QPushButton, name)
+    dock.table.setFocus()
+    without, place = lightness(button), button.geometry()
+    button.setFocus(Qt.FocusReason.TabFocusReason)
+    wait(button.hasFocus, what="the keyboard")
+    changed = np.count_nonzero(np.abs(lightness(button) - without) > 60)
+    assert changed > button.width() + button.height()
+    assert button.geometry() == place
+
+
+def lightness(widget):
+    """How light each pixel of a widget is, as it is drawn now: 0 to 255."""
+    image = widget.grab().toImage().convertToFormat(QImage.Format.Format_Grayscale8)
+    pixels = image.constBits().asstring(image.sizeInBytes())
+    return np.frombuffer(pixels, np.uint8).reshape(image.height(), -1).astype(int)
+
+
+def test_whoever_hears_the_screen_hears_what_each_part_of_the_fleet_panel_is(plugin):
+    """A reader says the name of what has the keyboard: its own, its text, or that of the label before it."""
+    assert " ".join(parts_without_a_name(plugin.window.dock)) == ""
+
+
+@pytest.mark.parametrize("question", ["clear", "override"])
+def test_a_line_for_a_reason_has_its_question_as_its_name(dialogs, question):
+    (left,) = [list(parts_without_a_name(dialog)) for name, dialog in dialogs() if name == question]
+    assert not left
+
+
+def parts_without_a_name(window):
+    """Names of the plugin's objects that Tab leads to and that would be read as a kind alone."""
+    labelled = {label.buddy() for label in window.findChildren(QLabel)}
+    for part in window.findChildren(QWidget):
+        reached = part.focusPolicy() & Qt.FocusPolicy.TabFocus and part.focusProxy() is None
+        text = part.text() if isinstance(part, QAbstractButton) else ""
+        named = part in labelled or part.accessibleName() or text
+        if reached and part.objectName().startswith("fleet_") and not named:
+            yield part.objectName()
 
 
 DOCKS = ("fleet_observation_dock", "fleet_plan_dock", "fleet_replay_dock")
