@@ -7,11 +7,13 @@ import heapq
 from qgis.core import QgsCoordinateReferenceSystem, QgsSettings
 from qgis.gui import QgsFilterLineEdit, QgsProjectionSelectionDialog
 from qgis.PyQt.QtCore import (
+    QEvent,
     QItemSelection,
     QItemSelectionModel,
     QItemSelectionRange,
     QModelIndex,
     Qt,
+    QTimer,
     pyqtSignal,
 )
 from qgis.PyQt.QtWidgets import (
@@ -34,7 +36,7 @@ from ..layers.site_transform import PositionCrs
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
 from ..ui.steady_widgets import ElidedText
-from ..ui.tables import ZoomMenu, fit_headers, shrink_view
+from ..ui.tables import ZoomMenu, fit_headers, shrink_view, widen_headers
 from .robot_model import COLUMNS, TASK, TITLES, RobotChoice, RobotModel
 
 MANY = 500
@@ -68,7 +70,7 @@ class RobotTableView(QTableView):
         self._desk = desk
         self._turn = desk.beat.turn()
         self._marking = self._is_reset = False
-        self._is_fitting = self._is_fitted_by_hand = False
+        self._is_fitting = self._is_fitted_by_hand = self._is_set_up = False
         self._fitted: tuple[int, int] = (0, 0)
         self.positions = PositionCrs(desk.project, self)
         self._model = RobotModel(desk.state.robots, desk.state.commands, desk.state.queues, self, self)
@@ -143,24 +145,52 @@ class RobotTableView(QTableView):
         self.sortByColumn(0, Qt.SortOrder.AscendingOrder)
         self.verticalHeader().hide()
         shrink_view(self)
-        metrics = self.fontMetrics()
-        self.verticalHeader().setDefaultSectionSize(metrics.height() + 8)
         header = self.horizontalHeader()
         header.setHighlightSections(False)
         header.setMinimumSectionSize(24)
         hidden = QgsSettings().value(HIDDEN_KEY)
         for number, column in enumerate(COLUMNS):
-            # Qt leaves three pixels free at either side of a text; beside a name there is an icon.
-            extra = BESIDE_NAME if number == NAME else 7
-            widest = max(map(metrics.horizontalAdvance, (column.head, column.widest)))
-            self.setColumnWidth(number, max(widest + extra, TASK_WIDTH if number == TASK else 0))
+            self.setColumnWidth(number, 0)
             by_choice = column.first if hidden is None else column.title not in str(hidden).split(",")
             self.setColumnHidden(number, not by_choice)
+        self._fit_to_font()
         fit_headers(self)
-        # The column that takes what is left keeps room for its head.
-        header.setMinimumSectionSize(max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9))
         header.setSectionResizeMode(TASK, QHeaderView.ResizeMode.Stretch)
         header.sectionResized.connect(self._resized)
+        self._is_set_up = True
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        is_other_font = event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange)
+        if is_other_font and self._is_set_up:
+            # The heads get theirs after this.
+            QTimer.singleShot(0, self._refit)
+
+    def _refit(self) -> None:
+        """Have room for a larger font, such as one that was chosen in QGIS's options meanwhile."""
+        self._is_fitting = True
+        self._fit_to_font()
+        widen_headers(self)
+        self._is_fitting = False
+        self._fitted = (0, 0)
+        self._fit_names()
+        self.updateGeometry()
+
+    def _fit_to_font(self) -> None:
+        """Make rows as high as the font needs, and columns wide enough; none becomes narrower."""
+        metrics = self.fontMetrics()
+        self.verticalHeader().setDefaultSectionSize(metrics.height() + 8)
+        for number, column in enumerate(COLUMNS):
+            # Qt leaves three pixels free at either side of a text; beside a name there is an icon.
+            extra = BESIDE_NAME if number == NAME else 7
+            widest = max(map(metrics.horizontalAdvance, (column.head, column.widest))) + extra
+            least = max(widest, TASK_WIDTH if number == TASK else 0)
+            # Of a hidden one this is what it will have.
+            self.setColumnWidth(number, max(self.columnWidth(number), least))
+        # The column that takes what is left keeps room for its head.
+        self.horizontalHeader().setMinimumSectionSize(
+            max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9)
+        )
 
     def least_height(self) -> int:
         """Return the pixels of height that :data:`ROWS_AT_LEAST` rows take."""

@@ -100,11 +100,17 @@ def fit_headers(view: QTableView | QTreeView) -> None:
     None becomes narrower. The heads of ``view`` have their font and their columns' first widths already.
     """
     header = _heads(view)
-    for column in range(header.count()):
-        _fit(header, column)
+    widen_headers(view)
     # No function that holds the header itself: nothing else in Python would, so that Python took both for
     # garbage, and the next click on a head crashed QGIS.
     header.sortIndicatorChanged.connect(lambda column, _order: _fit(_heads(view), column))
+
+
+def widen_headers(view: QTableView | QTreeView) -> None:
+    """Widen each column whose head would be cut off in the font that it has now."""
+    header = _heads(view)
+    for column in range(header.count()):
+        _fit(header, column)
 
 
 def _heads(view: QTableView | QTreeView) -> QHeaderView:

@@ -99,6 +99,29 @@ def test_the_gateway_of_a_robot_elsewhere_fits_into_its_column(table, at_desk, g
     wait(lambda: {"@b", "@north"} <= set(column(table, "Link")))
 
 
+def test_a_larger_font_that_is_chosen_meanwhile_cuts_nothing_off(table, at_desk, wait):
+    """QGIS gives the font of its options to all of its windows by a style sheet."""
+
+    def cut_off():
+        metrics, heads = table.fontMetrics(), table.horizontalHeader()
+        for number, one in enumerate(COLUMNS):
+            if heads.sectionSize(number) < metrics.horizontalAdvance(one.widest) and one.title != "Task":
+                yield one.title
+            if heads.sectionSize(number) < heads.fontMetrics().horizontalAdvance(one.head):
+                yield f"{one.title}'s head"
+
+    def cut_of_shown():
+        hidden = {TITLES[n] for n in range(len(TITLES)) if table.isColumnHidden(n)}
+        return {title for title in cut_off() if title.partition("'")[0] not in hidden}
+
+    assert cut_of_shown() == set()
+    before = table.fontMetrics().height()
+    at_desk.dock.window().setStyleSheet("QWidget { font-size: 16pt; }")
+    wait(lambda: table.fontMetrics().height() > before, what="the larger font")
+    wait(lambda: cut_of_shown() == set(), what="room for it")
+    assert table.rowHeight(0) >= table.fontMetrics().height()
+
+
 def test_what_a_narrow_panel_cuts_of_a_task_is_in_its_tool_tip(table, at_desk, gateway, make_robot, wait):
     gateway.show(make_robot("r1", 50, 40, stopped=True))
     wait(lambda: "stopped" in column(table, "Task"))
