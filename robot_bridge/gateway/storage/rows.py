@@ -6,14 +6,28 @@ import itertools
 import json
 import logging
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from functools import lru_cache
 from typing import Any, Generic, NamedTuple, TypeVar
 
 import msgspec
 import numpy as np
 from msgspec import ValidationError
-from sqlalchemy import Column, ColumnElement, Connection, Dialect, String, Table, delete, select
+from sqlalchemy import (
+    ARRAY,
+    Column,
+    ColumnElement,
+    Connection,
+    Dialect,
+    String,
+    Table,
+    Text,
+    any_,
+    cast,
+    delete,
+    literal,
+    select,
+)
 from sqlalchemy.exc import DBAPIError
 
 from ...core.errors import DataRefusedError
@@ -171,6 +185,18 @@ def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) ->
         _delete_rows(connection, table, "id", ids)
     elif ids:
         connection.exec_driver_sql(_DELETE_BY_KEY.format(table=table.name), (json.dumps(list(ids)),))
+
+
+def is_one_of(
+    connection: Connection, column: ColumnElement[str], values: Collection[str]
+) -> ColumnElement[bool]:
+    """Return the condition that ``column`` is one of ``values``, however many there are.
+
+    PostgreSQL takes 65535 values in a statement, and a list as one of them.
+    """
+    if connection.dialect.name == "postgresql":
+        return column == any_(cast(literal(list(values), ARRAY(Text)), ARRAY(Text)))
+    return column.in_(values)
 
 
 def padded_pieces(values: Sequence[T]) -> Iterator[list[T]]:

@@ -23,7 +23,16 @@ from sqlalchemy import (
 
 from ....core.json_decoder import decode_json
 from ....core.messages.commands import CommandReport, CommandState, CommandStep
-from ..rows import Row, add_rows, beside_the_time, change_rows, delete_oldest, padded_pieces, readable
+from ..rows import (
+    Row,
+    add_rows,
+    beside_the_time,
+    change_rows,
+    delete_oldest,
+    is_one_of,
+    padded_pieces,
+    readable,
+)
 from ..schema import command_steps, commands
 
 # --- Commands and every step of their lives ---
@@ -144,7 +153,7 @@ def still_open(connection: Connection, robots: Sequence[str] | None = None) -> l
     states = [state.value for state in CommandState if state.is_open]
     query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
     if robots is not None:
-        query = query.where(commands.c.robot.in_(robots))
+        query = query.where(is_one_of(connection, commands.c.robot, robots))
     return _load(connection, query)
 
 

@@ -28,7 +28,7 @@ from ....core.json_decoder import decode_json
 from ....core.messages.base import to_json
 from ....core.messages.queues import QueueState, QueueTask, TaskState
 from ...model.task_queue import ENDS, Queue, QueuedTask, Whereabouts
-from ..rows import beside_the_time, delete_oldest, readable
+from ..rows import beside_the_time, delete_oldest, is_one_of, readable
 from ..schema import plan_stops, plans, queue_tasks, queues
 
 _ENDED = [state.value for state in ENDS]
@@ -90,8 +90,8 @@ def load(connection: Connection, robots: Sequence[str] | None = None) -> dict[st
     query = select(queues)
     open_tasks = select(queue_tasks).where(queue_tasks.c.state.in_(_OPEN))
     if robots is not None:
-        query = query.where(queues.c.robot.in_(robots))
-        open_tasks = open_tasks.where(queue_tasks.c.robot.in_(robots))
+        query = query.where(is_one_of(connection, queues.c.robot, robots))
+        open_tasks = open_tasks.where(is_one_of(connection, queue_tasks.c.robot, robots))
     tasks: dict[str, list[QueuedTask]] = {}
     rows = connection.execute(open_tasks.order_by(queue_tasks.c.place)).mappings()
     for robot, task in readable(rows, lambda row: (row["robot"], _task(row)), _name_of_task):

@@ -16,7 +16,7 @@ from ....core.messages.base import DeskRequest
 from ....core.messages.robots import Abort, SendPos
 from ....core.messages.safety import PathDeclaration
 from ...model.robots import Robot
-from ..rows import Row, put_rows, readable
+from ..rows import Row, is_one_of, put_rows, readable
 from ..schema import robots
 from . import requests
 
@@ -59,7 +59,9 @@ def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
 
 def load(connection: Connection, names: Sequence[str] | None = None) -> list[Robot]:
     """Return the robots that a gateway knew, or those of them that have one of ``names``."""
-    query = select(robots) if names is None else select(robots).where(robots.c.name.in_(names))
+    query = select(robots)
+    if names is not None:
+        query = query.where(is_one_of(connection, robots.c.name, names))
     return [_robot(row) for row in connection.execute(query).mappings()]
 
 

@@ -13,7 +13,7 @@ from robot_bridge.core.messages.commands import CommandReport, CommandState, Com
 from robot_bridge.core.messages.robots import OpAck, SendPos, SetMap
 from robot_bridge.gateway.model.robots import Robot
 from robot_bridge.gateway.storage.database import Database
-from robot_bridge.gateway.storage.repositories import commands, requests, robots, trajectories
+from robot_bridge.gateway.storage.repositories import commands, queues, requests, robots, trajectories
 from robot_bridge.gateway.storage.repositories import requests as answers
 from robot_bridge.gateway.storage.repositories.commands import StoredCommand
 from robot_bridge.gateway.storage.repositories.trajectories import Fix, pack
@@ -176,3 +176,14 @@ async def test_more_are_looked_up_than_a_statement_takes_values(database):
     many = [f"command-{number}" for number in range(70_000)]
     assert await database.run(commands.find_all, many) == {}
     assert await database.run(commands.find_messages, [("r1", number) for number in range(70_000)]) == {}
+
+
+async def test_more_robots_are_read_by_name_than_a_statement_takes_values(database):
+    """Of a fleet of 100 000 all may turn up at another gateway at once."""
+    await save(database, [robot(1)])
+    # MariaDB's driver writes them into the statement, and SQLite takes 250000.
+    names = [f"r{number}" for number in range(70_000)]
+    assert [one.name for one in await database.run(robots.load, names)] == ["r1"]
+    assert await database.run(queues.load_with_ended, names, 5) == []
+    assert await database.run(commands.still_open, names) == []
+    assert await database.run(robots.load, []) == []
