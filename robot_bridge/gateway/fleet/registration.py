@@ -97,6 +97,8 @@ class Takeover:
         self._left: set[str] = set()
         """the gateways that had those who wait."""
         self._taking_up: asyncio.Task[None] | None = None
+        self._unasked: set[str] = set()
+        """gateways that have robots which this one did not know to be theirs, until they were asked."""
 
     async def claim(self, robot: str) -> None:
         """Have a robot that says Ready here, whoever had it, and take up what is stored of it.
@@ -126,19 +128,18 @@ class Takeover:
         strange = [r for r in changes.gateways if r not in self._robots and r not in changes.gone]
         if strange:
             await self._meet(strange, changes.gateways)
-        came_to = {gateway for robot, gateway in changes.gateways.items() if robot in changes.lost}
         for robot, gateway in changes.gateways.items():
             known = self._robots.gateway_of(robot)
             if known is not None and known != gateway:
                 self._robots.let_go(robot, gateway)
-                came_to.add(gateway)
+                self._unasked.add(gateway)
         # Lost while they were let in, and known as this gateway's again by that.
         for robot, gateway in self._ownership.had_elsewhere(one.name for one in self._robots.own()).items():
             self._drop(robot, gateway)
-            came_to.add(gateway)
         # What those said of these robots before this gateway knew that they have them was not taken in.
-        for gateway in sorted(came_to):
+        for gateway in sorted(self._unasked):
             self._exchange.wake("positions", gateway)
+        self._unasked.clear()
         self._ownership.note_followed()
 
     async def _meet(self, names: Collection[str], gateways: dict[str, str]) -> None:
@@ -224,6 +225,7 @@ class Takeover:
             self._robots.remove(robot)
         else:
             self._robots.let_go(robot, gateway)
+            self._unasked.add(gateway)
         self._events.publish(RobotLeft(robot, gateway or "none"))
 
 

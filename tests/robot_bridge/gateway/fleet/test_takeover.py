@@ -126,6 +126,32 @@ async def test_gateways_that_robots_went_to_are_asked_where_those_are(ownership)
     assert len(woken) == 2
 
 
+async def test_gateways_are_asked_where_robots_are_though_others_could_not_be_taken_up_meanwhile(ownership):
+    woken, known = [], Robots()
+    exchange = SimpleNamespace(wake=lambda what, gateway: woken.append((what, gateway)))
+    known.ready("r1", 1, "websocket", 0.0)
+    ignored, held = SimpleNamespace(drop=lambda _robots: None), SimpleNamespace(forget=lambda _robot: None)
+    faults = [StoreError("away")]
+
+    async def run(_work, names):
+        raise faults.pop()
+
+    database = SimpleNamespace(run=run)
+    takeover = Takeover(
+        ownership, exchange, known, ignored, ignored, held, ignored, database, None, EventBus()
+    )
+    found = [OwnerChanges({"r1"}, {"r9"}, set(), {"r1": "b"}), OwnerChanges(set(), set(), set(), {"r1": "b"})]
+
+    async def refresh():
+        return found.pop(0)
+
+    ownership.refresh, ownership.note_followed = refresh, lambda: None
+    with pytest.raises(StoreError):
+        await takeover.follow()
+    await takeover.follow()
+    assert woken == [("positions", "b")] and ownership.forgotten == ["r9"]
+
+
 async def test_a_robot_that_was_lost_while_it_was_let_in_here_is_dropped_by_the_next_look(ownership):
     known, left, woken = Robots(), [], []
     for robot in ("mine", "astray"):
