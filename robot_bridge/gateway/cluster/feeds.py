@@ -45,6 +45,9 @@ PIECE = 50
 
 LEFT_AT_ONCE = 1000
 """robots whose commands are read together: PostgreSQL takes 65535 values in a statement."""
+MET_WITHIN_S, MOST_UNMET = 10.0, 2000
+"""Seconds for which a command waits for its robot to be known here, which takes one or two, and how many do.
+A robot that was removed never is."""
 MOVING = (SetPosEnd.__name__, SetPath.__name__)
 """The commands that robots are busy with."""
 
@@ -69,6 +72,9 @@ class StepFeed:
         self._database = database
         self._newest: int | None = None
         self._seen: set[int] = set()
+        self._unmet: dict[str, float] = {}
+        """commands of robots that are not known here yet, and since when on the loop's clock."""
+        self._meeting: asyncio.TimerHandle | None = None
         self._left: set[str] = set()
         """robots that were here: of what they are doing no step may come for long."""
         self._follower = Follower("steps", self, exchange, numbers)
@@ -86,13 +92,15 @@ class StepFeed:
             return
         await self._learn_open()
         found = await self._database.read(commands.steps_after, self._margin())
-        new = list(dict.fromkeys(command for id, command in found if id not in self._seen))
+        steps = (command for id, command in found if id not in self._seen)
+        new = list(dict.fromkeys([*self._unmet, *steps]))
         reports = await self._database.read(commands.find_all, new) if new else {}
         for begin in range(0, len(new), PIECE):
             for command in new[begin : begin + PIECE]:
                 if command in reports:
                     self._tell(reports[command].report)
             await asyncio.sleep(0)
+        self._keep_unmet()
         self._newest = max([self._newest, *(id for id, _ in found)])
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
         if len(found) == commands.STEPS_AT_ONCE:
@@ -122,7 +130,20 @@ class StepFeed:
     def _margin(self) -> int:
         return (self._newest or 0) - commands.STEP_MARGIN
 
+    def _keep_unmet(self) -> None:
+        """Look again soon at commands of robots that are not known here yet."""
+        loop, since = asyncio.get_running_loop(), asyncio.get_running_loop().time() - MET_WITHIN_S
+        self._unmet = {command: at for command, at in self._unmet.items() if at > since}
+        if self._meeting is not None:
+            self._meeting.cancel()
+        self._meeting = loop.call_later(LOOK_S, self._follower.wake) if self._unmet else None
+
     def _tell(self, report: CommandReport) -> None:
+        if report.robot not in self._robots:
+            if len(self._unmet) < MOST_UNMET:
+                self._unmet.setdefault(report.command, asyncio.get_running_loop().time())
+            return
+        self._unmet.pop(report.command, None)
         if self._robots.gateway_of(report.robot) is None:
             return
         self._note_doing(report)

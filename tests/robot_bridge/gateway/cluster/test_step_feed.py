@@ -16,7 +16,7 @@ from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.commands.active_command import CommandOrder
 from robot_bridge.gateway.model.events import RobotLeft
 from robot_bridge.gateway.storage.repositories import commands
-from tests.support.patience import BUSY
+from tests.support.patience import BUSY, until
 
 
 class Alone:
@@ -45,11 +45,12 @@ class Unreliable:
 class Turns:
     """An operator's session that counts what it hears in each turn of the loop."""
 
-    def __init__(self):
-        self.turn, self.heard = 0, Counter()
+    def __init__(self, keys=None):
+        self.turn, self.heard, self._keys = 0, Counter(), [] if keys is None else keys
 
     def notify(self, method, key, params):
         self.heard[self.turn] += 1
+        self._keys.append(key)
 
     async def count(self):
         while True:
@@ -136,3 +137,32 @@ async def test_a_first_look_that_fails_is_made_again(two):
     await feed.follow()
     assert two.fleet.robots.get("r1").command == command
     assert not turns.heard
+
+
+async def test_a_step_of_a_robot_that_is_met_a_moment_later_is_heard_then(two):
+    """It connected to another gateway for the first time, and was commanded at once."""
+    feed, robots, heard = step_feed(two), two.fleet.robots, []
+    await feed.follow()
+    await send_away(two)
+    known = robots.get("r1")
+    robots.remove("r1")
+    two.fleet.listeners.add(Turns(heard))
+    following = asyncio.create_task(feed.run())
+    await asyncio.sleep(0.1)
+    assert not heard
+    robots.restore(known, known.received_at)
+    robots.let_go("r1", "south")
+    await until(lambda: heard)
+    following.cancel()
+    await asyncio.gather(following, return_exceptions=True)
+    assert heard == ["drive-0001"] and robots.get("r1").command == "drive-0001"
+
+
+async def test_steps_of_robots_that_are_never_met_are_forgotten(two, monkeypatch):
+    monkeypatch.setattr(feeds, "MET_WITHIN_S", 0.0)
+    feed = step_feed(two)
+    await feed.follow()
+    await send_away(two)
+    two.fleet.robots.remove("r1")
+    await feed.follow()
+    assert feed._unmet == {} and feed._meeting is None
