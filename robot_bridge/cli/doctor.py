@@ -178,7 +178,7 @@ def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
     from ..gateway.storage.repositories import gateways
 
     if settings.cluster is not None:
-        settings.cluster.check(settings.database)
+        settings.cluster.check_gateway(settings.database)
     if settings.database.get_backend_name() != "postgresql":
         return
     try:
@@ -213,6 +213,7 @@ def _check_bus(settings: GatewaySettings) -> Iterator[Finding]:
     cluster = settings.cluster
     if cluster is None:
         return
+    cluster.check_bus()
     if not cluster.servers():
         yield Finding(Level.OK, "bus", cluster.bus)
         return

@@ -44,7 +44,7 @@ from .auth.port import (
     is_loopback,
     listen,
 )
-from .cluster.cluster import Cluster, ClusterSettings, join_cluster, lease_database
+from .cluster.cluster import Cluster, ClusterSettings, fleet_id, join_cluster, lease_database
 from .cluster_relays import ClusterRelays
 from .field.page import SITE, FieldPage
 from .fleet.emergency_persistence import StopJournal, journal_file
@@ -426,7 +426,7 @@ async def _hold_database(
         return None, {"sole gateway": sole.hold}
     lease = lease_database(settings.database)
     stack.push_async_callback(lease.close, CLOSE_WITHIN)
-    fleet = await database.run(metadata.database_id)
+    fleet = await database.run(fleet_id)
     cluster = await join_cluster(settings.cluster, database, lease, fleet)
     stack.push_async_callback(cluster.membership.leave)
     # At once: to read a city takes longer than a lease lasts.

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import logging
+import secrets
 from dataclasses import dataclass
 from typing import Any
 from urllib.parse import urlsplit
 
-from sqlalchemy import URL
+from sqlalchemy import URL, Connection, text
 
 from ...core.errors import BridgeError
 from ...core.messages.base import LONGEST_ADDRESS, is_gateway_address
 from ..storage.database import Database
+from ..storage.repositories import gateways, metadata
 from .bus import LARGEST_NOTIFICATION, Bus, NoBus, NotifyBus
 from .membership import LEASE_PATIENCE_S, Membership, check_gateway_name
-from .messages import LARGEST, Exchange, fleet_key
+from .messages import LARGEST, Exchange
 from .nats_bus import NatsBus
 from .nats_servers import nats_urls
 from .ownership import Ownership
@@ -44,6 +46,11 @@ class ClusterSettings:
 
     def check(self, database: URL) -> None:
         """Raise BridgeError for what cannot be."""
+        self.check_gateway(database)
+        self.check_bus()
+
+    def check_gateway(self, database: URL) -> None:
+        """Raise BridgeError for a name, a database or an address that cannot be."""
         check_gateway_name(self.name)
         if database.get_backend_name() != "postgresql":
             raise BridgeError(
@@ -51,6 +58,15 @@ class ClusterSettings:
                 f"{database.get_backend_name()}: give --database postgresql://..., or leave out "
                 "--gateway-name to serve it with this gateway alone"
             )
+        address = self.public_address
+        if address is not None and not (is_gateway_address(address) and len(address) <= LONGEST_PUBLIC):
+            raise BridgeError(
+                f"public address {address!r:.80} cannot be told to robots; write it as ws://HOST:PORT or "
+                f"wss://HOST:PORT, with a path if robots need one, at most {LONGEST_PUBLIC} characters"
+            )
+
+    def check_bus(self) -> None:
+        """Raise BridgeError for a bus that cannot be, or a password that is for none."""
         if self.bus not in ("none", "postgresql") and not self.servers():
             raise BridgeError(f"bus {self.bus!r:.80} is none of these: {BUSES}")
         if self.password is not None and not (
@@ -59,12 +75,6 @@ class ClusterSettings:
             raise BridgeError(
                 "--bus-password-file is for the account of a bus on NATS: name that in each URL, as in "
                 "nats://ACCOUNT@HOST:PORT, or leave the file out"
-            )
-        address = self.public_address
-        if address is not None and not (is_gateway_address(address) and len(address) <= LONGEST_PUBLIC):
-            raise BridgeError(
-                f"public address {address!r:.80} cannot be told to robots; write it as ws://HOST:PORT or "
-                f"wss://HOST:PORT, with a path if robots need one, at most {LONGEST_PUBLIC} characters"
             )
 
     def servers(self) -> list[str]:
@@ -135,6 +145,41 @@ class Cluster:
         return LARGEST_NOTIFICATION if self.settings.bus == "postgresql" else LARGEST
 
 
+KEY = "bus_key"
+"""The fact of the database that is the secret by which messages are signed."""
+PLACE = "place"
+"""The fact of a database that says which one it is on which server; a copy has that of the first one."""
+_HERE = text(
+    "select (select system_identifier from pg_control_system()) || '/' || oid from pg_database "
+    "where datname = current_database() and has_function_privilege('pg_control_system()', 'execute')"
+)
+
+
+def fleet_id(connection: Connection) -> str:
+    """Return the id of the fleet on this database; a copy of another one is given its own, and its own key.
+
+    Two fleets of one id and key that share a bus would hear each other's stops, and count each other's
+    answers. Nothing changes while a gateway lives: it knows what there was.
+    """
+    here = connection.scalar(_HERE)
+    if here is not None and (before := metadata.fact(connection, PLACE, here)) != here:
+        is_served = any(member.alive for member in gateways.members(connection))
+        if not is_served and metadata.replace_fact(connection, PLACE, before, here):
+            metadata.forget_facts(connection, [metadata.ID, KEY])
+            log.warning(
+                "this database is a copy of another one, or was moved: from now on it is fleet %s, which the "
+                "account on a NATS server has to be allowed",
+                id := metadata.database_id(connection),
+            )
+            return id
+    return metadata.database_id(connection)
+
+
+def fleet_key(connection: Connection) -> bytes:
+    """Return the secret of the fleet on this database; one that has none yet is given it."""
+    return bytes.fromhex(metadata.fact(connection, KEY, secrets.token_hex(32)))
+
+
 async def join_cluster(settings: ClusterSettings, database: Database, lease: Database, fleet: str) -> Cluster:
     """Enter the fleet named ``fleet`` on ``database``; ``lease`` is a connection of its own for the lease.
 
@@ -152,7 +197,7 @@ async def join_cluster(settings: ClusterSettings, database: Database, lease: Dat
     key = await database.run(fleet_key)
     membership = Membership(settings.name, lease)
     await membership.join()
-    exchange = Exchange(settings.name, key, buses)
+    exchange = Exchange(settings.name, key, buses, membership)
     return Cluster(settings, membership, Ownership(membership, database), exchange, lease)
 
 

@@ -151,6 +151,8 @@ CLAIMED_S = 3 * RENEW_S
 CLOCK_TOLERANCE_S = 1.0
 """seconds that this computer's clock may be off the database's before the log is told."""
 OFF_AGAIN_S = 60.0
+MOST_STRANGE = 100
+"""runs that were not read and are known to have been heard."""
 GONE_S = 7 * 24 * 3600.0
 """seconds after the end of its lease until a gateway is struck off: until then it may be started again."""
 
@@ -177,6 +179,10 @@ class Membership:
         self._missed_until: dict[str, float] = {}
         """until when, by the steady clock, those count as just lost that were missing as this gateway could
         renew its lease again."""
+        self._runs = {self.me.run}
+        """the runs of this fleet's gateways, as far as they were read."""
+        self._strange = dict[str, float]()
+        """when runs were heard first that were not read, by the steady clock."""
         self._other_versions = set[tuple[str, str]]()
         """the gateways of another version, and which, as the log was told."""
 
@@ -206,6 +212,19 @@ class Membership:
         now, until = self._clock.steady(), self._missed_until
         lost = [member for member in self.members if not member.alive and member.gw != self.name]
         return [one.gw for one in lost if one.left > -CLAIMED_S or now < until.get(one.gw, -math.inf)]
+
+    def is_stranger(self, run: str) -> bool:
+        """Tell whether a gateway, heard by the key of this fleet, is none of it: its database is a copy.
+
+        It is in this one before it says anything: one that is not read after a while serves another.
+        """
+        if run in self._runs:
+            return False
+        if len(self._strange) >= MOST_STRANGE:
+            self._strange.clear()
+        now = self._clock.steady()
+        # What counts now was read since.
+        return self.trust.holds and now - self._strange.setdefault(run, now) >= LEASE_S
 
     def database_time(self) -> float:
         """Return the time by the database's clock, which all gateways go by."""
@@ -270,6 +289,7 @@ class Membership:
         self.trust.renewed(asked_at)
         before = set(self.others())
         self.members = found.members
+        self._runs.update(member.run for member in found.members)
         self._compare_clocks(found)
         self._note_missed(before.difference(self.others()))
         self._name_changes(before, set(self.others()))
@@ -358,10 +378,11 @@ class Membership:
                 log.warning("gateway %s has ended; its robots connect to the others", name)
                 continue
             log.warning(
-                "gateway %s has not renewed its lease for %g s, and the others have its robots: see whether "
-                "process %d on %s runs, and reaches the database",
+                "gateway %s has not renewed its lease for %g s; unless it does, another one has its robots "
+                "in %g s at most: see whether process %d on %s runs, and reaches the database",
                 name,
                 LEASE_S,
+                CLAIMED_S + (0.0 if self.trust.is_unbroken else LEASE_S),
                 member.process,
                 member.host,
             )

@@ -21,7 +21,6 @@ import msgspec
 import numpy as np
 import numpy.typing as npt
 from msgspec import Meta
-from sqlalchemy import Connection
 
 from ...core.errors import BridgeError
 from ...core.logs import RepeatedLines
@@ -29,8 +28,8 @@ from ...core.messages.base import LONGEST_STATUS
 from ...core.messages.safety import FenceKind, PathDeclaration, StopAction, StopOutcome
 from ..model.events import EventBus
 from ..model.robot_columns import REPORTED_NUMBERS
-from ..storage.repositories import metadata
 from .bus import EVERYBODY, RIGHTS_PROBE, STOP, Bus, NoBus, own_subject
+from .membership import Membership
 
 log = logging.getLogger(__name__)
 
@@ -75,7 +74,17 @@ class BusMessageError(BridgeError):
     """Bytes on the bus that are no message of this fleet."""
 
 
-class BusMessage(msgspec.Struct, array_like=True, frozen=True, tag=True):
+class _SenderRun(msgspec.Struct, array_like=True, frozen=True, tag=True, kw_only=True):
+    """What :class:`Exchange` adds behind all else: ``sender_run``, "" from an earlier version.
+
+    Earlier versions pass over what is behind the fields that they know: a field that is added to a message
+    has to be ``kw_only`` as well.
+    """
+
+    sender_run: Annotated[str, Meta(max_length=32)] = ""
+
+
+class BusMessage(_SenderRun, frozen=True, tag=True):
     """A message; ``gw`` is the gateway that sent it."""
 
     gw: Gateway
@@ -350,20 +359,20 @@ def _check_lengths(batch: PositionBatch) -> None:
 
 # --- Exchange: messages out onto the buses, and those that come in to whoever subscribed ---
 
-KEY = "bus_key"
-"""The fact of the database that is the secret by which messages are signed."""
 HEARD_S = 5.0
 """seconds after which a gateway that says nothing is not heard any more."""
+COUNT_S = 1.0
+"""seconds between two looks whether lines that were left out of the log are to be counted there."""
+COPY = (
+    "gateway {} serves a copy of this fleet's database on the same bus; its stops and Aborts are done here, "
+    "and nothing else of it counts: give it a bus of its own, or restore a backup in place of the copy"
+)
+"""What the log says of a gateway that is none of this fleet's and has its key."""
 
 MOST_NUMBERED = 1024
 """messages about stops of which a second copy is known: what four gateways say over a stop in 20 seconds."""
 
 Kind = TypeVar("Kind", bound=BusMessage)
-
-
-def fleet_key(connection: Connection) -> bytes:
-    """Return the secret of the fleet on this database; one that has none yet is given it."""
-    return bytes.fromhex(metadata.fact(connection, KEY, secrets.token_hex(32)))
 
 
 class Exchange:
@@ -374,8 +383,11 @@ class Exchange:
     answered is another message, by its number.
     """
 
-    def __init__(self, gateway: str, key: bytes, buses: Sequence[Bus]) -> None:
+    def __init__(
+        self, gateway: str, key: bytes, buses: Sequence[Bus], membership: Membership | None = None
+    ) -> None:
         self.gateway = gateway
+        self._membership = membership
         self._codec = Codec(key)
         self._buses = buses
         self._events = EventBus()
@@ -394,6 +406,8 @@ class Exchange:
         """Send a message; return at once, true where some bus took it."""
         if isinstance(message, (StopCall, StopSeen)):
             message = msgspec.structs.replace(message, number=next(self._numbers))
+        if self._membership is not None:
+            message = msgspec.structs.replace(message, sender_run=self._membership.me.run)
         content = self._codec.encode(message)
         urgent = subject == STOP or isinstance(message, (Wake, NameQuery, NameAnswer))
         taken = [bus.publish(subject, content) for bus in (self._buses if urgent else self._buses[:1])]
@@ -423,6 +437,7 @@ class Exchange:
         async with asyncio.TaskGroup() as group:
             for bus in self._buses:
                 group.create_task(bus.run(self.receive))
+            group.create_task(self._count_repeated())
 
     def receive(self, subject: str, content: bytes) -> None:
         """Take in a message as it came from a bus."""
@@ -431,13 +446,16 @@ class Exchange:
         try:
             message = self._codec.decode(content)
         except BusMessageError as error:
-            self._repeated.warn(
-                log, ("bus", "of the fleet:", subject.partition(".")[0]), f"bus, subject {subject}: {error}"
-            )
+            self._warn(subject, f"bus, subject {subject}: {error}")
             return
-        if message.gw == self.gateway:
+        if self._is_from_copy(message):
+            self._warn(subject, f"bus, subject {subject}: {COPY.format(message.gw)}")
+            if not isinstance(message, (StopCall, AbortCall)):
+                return
+        elif message.gw == self.gateway:
             return
-        self._heard[message.gw] = time.monotonic()
+        else:
+            self._heard[message.gw] = time.monotonic()
         if isinstance(message, StopCall) and subject != STOP:
             return
         if isinstance(message, (StopCall, StopSeen)) and message.number:
@@ -445,6 +463,19 @@ class Exchange:
                 return
             message = msgspec.structs.replace(message, number=0)
         self._events.publish(message)
+
+    def _is_from_copy(self, message: BusMessage) -> bool:
+        """Tell whether a message is signed by the key of this fleet and comes from none of its gateways."""
+        known = self._membership
+        return known is not None and message.sender_run != "" and known.is_stranger(message.sender_run)
+
+    def _warn(self, subject: str, line: str) -> None:
+        self._repeated.warn(log, ("bus", "of the fleet:", subject.partition(".")[0]), line)
+
+    async def _count_repeated(self) -> None:
+        while True:
+            await asyncio.sleep(COUNT_S)
+            self._repeated.summarise()
 
     def _is_copy(self, signature: bytes) -> bool:
         if signature in self._known:

@@ -59,6 +59,19 @@ def test_one_fault_keeps_no_other_check_from_its_turn(check, tmp_path):
     assert "gateway" in found
 
 
+@pytest.mark.parametrize(
+    ("options", "subject", "why"),
+    [
+        (("--gateway-name", "a", "--bus", "kafka://x"), "bus", "bus 'kafka://x' is none of these"),
+        (("--gateway-name", "a b"), "gateways", "gateway name 'a b' cannot be"),
+    ],
+)
+def test_what_is_wrong_of_several_gateways_is_named_where_it_is(check, options, subject, why):
+    status, found = check(*options, database="postgresql://x@127.0.0.1:1/y")
+    assert status == 1 and found[subject][0] == "FAULT" and why in found[subject][1]
+    assert [name for name, (level, _) in found.items() if level == "FAULT"] == ["database", subject]
+
+
 def test_tables_of_another_revision_are_a_fault(check, tmp_path):
     database = f"sqlite:///{tmp_path}/old.db"
     run_once(read_address(database), revisions.create, revisions.FIRST)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import uuid
+from collections.abc import Sequence
 
 from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.dialects import postgresql
@@ -37,6 +38,17 @@ def fact(connection: Connection, name: str, value: str) -> str:
         connection.execute(add.on_conflict_do_nothing() if isinstance(add, postgresql.Insert) else add)
         found = _known(connection, name)
     return str(found)
+
+
+def replace_fact(connection: Connection, name: str, before: str, value: str) -> bool:
+    """Note ``value`` under ``name`` where ``before`` is known; false where another one came before."""
+    ours = (bridge.c.name == name) & (bridge.c.value == before)
+    return connection.execute(update(bridge).where(ours).values(value=value)).rowcount == 1
+
+
+def forget_facts(connection: Connection, names: Sequence[str]) -> None:
+    """Know nothing under ``names`` any more."""
+    connection.execute(delete(bridge).where(bridge.c.name.in_(names)))
 
 
 def chosen_site(connection: Connection) -> str | None:

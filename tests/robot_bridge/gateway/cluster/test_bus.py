@@ -6,12 +6,16 @@ import asyncio
 import os
 import signal
 from base64 import b64decode
+from types import SimpleNamespace
 
 import msgspec
 import numpy as np
 import psycopg
 import pytest
 
+from robot_bridge.core import logs
+from robot_bridge.core.logs import IN_FULL, WINDOW
+from robot_bridge.gateway.cluster import messages
 from robot_bridge.gateway.cluster.bus import (
     CHANNEL,
     EVERYBODY,
@@ -32,6 +36,7 @@ from robot_bridge.gateway.cluster.messages import (
     NAME_BYTES,
     PLACE_BYTES,
     SIGNATURE,
+    AbortCall,
     Beat,
     BusMessageError,
     Codec,
@@ -219,11 +224,54 @@ def test_an_earlier_version_numbers_nothing_and_is_heard_each_time():
     heard, exchange = [], Exchange("b", KEY, [])
     exchange.subscribe(StopCall, heard.append)
     fields = msgspec.msgpack.decode(Codec(KEY).encode(CALL)[SIGNATURE + 1 :])
-    assert fields[-1] == 0
-    content = signed(FORM + msgspec.msgpack.encode(fields[:-1]))
+    assert fields[-2:] == [0, ""]
+    content = signed(FORM + msgspec.msgpack.encode(fields[:-2]))
     for _ in range(2):
         exchange.receive(STOP, content)
     assert heard == [CALL, CALL]
+
+
+class Members:
+    """A fleet in which gateways that say ``run`` are not, others are."""
+
+    def __init__(self, run):
+        self.me = SimpleNamespace(run=run)
+
+    def is_stranger(self, run):
+        return run == "of a copy"
+
+
+@pytest.mark.parametrize("name", ["a", "b"])
+def test_of_a_copy_of_the_database_stops_alone_count_and_the_log_is_not_flooded(name, caplog):
+    """A gateway there may have this one's own name, or that of another one."""
+    sender, exchange, heard = Recorder(), Exchange("b", KEY, [], Members("own")), []
+    for kind in (StopCall, StopSeen, Beat, AbortCall, PositionBatch):
+        exchange.subscribe(kind, heard.append)
+    said = [Beat(name), StopSeen(name, "stop-1", 5, 3, 2), positions(), CALL]
+    said = [msgspec.structs.replace(message, gw=name) for message in said]
+    there = Exchange(name, KEY, [sender], Members("of a copy"))
+    for _ in range(100):
+        for message in said:
+            there.send(STOP, message)
+    for subject, content in sender.sent:
+        exchange.receive(subject, content)
+    assert [type(message) for message in heard] == 100 * [StopCall] and exchange.heard() == []
+    assert caplog.text.count(f"gateway {name} serves a copy of this fleet's database") == IN_FULL
+    exchange._repeated._runs[("bus", "of the fleet:", STOP)].began -= WINDOW
+    exchange._repeated.summarise()
+    assert f"{400 - IN_FULL} more such lines" in caplog.text
+
+
+async def test_lines_of_the_bus_that_were_left_out_are_counted_in_the_log(caplog, monkeypatch):
+    monkeypatch.setattr(messages, "COUNT_S", 0.01)
+    monkeypatch.setattr(logs, "WINDOW", 0.0)
+    exchange = Exchange("b", KEY, [])
+    for _ in range(IN_FULL + 2):
+        exchange.receive(STOP, b"of another fleet")
+    running = asyncio.create_task(exchange.run())
+    await until(lambda: "stop: 2 more such lines" in caplog.text)
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
 
 
 def test_a_stop_counts_only_under_the_subject_that_is_read_by_itself():

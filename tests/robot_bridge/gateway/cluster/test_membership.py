@@ -70,7 +70,7 @@ async def test_one_that_ended_and_one_that_stands_still_are_told_apart(own, leas
     assert await lease.run(gateways.renew, silent, -1.0)
     await own.renew()
     assert "gateway ended has ended; its robots connect to the others" in caplog.text
-    assert "gateway silent has not renewed its lease for 5 s, and the others have its robots" in caplog.text
+    assert "for 5 s; unless it does, another one has its robots in 3 s at most" in caplog.text
     assert "see whether process 4711 on north.example.org runs" in caplog.text
     assert own.others() == [] and own.just_lost() == ["silent"]
     assert await lease.run(gateways.join, silent, -1.0 - CLAIMED_S)
@@ -145,3 +145,22 @@ async def keep_renewing(own, work):
         return await work
     finally:
         holding.cancel()
+
+
+async def test_one_that_is_heard_and_never_read_serves_another_database(own, lease, clock):
+    other = await enter(lease, "other", own.me.version)
+    await own.renew()
+    assert not own.is_stranger(own.me.run) and not own.is_stranger(other.run)
+    # It may have joined a moment ago.
+    assert not own.is_stranger("of a copy")
+    later = await enter(lease, "later", own.me.version)
+    assert not own.is_stranger(later.run)
+    clock.later += LEASE_S
+    # Nothing was read since: who knows.
+    assert not own.is_stranger("of a copy")
+    await own.renew()
+    assert own.is_stranger("of a copy") and not own.is_stranger(later.run)
+    # One that another process took the name of was of this fleet.
+    await lease.run(gateways.leave, other)
+    await own.renew()
+    assert not own.is_stranger(other.run)

@@ -496,3 +496,54 @@ def test_two_gateways_need_no_further_server(start_bridge, site, new_database, t
     wait_until(lambda: here.ask("Stopped").get("gateways") == gateways[:1])
     assert "gateways" not in here.ask("Stopped")
     wait_until(lambda: pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)])
+
+
+HERE = (
+    "(select system_identifier || '/' || oid from pg_control_system(), pg_database "
+    "where datname = current_database())"
+)
+
+
+def end_gateway(bridge):
+    """Have a gateway end in good order."""
+    bridge.gateway.terminate()
+    bridge.gateway.wait(10 * BUSY)
+
+
+@pytest.mark.parametrize("is_noticed", [True, False])
+def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
+    start_bridge, site, new_database, postgresql_server, nats, tmp_path, name, is_noticed
+):
+    """On the same NATS server; where the copy is not noticed, as of a whole server, its stops cross."""
+    url = new_database("postgresql")
+    options = ["--gateway-name", "a", "--bus", nats.url]
+    first = start_bridge(site, url, [*options, "--state", tmp_path])
+    end_gateway(first)
+    copy = postgresql_server.copied_database(url.rpartition("/")[2])
+    if not is_noticed:
+        with contextlib.closing(DatabaseClient(copy)) as client:
+            client.sql(f"update bridge set value = {HERE} where name = 'place'")
+    first.start_gateway()
+    (tmp_path / "copy").mkdir()
+    second = start_bridge(site, copy, [*options, "--state", tmp_path / "copy"])
+    ids = [dict(one.sql("select name, value from bridge")) for one in (first, second)]
+    assert (ids[0]["id"] != ids[1]["id"]) == (ids[0]["bus_key"] != ids[1]["bus_key"]) == is_noticed
+    said = "is a copy of another one" if is_noticed else "gateway a serves a copy of this fleet's database"
+    wait_until(lambda: said in second.output())
+    robot, desk = first.robot(name), desk_at(second)
+    robot.plug_in(1)
+    assert stop(desk, name)["gateways"] == {"reached": 1, "of": 1, "missing": []}
+    at_first = desk_at(first)
+    if is_noticed:
+        robot.tell("Stopped")
+        assert not at_first.emergency["in_force"] and not [c for c in robot.calls if c["method"] == "Abort"]
+        assert "copy" not in first.output()
+    else:
+        assert robot.wait_for("Abort")["params"]["emergency"]
+        assert "gateway a serves a copy" in first.output()
+    # What it was told to be it is from then on.
+    end_gateway(second)
+    second.start_gateway()
+    assert dict(second.sql("select name, value from bridge")) == ids[1]
+    first.end()
+    second.end()
