@@ -5,16 +5,15 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import math
-from functools import partial
 
 import pytest
 from sqlalchemy import text
 
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.queues import QueueTask
-from robot_bridge.gateway.cluster import feeds
+from robot_bridge.gateway.cluster import feeds, followers
 from robot_bridge.gateway.cluster.feeds import QueueFeed
-from robot_bridge.gateway.cluster.followers import ChangeNumbers, LookSchedule
+from robot_bridge.gateway.cluster.followers import ChangeNumbers
 from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.model.events import EventBus, Listeners
 from robot_bridge.gateway.model.robots import Robot, Robots
@@ -68,7 +67,7 @@ class Place:
 @pytest.fixture
 async def place(fleet_url, monkeypatch):
     monkeypatch.setattr(feeds, "LOOK_S", 0.02)
-    monkeypatch.setattr(feeds, "LookSchedule", partial(LookSchedule, at_least_every=math.inf))
+    monkeypatch.setattr(followers, "ANYWAY_S", math.inf)
     database = Database(read_address(fleet_url))
     await database.open()
     await database.run(lambda connection: connection.execute(HAS_OWNER))
