@@ -466,12 +466,12 @@ class RobotStates:
         return self._by_name
 
     def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:
-        """Return states and ages, as ``gateway.model.robots.liveness`` says for each robot."""
+        """Return states and ages, as ``gateway.model.robot_columns.liveness`` says of a robot that is not
+        expected to be silent."""
         age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
         state = self._seen.column("state")[rows].astype(np.intp)
         silent = np.flatnonzero(~(age < self.stale_after))
-        reported, ended_in_order = state[silent], self._seen.column("stopped")[rows][silent] == 1.0
-        here = np.where(ended_in_order, _OFFLINE, np.where(age[silent] < self.lost_after, _STALE, _LOST))
-        # The gateway may know more than the age tells, such as a link closed in good order.
+        reported, here = state[silent], np.where(age[silent] < self.lost_after, _STALE, _LOST)
+        # The gateway knows more than the age tells: which robots said that they would be silent.
         state[silent] = np.where((reported == _LOST) | (reported == _OFFLINE), reported, here)
         return state, age

@@ -446,8 +446,7 @@ class Fleet:
 
     def _hear(self, robot: str, link: str, request: Request, now: float, *, waited: bool = False) -> Robot:
         """Note that a robot is there, and return it."""
-        # Only driving sets a robot that said Stopped in motion.
-        stopped = isinstance(request, Stopped) or self.robots.get(robot).ended_in_order
+        stopped = isinstance(request, Stopped)
         known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
         self._saving.touch(robot)
         return known

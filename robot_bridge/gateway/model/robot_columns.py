@@ -18,10 +18,11 @@ from ...core.messages.base import COORDINATE, SPEED, THETA
 from ...core.messages.robots import SendPos
 from ...core.messages.safety import PathDeclaration, RobotState
 
-ENDED, LOCATED, ONLY_SEEN, DOUBTED = 1, 2, 4, 8
-"""Flags of a robot: it ended in good order, has said where it is since its Ready, is only seen, and the place
-that it said last is not believed. The last comes with its details."""
-REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN
+ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
+"""Flags of a robot: it said Stopped or ended in good order, has said where it is since its Ready, is only
+seen, the place that it said last is not believed, and it has said more since it said Stopped. Whether its
+place is believed comes with its details."""
+REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN | HEARD_SINCE
 X, Y, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 4, 5, 6, 7
 """Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, 0 to 1,
 and m, which other gateways do not tell."""
@@ -48,8 +49,8 @@ def liveness(
 ) -> RobotState:
     """Return the state of a robot whose last message is ``age`` seconds old.
 
-    ``ended_in_order`` is true when the robot said Stopped last, or closed its link in good order: silence
-    is expected of it then, so it goes offline where another would be lost.
+    ``ended_in_order`` is true when the robot said Stopped and nothing since, or closed its link in good
+    order: silence is expected of it then, so it goes offline where another would be lost.
     """
     if age < stale_after:
         return RobotState.FRESH
@@ -125,6 +126,7 @@ class RobotRecord(Protocol):
     gateway: str | None
     received_at: float
     ended_in_order: bool
+    heard_since: bool
     pose: SendPos | None
     pose_at: float | None
     located: bool
@@ -180,6 +182,7 @@ class RowReading(NamedTuple):
 
     received_at: float
     ended_in_order: bool
+    heard_since: bool
     located: bool
     only_seen: bool
     place: tuple[float, float, float, float] | None
@@ -261,6 +264,7 @@ class RobotColumns:
             | LOCATED * robot.located
             | ONLY_SEEN * (robot.abilities == "")
             | DOUBTED * (robot.doubt is not None)
+            | HEARD_SINCE * robot.heard_since
         )
         self._states[row] = _CODES[robot.state]
         self._owners[row] = self._owner(robot.gateway or "")
@@ -288,7 +292,7 @@ class RobotColumns:
         place not believed."""
         row = self._rows[name]
         self._numbers[BATTERY, row] = math.nan if battery is None else battery
-        self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED) | flags
+        self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED | HEARD_SINCE) | flags
         self._revisions[row] = revision
 
     def find(self, names: Sequence[str]) -> RobotRows:
@@ -361,6 +365,7 @@ class RobotColumns:
                 RowReading(
                     received_at,
                     bool(flags & ENDED),
+                    bool(flags & HEARD_SINCE),
                     bool(flags & LOCATED),
                     bool(flags & ONLY_SEEN),
                     (x, y, theta, v) if placed else None,
@@ -420,7 +425,7 @@ class RobotColumns:
 
     def _states_at(self, now: float, stale_after: float, lost_after: float) -> Flags:
         ages = now - self._numbers[RECEIVED_AT]
-        return state_codes(ages, (self._flags & ENDED) > 0, stale_after, lost_after)
+        return state_codes(ages, (self._flags & (ENDED | HEARD_SINCE)) == ENDED, stale_after, lost_after)
 
     def _named(self, rows: Rows) -> list[str]:
         names = self._names

@@ -95,8 +95,9 @@ class Robot:
     link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
     believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
     it can do with spaces between them, None for everything. ``described`` is the revision since which more of
-    it may have changed than where it is. ``gateway`` is the other gateway of the fleet
-    that has it, None for this one: all else is what that one tells then.
+    it may have changed than where it is. ``gateway`` is the other gateway of the fleet that has it, None for
+    this one: all else is what that one tells then. ``ended_in_order`` is true from when it says Stopped until
+    it drives, and once it closed its link in good order; with ``heard_since`` it has said more after that.
     """
 
     name: str
@@ -104,6 +105,7 @@ class Robot:
     link: str
     received_at: float
     ended_in_order: bool = False
+    heard_since: bool = False
     pose: SendPos | None = None
     pose_at: float | None = None
     located: bool = False
@@ -131,11 +133,8 @@ class Robot:
 
     @property
     def is_placed(self) -> bool:
-        """Whether it is known where it is now: it is heard, and has said so since its last Ready.
-
-        It is not known of one whose last place is not believed.
-
-        What is known of others is where they were: they may have driven on unseen.
+        """Whether it is known where it is now: it is heard, and has said so since its last Ready, and is
+        believed. What is known of others is where they were: they may have driven on unseen.
         """
         return self.located and self.state is RobotState.FRESH and self.doubt is None
 
@@ -259,11 +258,8 @@ class Robots:
         return not robot.located or now - robot.pose_at >= self._stale_after
 
     def restore(self, robot: Robot, now: float) -> None:
-        """Take in a robot that an earlier gateway knew.
-
-        One that was heard later than ``now``, as on a computer whose clock stands still without power, counts
-        as not heard for long.
-        """
+        """Take in a robot that an earlier gateway knew. One that was heard later than ``now``, as on a
+        computer whose clock stands still without power, counts as not heard for long."""
         if robot.received_at > now:
             is_behind = robot.received_at - now >= LEAST_BEHIND
             robot.received_at = now - UNKNOWN_AGE if is_behind else now
@@ -298,7 +294,7 @@ class Robots:
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
         robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False
-        robot.doubt = None
+        robot.doubt, robot.ended_in_order = None, False
         robot.paths, robot.abilities = paths, abilities
         self.note_received(name, link, now)
 
@@ -329,6 +325,8 @@ class Robots:
         One that has ``waited`` until there was a gateway to read it does not show that the robot is there.
         """
         robot = self.get(name)
+        # Only driving, or a Ready, sets a robot that said Stopped in motion.
+        robot.ended_in_order |= stopped
         self._note_heard(robot, link, now, stopped=stopped, waited=waited)
         self._touch(robot)
         return robot
@@ -339,8 +337,8 @@ class Robots:
         One that has ``waited`` says where the robot was.
         """
         robot = self.get(name)
-        standing_still = robot.ended_in_order and standing(pose)
-        self._note_heard(robot, link, now, stopped=standing_still, waited=waited)
+        robot.ended_in_order &= standing(pose)
+        self._note_heard(robot, link, now, stopped=False, waited=waited)
         is_newest = robot.order.admit(pose.fix_t, pose.t, link, now)
         if is_newest:
             robot.pose, robot.doubt = pose, None
@@ -428,9 +426,8 @@ class Robots:
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
         """Note that the robot is heard, and that the place that it says cannot be."""
-        robot = self.get(name)
-        robot.doubt = doubt
-        self.note_received(name, link, now, stopped=robot.ended_in_order, waited=waited)
+        self.get(name).doubt = doubt
+        self.note_received(name, link, now, waited=waited)
 
     def remove(self, name: str) -> None:
         """Know a robot no more, until it says Ready again."""
@@ -446,7 +443,7 @@ class Robots:
         """Note that the robot closed its link in good order."""
         robot = self._find(name)
         if robot is not None:
-            robot.ended_in_order = True
+            robot.ended_in_order, robot.heard_since = True, False
             self._touch(robot)
 
     def measured(self, name: str, latency: float) -> None:
@@ -546,7 +543,8 @@ class Robots:
         """Return robots of other gateways as those say that they are by now."""
         robots = [self._elsewhere[name] for name in names]
         for robot, seen in self._other_columns.read_changed(robots):
-            robot.received_at, robot.ended_in_order = seen.received_at, seen.ended_in_order
+            robot.received_at = seen.received_at
+            robot.ended_in_order, robot.heard_since = seen.ended_in_order, seen.heard_since
             robot.located, robot.state, robot.revision = seen.located, seen.state, seen.revision
             robot.abilities = "" if seen.only_seen else robot.abilities
             robot.pose_at = seen.pose_at
@@ -581,13 +579,13 @@ class Robots:
     def _judge(self, robot: Robot, now: float) -> RobotState:
         return liveness(
             now - robot.received_at,
-            ended_in_order=robot.ended_in_order,
+            ended_in_order=robot.ended_in_order and not robot.heard_since,
             stale_after=self._stale_after,
             lost_after=self._lost_after,
         )
 
     def _note_heard(self, robot: Robot, link: str, now: float, *, stopped: bool, waited: bool) -> None:
-        robot.link, robot.ended_in_order = link, stopped
+        robot.link, robot.heard_since = link, not stopped
         if not waited:
             if robot.state in AWAY:
                 self._events.publish(RobotReturned(robot.name, now - robot.received_at))

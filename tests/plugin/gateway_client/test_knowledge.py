@@ -61,7 +61,7 @@ def sighting(report, received=100.0):
         (0.0, False, 9.9, RobotState.STALE),
         (0.0, False, 10.0, RobotState.LOST),
         (0.0, True, 2.0, RobotState.FRESH),
-        (0.0, True, 60.0, RobotState.OFFLINE),
+        (0.0, True, 60.0, RobotState.LOST),
     ],
 )
 def test_robots_age_by_this_computers_clock_when_nothing_comes(make_robot, age, stopped, later, state):

@@ -132,7 +132,7 @@ def test_columns_age_as_liveness_says_for_one_robot(age, stopped, state, stale_a
     lost_after = stale_after + more
     picture = RobotStates(stale_after, lost_after)
     picture.merge(table_from_rows([told(age=age, stopped=stopped, state=state.value)], 100.0))
-    here = liveness(age + later, ended_in_order=stopped, stale_after=stale_after, lost_after=lost_after)
+    here = liveness(age + later, ended_in_order=False, stale_after=stale_after, lost_after=lost_after)
     expected = state if here is RobotState.FRESH or state in (RobotState.LOST, RobotState.OFFLINE) else here
     view = picture.view("r1", 100.0 + later)
     assert view.state is expected

@@ -182,9 +182,9 @@ def test_robots_are_found_by_name(bridge):
     assert ([robot["robot"] for robot in found["robots"]], found["count"]) == (["seek-1"], 2)
 
 
-@pytest.mark.parametrize("how", ["stopped", "closed", "cut off"])
+@pytest.mark.parametrize("how", ["stopped", "closed", "stands, cut off", "cut off"])
 def test_a_robot_that_ends_in_order_goes_offline_and_one_that_is_cut_off_is_lost(bridge, how):
-    name = how.replace(" ", "-")
+    name = how.replace(" ", "-").replace(",", "")
     robot, desk = bridge.robot(name), bridge.desk()
     desk.ask("subscribe", {"rate": 20})
     robot.plug_in(1)
@@ -194,8 +194,12 @@ def test_a_robot_that_ends_in_order_goes_offline_and_one_that_is_cut_off_is_lost
     elif how == "closed":
         robot.connection.close()
     else:
+        if how == "stands, cut off":
+            # As after an abort, or while it waits for its next task.
+            robot.ask("Stopped")
+            robot.ask("Alive")
         robot.connection.socket.shutdown(socket.SHUT_RDWR)
-    end = "lost" if how == "cut off" else "offline"
+    end = "lost" if how.endswith("cut off") else "offline"
     desk.until(lambda: desk.robots.get(name, {}).get("state") in ("offline", "lost"), 5)
     assert desk.robots[name]["state"] == end
 

@@ -25,6 +25,8 @@ _ENCODER = msgspec.json.Encoder()
 LONGEST_POSE = 16_000
 """characters; a longer one has a status that its column does not hold everywhere, and is stored without."""
 _COUNT = select(func.count()).select_from(robots)
+_HEARD_SINCE = 2
+"""In place of 1 in ``ended_in_order``: the robot has said more since it said Stopped."""
 NAMES = ("name", "magic", "link", "received_at", "ended_in_order", "pose", "pose_at", "paths", "abilities")
 
 
@@ -33,7 +35,8 @@ def row(robot: Robot) -> Row:
     pose = None if robot.pose is None else _ENCODER.encode(robot.pose).decode()
     if robot.pose is not None and pose is not None and len(pose) > LONGEST_POSE:
         pose = _ENCODER.encode(dataclasses.replace(robot.pose, status=None)).decode()
-    seen = robot.link, robot.received_at, int(robot.ended_in_order), pose, robot.pose_at
+    ended = _HEARD_SINCE if robot.ended_in_order and robot.heard_since else int(robot.ended_in_order)
+    seen = robot.link, robot.received_at, ended, pose, robot.pose_at
     return robot.name, robot.magic, *seen, robot.paths, robot.abilities
 
 
@@ -73,6 +76,7 @@ def _robot(row: Mapping[Any, Any]) -> Robot:
         link=row["link"],
         received_at=row["received_at"],
         ended_in_order=bool(row["ended_in_order"]),
+        heard_since=row["ended_in_order"] == _HEARD_SINCE,
         pose=pose,
         pose_at=None if pose is None else row["pose_at"],
         paths=_paths(row["name"], row["paths"]),

@@ -18,6 +18,7 @@ from robot_bridge.gateway.model.robot_columns import (
     BATTERY,
     DOUBTED,
     ENDED,
+    HEARD_SINCE,
     LOCATED,
     ONLY_SEEN,
     STATES,
@@ -197,16 +198,18 @@ def test_a_robot_that_was_removed_leaves_nothing_to_the_next_one(robots):
 
 def test_silence_ages_them_as_those_of_this_gateway(robots):
     robots.observe_elsewhere(told(["ended"], flags=ENDED | LOCATED))
+    robots.observe_elsewhere(told(["stood"], flags=ENDED | HEARD_SINCE | LOCATED))
     seen = robots.revision
     robots.age(NOW + 2.9)
     assert robots.changed(seen) == []
     robots.age(NOW + 3.0)
     states = {robot.name: robot.state for robot in robots.changed(seen)}
-    assert states == {"mine": RobotState.STALE, "theirs": RobotState.STALE, "ended": RobotState.OFFLINE}
+    stale = dict.fromkeys(["mine", "theirs", "stood"], RobotState.STALE)
+    assert states == {**stale, "ended": RobotState.OFFLINE}
     robots.observe_elsewhere(told(["seen"], flags=ONLY_SEEN | LOCATED, wall=NOW + 8))
     assert [robot.name for robot in robots.only_seen()] == ["seen"]
     robots.age(NOW + 10.0)
-    assert robots.get("theirs").state is RobotState.LOST
+    assert robots.get("theirs").state is robots.get("stood").state is RobotState.LOST
     assert robots.get("seen").state is RobotState.FRESH
 
 

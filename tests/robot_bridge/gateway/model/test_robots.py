@@ -109,6 +109,20 @@ def test_a_robot_that_ended_in_order_goes_offline(robots, end):
     assert only(robots, 150.0).state is RobotState.OFFLINE
 
 
+def test_a_stopped_robot_that_says_more_and_falls_silent_is_lost_until_it_ends_in_order(robots):
+    robots.note_received("r1", "websocket", 101.0, stopped=True)
+    robots.note_received("r1", "websocket", 102.0)
+    assert only(robots, 102.0).stopped is True
+    robots.age(120.0)
+    assert only(robots, 120.0).state is RobotState.LOST
+    robots.observe("r1", pose(1.0), "websocket", 130.0)
+    robots.age(140.0)
+    assert only(robots, 140.0).state is RobotState.LOST
+    robots.closed("r1")
+    robots.age(140.0)
+    assert only(robots, 140.0).state is RobotState.OFFLINE
+
+
 def test_standing_positions_leave_a_stopped_robot_stopped_and_driving_ones_do_not(robots):
     robots.note_received("r1", "websocket", 101.0, stopped=True)
     robots.observe("r1", pose(1.0, v=0.01), "websocket", 102.0)

@@ -261,3 +261,19 @@ async def test_answers_that_are_refused_with_positions_are_written_without_and_e
     assert written == ["answers"]
     await yard.saving.save()
     assert await yard.stored() == ([1.0, 2.0], 2.0)
+
+
+async def test_how_a_robot_fell_silent_is_stored(database):
+    yard = Yard(database)
+    for said, state in ((["stops"], "offline"), (["stops", "says more"], "lost"), (["drives"], "lost")):
+        for what in said:
+            if what == "drives":
+                yard.robots.observe("r1", dataclasses.replace(pose_at(2.0), v=1.0), "sql", 2.0)
+            else:
+                yard.robots.note_received("r1", "sql", 2.0, stopped=what == "stops")
+        yard.saving.touch("r1")
+        await yard.saving.save()
+        (stored,) = await database.run(stored_robots.load)
+        later = Robots()
+        later.restore(stored, 60.0)
+        assert later.get("r1").state.value == state
