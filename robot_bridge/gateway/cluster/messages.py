@@ -362,7 +362,7 @@ def _check_lengths(batch: PositionBatch) -> None:
 HEARD_S = 5.0
 """seconds after which a gateway that says nothing is not heard any more."""
 COUNT_S = 1.0
-"""seconds between two looks whether lines that were left out of the log are to be counted there."""
+"""seconds between two counts in the log of the lines that were left out of it."""
 COPY = (
     "gateway {} serves a copy of this fleet's database on the same bus; its stops and Aborts are done here, "
     "and nothing else of it counts: give it a bus of its own, or restore a backup in place of the copy"

@@ -116,10 +116,10 @@ def test_a_gateway_gone_in_mid_session_lets_robots_turn_stale_then_lost_and_come
     def states():
         return [row["State"] for row in table(window)[1]]
 
-    wait(lambda: states() == ["stale", "offline"], 3, "stale")
-    wait(lambda: states() == ["lost", "offline"], 3, "lost")
+    wait(lambda: states() == ["stale", "stale"], 3, "stale")
+    wait(lambda: states() == ["lost", "lost"], 3, "lost")
     layer = window.view.layer.layer
-    wait(lambda: [f["state"] for f in layer.getFeatures()] == ["lost", "offline"], 3, "the layer")
+    wait(lambda: [f["state"] for f in layer.getFeatures()] == ["lost", "lost"], 3, "the layer")
     gateway.start()
 
     def fresh_again():
