@@ -9,7 +9,7 @@ from __future__ import annotations
 import asyncio
 import math
 import secrets
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import fields, replace
 from operator import attrgetter
 from typing import Any, NamedTuple
@@ -351,6 +351,8 @@ class ReportsElsewhere:
 
     def __init__(self) -> None:
         self._reports: dict[str, tuple[float, Geofence]] = {}
+        self._kept: dict[str, tuple[float, list[FenceAlarm]]] = {}
+        """What was reported of robots as they came here, and when that was."""
 
     def add_report(self, gateway: str, report: Geofence, now: float) -> None:
         """Take in what a gateway reports."""
@@ -364,14 +366,29 @@ class ReportsElsewhere:
             if now - came < REPORT_HOLDS_S
         }
 
+    def keep_alarms(self, robot: str, now: float) -> None:
+        """Keep what is reported of a robot at time ``now``: it comes here, and who had it soon says no more
+        of it."""
+        self._kept[robot] = now, [alarm for alarm in self._alarms(now) if alarm.robot == robot]
+
+    def drop_alarms(self, robots: Iterable[str]) -> None:
+        """Keep nothing any more of robots that are judged here, or have gone."""
+        if self._kept:
+            for robot in robots:
+                self._kept.pop(robot, None)
+
     def alarm(self, robot: str, kind: FenceKind, name: str, now: float) -> FenceAlarm | None:
         """Return what a gateway reported of a robot in an area, in which it was before it came here.
 
-        None where no report that holds at time ``now`` says so.
+        None where no report that holds at time ``now`` says so, nor one that held as it came of late.
         """
         same = robot, kind, name[:LONGEST_NAME]
-        alarms = (alarm for report in self.at(now).values() for alarm in report.alarms)
+        came, kept = self._kept.get(robot, (-math.inf, []))
+        alarms = (*(kept if now - came < REPORT_HOLDS_S else ()), *self._alarms(now))
         return next((alarm for alarm in alarms if (alarm.robot, alarm.kind, alarm.name) == same), None)
+
+    def _alarms(self, now: float) -> Iterator[FenceAlarm]:
+        return (alarm for report in self.at(now).values() for alarm in report.alarms)
 
 
 def join_reports(first: Geofence, others: Iterable[Geofence]) -> Geofence:

@@ -24,7 +24,14 @@ from ...core.sites.frame import Points
 from ..cluster.messages import MOST_ALARMS, MOST_UNJUDGED
 from ..cluster.robot_relay import ReportsElsewhere, join_reports
 from ..commands.requests import CommandRequests
-from ..model.events import EventBus, FenceJudged, FenceJudgedElsewhere, Listeners, RobotLeft
+from ..model.events import (
+    EventBus,
+    FenceJudged,
+    FenceJudgedElsewhere,
+    Listeners,
+    RobotClaimed,
+    RobotLeft,
+)
 from ..model.fence_stays import DONE, Clearances, FoundStays, Stay, Stays, find_stays, finite_places
 from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
@@ -111,7 +118,8 @@ class GeofenceWatch:
         """When a report was made last, and of how many stays."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
         events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
-        events.subscribe(RobotLeft, lambda left: self._judged.discard(left.robot))
+        events.subscribe(RobotClaimed, self._note_claimed)
+        events.subscribe(RobotLeft, self._note_left)
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
@@ -196,6 +204,7 @@ class GeofenceWatch:
         for stay in changes.entered:
             self._begin(stay)
         self._judged.update(names)
+        self._elsewhere.drop_alarms(names)
         for stay in self._stays:
             # What another gateway has, that one stops; what has come from there since is stopped here.
             if _is_open(stay) and self._robots.gateway_of(stay.robot) is None:
@@ -281,6 +290,13 @@ class GeofenceWatch:
         report = self._join(own)
         if self._to_operators.is_due(report):
             self._listeners.announce("geofence", "geofence", to_json(report))
+
+    def _note_claimed(self, claimed: RobotClaimed) -> None:
+        self._elsewhere.keep_alarms(claimed.robot, self._clock.steady())
+
+    def _note_left(self, left: RobotLeft) -> None:
+        self._judged.discard(left.robot)
+        self._elsewhere.drop_alarms([left.robot])
 
     def _note_elsewhere(self, judged: FenceJudgedElsewhere) -> None:
         self._elsewhere.add_report(judged.gateway, judged.report, self._clock.steady())

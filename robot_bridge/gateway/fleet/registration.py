@@ -19,7 +19,7 @@ from ...core.messages.robots import Answer, OpAck, Ready, SetMap, Start
 from ..cluster.messages import Exchange
 from ..cluster.ownership import NameClaims, Ownership
 from ..commands.service import CommandService
-from ..model.events import EventBus, RobotLeft, RobotsTakenUp, handles
+from ..model.events import EventBus, RobotClaimed, RobotLeft, RobotsTakenUp, handles
 from ..model.robots import AWAY, Robot, Robots
 from ..model.task_queue import REPORTED_ENDED, Queue, QueuedTask
 from ..queues.registry import QueueRegistry
@@ -106,6 +106,8 @@ class Takeover:
         :raises StoreError: when that cannot be done; the robot is not in then.
         """
         before = self._robots.gateway_of(robot)
+        if before is not None:
+            self._events.publish(RobotClaimed(robot))
         if await self._ownership.claim(robot) or before is not None:
             if before is not None:
                 self._left.add(before)

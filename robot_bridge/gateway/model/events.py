@@ -129,6 +129,16 @@ class RobotReturned:
 
 
 @dataclass(frozen=True)
+class RobotClaimed:
+    """A robot that another gateway has says Ready here: it is this gateway's in a moment."""
+
+    robot: str
+
+    def __str__(self) -> str:
+        return f"the claim of robot {self.robot!r}"
+
+
+@dataclass(frozen=True)
 class RobotsTakenUp:
     """This gateway has robots that another one had."""
 

@@ -16,7 +16,7 @@ from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
 from robot_bridge.gateway.cluster.robot_relay import REPORT_HOLDS_S
 from robot_bridge.gateway.fleet import geofence as watch
-from robot_bridge.gateway.model.events import FenceJudged, FenceJudgedElsewhere
+from robot_bridge.gateway.model.events import FenceJudged, FenceJudgedElsewhere, RobotClaimed, RobotLeft
 from robot_bridge.gateway.model.fence_stays import LEFT_AFTER_S
 from robot_bridge.gateway.model.robot_columns import LOCATED, ReportedElsewhere
 
@@ -149,6 +149,42 @@ async def test_a_robot_that_was_stopped_at_another_gateway_may_drive_out(guarded
     (alarm,) = await come_from_south(guarded, basin("far"))
     assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
     assert await guarded.acknowledge_all("far") == []
+
+
+async def test_a_robot_may_drive_out_though_the_gateway_that_stopped_it_says_no_more_of_it(guarded):
+    seen_elsewhere(guarded, IN_THE_BASIN)
+    reported_elsewhere(guarded, basin("far"))
+    guarded.fleet.events.publish(RobotClaimed("far"))
+    (alarm,) = await come_from_south(guarded)
+    assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
+    assert await guarded.acknowledge_all("far") == []
+    # Who drives in again is stopped again.
+    for _ in range(2):
+        guarded.now += LEFT_AFTER_S
+        await guarded.at(*OUTSIDE, v=1.0, robot="far")
+        report = await look(guarded)
+    assert report.alarms == []
+    guarded.now += 60.0
+    await guarded.at(*IN_THE_BASIN, v=1.0, robot="far")
+    assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["aborted"]
+    assert await guarded.acknowledge_all("far") == ["Abort"]
+
+
+@pytest.mark.parametrize("gone", ["judged outside", "at another gateway"])
+async def test_what_was_reported_of_a_robot_that_came_counts_once(guarded, gone):
+    seen_elsewhere(guarded, IN_THE_BASIN)
+    reported_elsewhere(guarded, basin("far"))
+    guarded.fleet.events.publish(RobotClaimed("far"))
+    if gone == "at another gateway":
+        guarded.fleet.events.publish(RobotLeft("far", "south"))
+    else:
+        reported_elsewhere(guarded)
+        await guarded.ready("far")
+        await guarded.at(*OUTSIDE, v=1.0, robot="far")
+        assert (await look(guarded)).alarms == []
+        guarded.fleet.events.publish(RobotLeft("far", "south"))
+    (alarm,) = await come_from_south(guarded)
+    assert (alarm.outcome, alarm.since) == ("aborted", guarded.now)
 
 
 async def test_what_was_reported_of_a_robot_long_ago_does_not_keep_it_from_being_stopped(guarded):
