@@ -46,7 +46,7 @@ def takeover(ownership, monkeypatch):
     woken: list[tuple[str, str]] = []
     robots = SimpleNamespace(gateway_of=lambda robot: None if robot == "r1" else "b")
     exchange = SimpleNamespace(wake=lambda what, gateway: woken.append((what, gateway)))
-    takeover = Takeover(ownership, exchange, robots, *[None] * 7)
+    takeover = Takeover(ownership, exchange, robots, *[None] * 6, EventBus())
     takeover.read, takeover.faults, takeover.woken = [], {}, woken
 
     async def read(names):
