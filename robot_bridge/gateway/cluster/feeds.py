@@ -132,7 +132,8 @@ class StepFeed:
 
     def _keep_unmet(self) -> None:
         """Look again soon at commands of robots that are not known here yet."""
-        loop, since = asyncio.get_running_loop(), asyncio.get_running_loop().time() - MET_WITHIN_S
+        loop = asyncio.get_running_loop()
+        since = loop.time() - MET_WITHIN_S
         self._unmet = {command: at for command, at in self._unmet.items() if at > since}
         if self._meeting is not None:
             self._meeting.cancel()

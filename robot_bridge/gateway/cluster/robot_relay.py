@@ -369,7 +369,9 @@ class ReportsElsewhere:
     def keep_alarms(self, robot: str, now: float) -> None:
         """Keep what is reported of a robot at time ``now``: it comes here, and who had it soon says no more
         of it."""
-        self._kept[robot] = now, [alarm for alarm in self._alarms(now) if alarm.robot == robot]
+        self.drop_alarms([robot])
+        if alarms := [alarm for alarm in self._alarms(now) if alarm.robot == robot]:
+            self._kept[robot] = now, alarms
 
     def drop_alarms(self, robots: Iterable[str]) -> None:
         """Keep nothing any more of robots that are judged here, or have gone."""
