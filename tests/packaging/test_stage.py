@@ -15,6 +15,7 @@ import time
 import pytest
 
 from tests.support.errors import StageError
+from tests.support.patience import BUSY
 from tests.support.processes import Processes, is_running
 from tests.support.session import follow
 from tests.support.verdict import Errand, judge
@@ -69,7 +70,7 @@ def test_a_signal_ends_every_process(tmp_path, root, number):
     ) as outer:
         pid = int(outer.stdout.readline())
         outer.send_signal(number)
-        assert outer.wait(10) != 0
+        assert outer.wait(BUSY * 10) != 0
     assert not is_running(pid)
 
 

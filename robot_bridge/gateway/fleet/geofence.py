@@ -202,26 +202,29 @@ class GeofenceWatch:
         for stay in changes.ended:
             log.info("robot %s is no longer %s", stay.robot, _where(stay))
         for stay in changes.entered:
-            self._begin(stay)
-        self._judged.update(names)
-        self._elsewhere.drop_alarms(names)
+            log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), *stay.place)
+        gateway_of = self._robots.gateway_of
         for stay in self._stays:
             # What another gateway has, that one stops; what has come from there since is stopped here.
-            if _is_open(stay) and self._robots.gateway_of(stay.robot) is None:
+            if _is_open(stay) and gateway_of(stay.robot) is None and not self._was_stopped_elsewhere(stay):
                 self._stop_by_task(stay)
+        own = [name for name in names if gateway_of(name) is None]
+        self._judged.update(own)
+        self._elsewhere.drop_alarms(own)
 
     def _is_judged(self, robot: str) -> bool:
         return robot in self._robots and self._robots.gateway_of(robot) not in self._left
 
-    def _begin(self, stay: Stay) -> None:
-        x, y = stay.place
-        log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), x, y)
+    def _was_stopped_elsewhere(self, stay: Stay) -> bool:
+        """Tell whether the robot came here inside the area and was stopped where it comes from; it may be on
+        its way out, and the stay goes on as it was there."""
         if stay.robot in self._judged:
-            return
+            return False
         known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name, self._clock.steady())
-        if known is not None and known.outcome in DONE:
-            # It came here inside the area, was stopped where it comes from, and may be on its way out.
-            stay.since, stay.outcome, stay.reason = known.since, known.outcome, known.reason
+        if known is None or known.outcome not in DONE:
+            return False
+        stay.since, stay.outcome, stay.reason = known.since, known.outcome, known.reason
+        return True
 
     def _stop_by_task(self, stay: Stay) -> None:
         stay.outcome = "asked"

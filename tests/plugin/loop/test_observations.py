@@ -15,6 +15,7 @@ from qgis.PyQt.QtWidgets import QListView
 from websockets.sync.client import connect
 
 from robot_bridge.core.robotmap.binary import decode
+from tests.support.patience import BUSY
 
 
 @pytest.fixture
@@ -79,7 +80,7 @@ def objects_on_map(loop):
         ):
             socket.send(json.dumps({"jsonrpc": "2.0", "id": number, "method": method, "params": params}))
             while len(maps) <= number:
-                told = json.loads(socket.recv(timeout=10))
+                told = json.loads(socket.recv(timeout=BUSY * 10))
                 if told.get("method") == "SetMap":
                     maps.append(decode(base64.b64decode(told["params"]["map"])))
                     socket.send(json.dumps({"jsonrpc": "2.0", "id": told["id"], "result": {}}))

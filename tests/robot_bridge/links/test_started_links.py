@@ -16,6 +16,7 @@ from robot_bridge.core.sites.settings_tables import LinkOptions
 from robot_bridge.gateway.fleet import link_supervision
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.patience import BUSY
 from tests.support.processes import is_running
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
@@ -81,7 +82,7 @@ def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
     wait_until(lambda: "cars" in children(bridge), 20)
     third = children(bridge)["cars"]
     bridge.gateway.terminate()
-    assert bridge.gateway.wait(10) == 0
+    assert bridge.gateway.wait(BUSY * 10) == 0
     assert not is_running(third)
 
 

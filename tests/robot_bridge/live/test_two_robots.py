@@ -8,6 +8,7 @@ import time
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.patience import BUSY
 from tests.support.robots.robot_wires import WIRES
 
 LINKS = pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
@@ -73,7 +74,7 @@ def test_a_robot_that_hangs_gives_way_after_a_second(bridge, desk):
     finally:
         robot.send_signal(signal.SIGCONT)
     # The one that hung finds that it was replaced, and ends.
-    assert robot.wait(10) != 0
+    assert robot.wait(BUSY * 10) != 0
     assert "give each its own --name" in bridge.output()
 
 

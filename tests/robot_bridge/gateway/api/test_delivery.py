@@ -16,6 +16,7 @@ from robot_bridge.gateway.api import delivery
 from robot_bridge.gateway.api.delivery import Delivery
 from robot_bridge.gateway.api.robot_session import RobotChannel
 from robot_bridge.gateway.storage.repositories.requests import AnswerRow
+from tests.support.patience import BUSY
 
 TARGET = '{"x": 1.0, "y": 2.0}'
 
@@ -352,7 +353,7 @@ async def test_begun_later_it_sends_all_again_after_a_pause(line, monkeypatch):
     line.delivery.begin_later()
     await rest()
     assert first.cancelled() and line.connection.sent == [(1, "SetPosEnd")]
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         while len(line.connection.sent) < 2:
             await asyncio.sleep(0.001)
     assert line.connection.sent == [(1, "SetPosEnd")] * 2

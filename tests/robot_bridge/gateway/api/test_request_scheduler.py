@@ -22,6 +22,7 @@ from robot_bridge.gateway.api.operator_server import (
     ScheduledRequest,
 )
 from robot_bridge.protocol import jsonrpc
+from tests.support.patience import BUSY
 
 QUESTION = GetQueue()
 SLOWLY = (GetQueue, GetRoute, GetImage)
@@ -55,7 +56,7 @@ class Operator:
     async def ask(self, *requests, size=10):
         """Ask one after the other; each is begun that can be."""
         for request in requests:
-            async with asyncio.timeout(5):
+            async with asyncio.timeout(BUSY * 5):
                 await self.lanes.submit(asked(request, size))
                 await rest()
 
@@ -179,7 +180,7 @@ async def test_of_emergency_stops_that_are_not_done_so_many_are_begun_and_then_t
     await rest()
     assert operator.begun == stops and not last.done()
     operator.may.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await last
     assert operator.done == stops and operator.refused == []
 
@@ -194,7 +195,7 @@ async def test_the_connection_goes_on_as_soon_as_one_of_them_is_done(monkeypatch
 
     lanes = RequestScheduler(settle)
     first, second = (asked(EmergencyStop(id)) for id in gates)
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await lanes.submit(first)
         last = asyncio.ensure_future(lanes.submit(second))
         await rest()
@@ -219,7 +220,7 @@ async def test_so_many_requests_wait_their_turn_and_the_next_is_refused():
     assert refused == GetQueue("r1") and type(error) is BusyError
     assert str(error) == f"get_queue: {TOO_MANY}"
     operator.may.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         while len(operator.done) <= MOST_WAITING:
             await asyncio.sleep(0)
     assert GetQueue("r1") not in operator.done
@@ -251,7 +252,7 @@ async def test_so_many_slow_questions_wait_aside_and_hold_up_nothing_else():
     assert [request for request, _ in operator.refused] == [GetImage(1000)]
     assert operator.done == [QUESTION]
     operator.may.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         while len(operator.done) < MOST_ASIDE + 2:
             await asyncio.sleep(0)
     assert operator.done[1:] == images
@@ -280,7 +281,7 @@ async def test_who_goes_away_leaves_what_was_begun_and_every_stop_to_its_end_and
     await rest()
     assert not finishing.done()
     operator.may.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await finishing
     assert sorted(operator.done, key=repr) == [QUESTION, PauseRobot("r1")]
     await rest()
@@ -295,7 +296,7 @@ async def test_who_goes_away_is_waited_for_until_each_of_them_is_done(held):
     await rest()
     assert not finishing.done()
     operator.may.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await finishing
     assert len(operator.done) == 2
 
@@ -316,11 +317,11 @@ async def test_one_stop_that_goes_wrong_keeps_no_other_from_being_waited_for():
     await rest()
     assert not finishing.done()
     free.set()
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await finishing
     assert done == [PauseRobot("r1")]
 
 
 async def test_who_asked_nothing_is_not_waited_for():
-    async with asyncio.timeout(5):
+    async with asyncio.timeout(BUSY * 5):
         await Operator().lanes.finish()

@@ -13,7 +13,7 @@ from websockets.exceptions import ConnectionClosed
 from robot_bridge.core.sites.settings_tables import LimitSettings
 from robot_bridge.gateway.auth.accounts import TokenKind
 from robot_bridge.gateway.auth.client_connection import ClientConnection, Identity
-from tests.support.patience import until
+from tests.support.patience import BUSY, until
 
 
 class OpenDoor:
@@ -53,7 +53,7 @@ class Host:
         return True
 
     async def until(self, number):
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(BUSY * 10):
             while len(self.came) < number:
                 await asyncio.sleep(0.005)
 

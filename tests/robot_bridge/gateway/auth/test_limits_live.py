@@ -16,7 +16,7 @@ from websockets.sync.client import connect
 from robot_bridge.protocol.jsonrpc import TOO_MANY
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.bridge_sockets import frame, plain_socket
-from tests.support.patience import START
+from tests.support.patience import BUSY, START
 from tests.support.wire import RefusedError
 
 LIMITS = """
@@ -103,7 +103,7 @@ def test_too_many_positions_are_refused_and_then_the_connection_is_closed(bridge
     position = {"jsonrpc": "2.0", "method": "SendPos", "params": {"x": 1, "y": 2, "theta": 0, "v": 0}}
     ready = frame(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 1}}))
     with plain_socket(bridge, "/robot?robot=talkative") as raw:
-        raw.settimeout(5)
+        raw.settimeout(BUSY * 5)
         raw.sendall(ready)
         told = b""
         while b'"ok":true' not in told:

@@ -12,6 +12,7 @@ from robot_bridge.core.assignment.plan import document_of
 from robot_bridge.core.assignment.solver import Objective, assign
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
+from tests.support.patience import BUSY
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
@@ -42,7 +43,7 @@ def robots(trio, name):
     for process in started:
         if process.poll() is None:
             process.kill()
-            process.wait(5)
+            process.wait(BUSY * 5)
 
 
 def submission(name, robots, count=8, **more):

@@ -14,6 +14,7 @@ from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
+from tests.support.patience import BUSY
 
 NUMBERS = itertools.count(1)
 
@@ -65,7 +66,7 @@ def site_told(told, **values):
 
 def health_of(bridge):
     url = bridge.address.replace("ws://", "http://") + "/healthz"
-    with urllib.request.urlopen(url, timeout=10) as page:
+    with urllib.request.urlopen(url, timeout=BUSY * 10) as page:
         return json.load(page)
 
 

@@ -15,6 +15,7 @@ from robot_bridge.gateway.fleet import emergency_stop
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.storage.database import Database
+from tests.support.patience import BUSY
 
 
 @pytest.fixture
@@ -144,7 +145,7 @@ async def test_a_clear_does_not_clear_a_stop_that_came_while_it_waited(two, emer
     await asyncio.sleep(0.05)
     two.now = 1005.0
     stopping = asyncio.ensure_future(emergency.stop(EmergencyStop("stop-of-bob", "child"), "Bob"))
-    async with asyncio.timeout(10):
+    async with asyncio.timeout(BUSY * 10):
         while emergency.report().stop != "stop-of-bob":
             await asyncio.sleep(0)
         thawed.set()
@@ -212,7 +213,7 @@ class Noted:
             return []
 
     async def until(self, noted):
-        async with asyncio.timeout(10):
+        async with asyncio.timeout(BUSY * 10):
             while self.noted() != noted:
                 await asyncio.sleep(0.001)
 
@@ -299,7 +300,7 @@ async def test_a_disk_that_hangs_holds_no_stop_up(gateway):
     stopping = asyncio.ensure_future(gateway.fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada"))
     reader = None
     try:
-        async with asyncio.timeout(5):
+        async with asyncio.timeout(BUSY * 5):
             while not gateway.called:
                 await asyncio.sleep(0.01)
     finally:

@@ -170,6 +170,22 @@ async def test_a_robot_may_drive_out_though_the_gateway_that_stopped_it_says_no_
     assert await guarded.acknowledge_all("far") == ["Abort"]
 
 
+@pytest.mark.parametrize("is_seen", [True, False])
+async def test_a_robot_that_was_judged_here_before_its_gateway_reported_may_drive_out(guarded, is_seen):
+    seen_elsewhere(guarded, IN_THE_BASIN)
+    assert [alarm.outcome for alarm in (await look(guarded)).alarms] == ["none"], "south says nothing yet"
+    reported_elsewhere(guarded, basin("far"))
+    if is_seen:
+        await look(guarded)
+    guarded.fleet.events.publish(RobotClaimed("far"))
+    await guarded.ready("far")
+    await guarded.acknowledge_all("far")
+    await guarded.at(*IN_THE_BASIN, v=1.0, robot="far")
+    (alarm,) = (await look(guarded)).alarms
+    assert (alarm.outcome, alarm.since) == ("aborted", 1000.0)
+    assert await guarded.acknowledge_all("far") == []
+
+
 @pytest.mark.parametrize("gone", ["judged outside", "at another gateway"])
 async def test_what_was_reported_of_a_robot_that_came_counts_once(guarded, gone):
     seen_elsewhere(guarded, IN_THE_BASIN)

@@ -10,6 +10,7 @@ from robot_bridge.core.errors import FatalError, StoreError
 from robot_bridge.core.parent_process import notify, watchdog_interval
 from robot_bridge.gateway import monitoring as tasks
 from robot_bridge.gateway.monitoring import Counters
+from tests.support.patience import BUSY
 
 
 @pytest.fixture(autouse=True)
@@ -114,7 +115,7 @@ def test_systemd_is_told(tmp_path, monkeypatch, abstract):
     name = f"@robot-bridge-test-{os.getpid()}" if abstract else str(tmp_path / "notify")
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind("\0" + name[1:] if abstract else name)
-        manager.settimeout(2)
+        manager.settimeout(BUSY * 2)
         monkeypatch.setenv("NOTIFY_SOCKET", name)
         notify("READY=1", "STATUS=listening")
         assert manager.recv(1000) == b"READY=1\nSTATUS=listening"

@@ -15,6 +15,7 @@ import pytest
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command
 from tests.support.bridge.cut_line import CUT, CutLine
+from tests.support.patience import BUSY
 from tests.support.processes import free_port
 from tests.support.wire import RefusedError
 
@@ -63,7 +64,7 @@ def command_of(ports):
 
 
 def report(ports, text, **headers):
-    connection = HTTPConnection("127.0.0.1", ports["http"], timeout=10)
+    connection = HTTPConnection("127.0.0.1", ports["http"], timeout=BUSY * 10)
     connection.request("GET", f"/?{text}", headers=headers)
     answer = connection.getresponse()
     return answer.status, answer.read().decode()
@@ -158,7 +159,7 @@ def test_reports_that_count_for_nothing_are_answered_with_the_reason(bridge, des
         b"DELETE / HTTP/1.1\r\n\r\n",
         b"GET /?" + b"a" * 40_000,
     ):
-        with socket.create_connection(("127.0.0.1", ports["http"]), timeout=10) as phone:
+        with socket.create_connection(("127.0.0.1", ports["http"]), timeout=BUSY * 10) as phone:
             phone.sendall(wrong)
             assert re.match(rb"HTTP/1.1 4\d\d ", phone.recv(1000)), wrong
     # One that begins a request and never ends it keeps nobody out.
