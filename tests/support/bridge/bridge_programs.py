@@ -97,7 +97,7 @@ class Bridge:
     def kill_gateway(self) -> None:
         """End the gateway the way a power cut does."""
         self.gateway.kill()
-        self.gateway.wait(5)
+        self.gateway.wait(BUSY * 5)
 
     def desk(self, operator: str = "Ada", **options: Any) -> Desk:
         """Return an operator's connection."""

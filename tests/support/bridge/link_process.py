@@ -7,6 +7,7 @@ import resource
 from pathlib import Path
 from subprocess import Popen
 
+from tests.support.patience import BUSY
 from tests.support.processes import Processes
 
 RUNS = itertools.count(1)
@@ -34,7 +35,7 @@ class LinkProcess:
     def kill(self) -> None:
         """End it the way a power cut does."""
         self.process.kill()
-        self.process.wait(5)
+        self.process.wait(BUSY * 5)
 
     def output(self) -> str:
         """Return what it has printed since it was started last."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.errors import StageError
-from tests.support.patience import START
+from tests.support.patience import BUSY, START
 from tests.support.processes import Processes, free_port
 from tests.support.robots.ros_nodes import Nodes
 from tests.support.robots.ros_peer import ros_python
@@ -36,7 +36,7 @@ class Server:
     def kill(self) -> None:
         """End it the way a power cut does."""
         self._process.kill()
-        self._process.wait(5)
+        self._process.wait(BUSY * 5)
 
 
 @pytest.fixture(scope="session")

@@ -39,6 +39,8 @@ keepout_info = "/{{robot}}/keepout_info"
 """
 NUMBERS = itertools.count(1)
 SLOW, FAST = ("--speed", "0.5"), ("--speed", "10")
+CANCELED = 5
+"""The status that a ROS action gives a goal that was canceled."""
 
 
 def rosbridge_link(processes, file):
@@ -159,7 +161,7 @@ def test_an_abort_cancels_what_nav2_does(desk, robot, nodes):
     desk.send(f"stop-{name}", name, "Abort")
     desk.wait_for_step(f"stop-{name}", "acknowledged")
     desk.wait_for_step(f"go-{name}", "aborted")
-    assert events(nodes, name, "cancel asked") and events(nodes, name, "goal ended")[0]["status"] == 5
+    assert events(nodes, name, "cancel asked") and events(nodes, name, "goal ended")[0]["status"] == CANCELED
 
 
 def test_an_abort_calls_the_stop_service_and_says_speed_0(desk, robot, nodes):
@@ -187,7 +189,7 @@ def test_an_emergency_stop_stops_and_is_cleared(desk, robot, nodes):
     desk.ask("emergency_stop", {"command": f"again-{name}"})
     try:
         desk.until(lambda: desk.emergency["in_force"] and name not in desk.emergency["waiting"], 10)
-        assert events(nodes, name, "goal ended")[0]["status"] == 5
+        assert events(nodes, name, "goal ended")[0]["status"] == CANCELED
     finally:
         desk.ask("clear_emergency_stop", {})
     desk.send(f"on-{name}", name, "SetPosEnd", x=desk.robots[name]["x"] + 0.5, y=8.0)
@@ -272,22 +274,25 @@ def test_an_abort_without_the_server_is_told_and_comes_with_it(desk, robot, serv
     finally:
         server.start()
     (ended,) = wait_until(lambda: events(nodes, name, "goal ended"), 30)
-    assert ended["status"] == 5
+    assert ended["status"] == CANCELED
 
 
 def test_an_adapter_that_is_killed_sends_no_goal_twice_and_says_what_became_of_it(
     desk, robot, adapter, nodes
 ):
-    # This server cancels the goals of a client that leaves; others let them go on.
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
     desk.wait_for_step(f"go-{name}", "acknowledged", 5)
     adapter.kill()
     desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
-    wait_until(lambda: events(nodes, name, "goal ended"))
+    (ended,) = wait_until(lambda: events(nodes, name, "goal ended"))
     adapter.start()
-    desk.wait_for_step(f"go-{name}", "failed", 8)
-    assert "canceled while rosbridge was away" in reason(desk, f"go-{name}")
+    # This server cancels the goals of a client that leaves, but not always; others let them go on.
+    if ended["status"] == CANCELED:
+        desk.wait_for_step(f"go-{name}", "failed", 8)
+        assert "canceled while rosbridge was away" in reason(desk, f"go-{name}")
+    else:
+        desk.wait_for_step(f"go-{name}", "reached", 8)
     assert len(events(nodes, name, "goal asked")) == 1
     desk.send(f"on-{name}", name, "SetPosEnd", x=desk.robots[name]["x"] + 0.5, y=8.0)
     desk.wait_for_step(f"on-{name}", "reached", 8)

@@ -15,7 +15,7 @@ import pytest
 
 from tests.support.databases.database_server import find_program
 from tests.support.errors import StageError
-from tests.support.patience import START
+from tests.support.patience import BUSY, START
 from tests.support.processes import Processes, free_port
 
 VEHICLE = Path(__file__).with_name("virtual_vehicle.js")
@@ -90,7 +90,7 @@ class Yard:
     def kill(self, name: str) -> None:
         """End a process the way a power cut does."""
         self.running[name].kill()
-        self.running[name].wait(5)
+        self.running[name].wait(BUSY * 5)
 
     def output(self, name: str) -> str:
         """Return what a process has printed since it was started last."""
