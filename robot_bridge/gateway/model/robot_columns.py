@@ -7,8 +7,8 @@ its row says: :class:`.Robots` makes a :class:`.Robot` of that when somebody ask
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator, Sequence
-from typing import Any, NamedTuple, Protocol, TypeVar
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -29,6 +29,9 @@ and m, which other gateways do not tell."""
 NUMBERS = 8
 REPORTED_NUMBERS = 6
 """numbers of a robot in a message, the first of those; in place of times there are seconds since."""
+_THETA = 2
+_OF_A_POSE = ("x", "y", "theta", "v", "battery", "status")
+"""What is known of the pose of a robot of another gateway."""
 STATES = tuple(RobotState)
 """States by their codes."""
 _CODES = {state: code for code, state in enumerate(STATES)}
@@ -136,9 +139,6 @@ class RobotRecord(Protocol):
     revision: int
 
 
-Known = TypeVar("Known", bound=RobotRecord)
-
-
 class Numbering:
     """In which row the robot is that a run of a gateway knows by a number."""
 
@@ -175,20 +175,6 @@ class Numbering:
         if missing > 0:
             self._rows = np.concatenate([self._rows, np.full(missing + _SPARE, -1, np.intp)])
             self._lives = np.concatenate([self._lives, np.full(missing + _SPARE, -1)])
-
-
-class RowReading(NamedTuple):
-    """What a row says of its robot; times by this computer's clock, ``place`` is x, y, theta and v."""
-
-    received_at: float
-    ended_in_order: bool
-    heard_since: bool
-    located: bool
-    only_seen: bool
-    place: tuple[float, float, float, float] | None
-    pose_at: float | None
-    state: RobotState
-    revision: int
 
 
 class Observed(NamedTuple):
@@ -324,6 +310,9 @@ class RobotColumns:
         counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
         placed = counts & np.isfinite(columns[POSE_AT])
         placed &= (np.abs(columns[: len(_LARGEST)]) <= _LARGEST).all(axis=0)
+        turned = placed & (np.abs(columns[_THETA]) > math.pi)
+        if turned.any():
+            columns[_THETA, turned] -= math.tau * np.round(columns[_THETA, turned] / math.tau)
         columns[POSE_AT:] = report.wall - columns[POSE_AT:]
         flags = report.flags
         if not placed.all():
@@ -350,8 +339,10 @@ class RobotColumns:
         others, all_named = numbering.rows(ids[named:], self._lives, self._given)
         return np.concatenate([rows, others]), all_named
 
-    def read_changed(self, robots: Sequence[Known]) -> Iterator[tuple[Known, RowReading]]:
-        """Yield those of ``robots`` with rows that are not as their rows say, with what those say."""
+    def renew(
+        self, robots: Sequence[RobotRecord], details: Mapping[str, tuple[float | None, str | None]]
+    ) -> None:
+        """Bring ``robots``, which have rows, up to those; ``details`` are battery and status by name."""
         rows = np.array([self._rows[robot.name] for robot in robots], dtype=np.intp)
         revisions = self._revisions[rows]
         changed = np.flatnonzero(revisions != np.array([robot.revision for robot in robots], np.int64))
@@ -359,20 +350,19 @@ class RobotColumns:
         columns = (*self._numbers[:BATTERY, rows], self._flags[rows], self._states[rows], revisions[changed])
         values = zip(changed.tolist(), *(column.tolist() for column in columns), strict=True)
         for place, x, y, theta, v, pose_at, received_at, flags, state, revision in values:
-            placed = not math.isnan(x)
-            yield (
-                robots[place],
-                RowReading(
-                    received_at,
-                    bool(flags & ENDED),
-                    bool(flags & HEARD_SINCE),
-                    bool(flags & LOCATED),
-                    bool(flags & ONLY_SEEN),
-                    (x, y, theta, v) if placed else None,
-                    pose_at if placed and not math.isnan(pose_at) else None,
-                    STATES[state],
-                    revision,
-                ),
+            robot = robots[place]
+            robot.received_at, robot.state, robot.revision = received_at, STATES[state], revision
+            robot.ended_in_order, robot.heard_since = bool(flags & ENDED), bool(flags & HEARD_SINCE)
+            robot.located = bool(flags & LOCATED)
+            if flags & ONLY_SEEN:
+                robot.abilities = ""
+            if math.isnan(x):
+                robot.pose_at = None
+                continue
+            robot.pose_at = None if math.isnan(pose_at) else pose_at
+            # What changes seldom comes by itself.
+            robot.pose = SendPos.of_checked(
+                _OF_A_POSE, (x, y, theta, v, *details.get(robot.name, (None, None)))
             )
 
     def age(self, now: float, stale_after: float, lost_after: float, revision: int) -> int:

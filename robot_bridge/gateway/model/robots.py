@@ -542,16 +542,7 @@ class Robots:
     def _renew(self, names: Sequence[str]) -> list[Robot]:
         """Return robots of other gateways as those say that they are by now."""
         robots = [self._elsewhere[name] for name in names]
-        for robot, seen in self._other_columns.read_changed(robots):
-            robot.received_at = seen.received_at
-            robot.ended_in_order, robot.heard_since = seen.ended_in_order, seen.heard_since
-            robot.located, robot.state, robot.revision = seen.located, seen.state, seen.revision
-            robot.abilities = "" if seen.only_seen else robot.abilities
-            robot.pose_at = seen.pose_at
-            if seen.place is not None:
-                # What changes seldom comes by itself.
-                battery, status = self._details.get(robot.name, (None, None))
-                robot.pose = SendPos(*seen.place, battery=battery, status=status)
+        self._other_columns.renew(robots, self._details)
         return robots
 
     def _add(self, robot: Robot) -> None:
