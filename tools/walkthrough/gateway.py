@@ -25,15 +25,16 @@ class Gateway:
         found = next(each for each in positions["robots"] if each["robot"] == robot)
         return found["x"], found["y"]
 
-    def newest_command(self, robot: str) -> dict[str, Any]:
-        """Return the command that a robot was given last, aborts left out.
+    def newest_command(self, robot: str, state: str | None = None) -> dict[str, Any]:
+        """Return the command that a robot was given last, aborts left out, of those that ended in ``state``.
 
         :raises StageError: when it was given none.
         """
         (answer,) = ask(self.address, ("get_commands", {}), token=self.token)
         mine = [each for each in answer["commands"] if each["robot"] == robot and each["op"] != "Abort"]
+        mine = [each for each in mine if state in (None, each["steps"][-1]["state"])]
         if not mine:
-            raise StageError(f"the gateway knows no command for {robot}")
+            raise StageError(f"the gateway knows no command for {robot} that is {state or 'there'}")
         return max(mine, key=lambda command: command["steps"][0]["at"])
 
     def require_state(self, robot: str, state: str) -> None:

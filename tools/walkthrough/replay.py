@@ -16,7 +16,7 @@ LINE_EDGE = 9
 
 
 def play_again(scene: Scene) -> None:
-    """Load the last minutes, go to the middle of r1's drive, play and hold."""
+    """Load the last minutes, seek the middle of r1's drive, play and hold."""
     operator, film = scene.operator, scene.film
     operator.choose_from_menu("Plugins", "Fleet Supervisor", "Replay")
     loaded = time.time()
@@ -37,6 +37,9 @@ def play_again(scene: Scene) -> None:
 
 
 def middle_of_drive(scene: Scene) -> float:
-    """Return the moment when r1 was half way to its cone, in seconds since 1970."""
-    steps = scene.gateway.newest_command("r1")["steps"]
+    """Return the moment when r1 was half way to the cone that it placed, in seconds since 1970.
+
+    What it was given last was aborted a moment ago: the time that is replayed would end while it is played.
+    """
+    steps = scene.gateway.newest_command("r1", "reached")["steps"]
     return (steps[0]["at"] + steps[-1]["at"]) / 2
