@@ -301,6 +301,8 @@ log = logging.getLogger(__name__)
 LOCK_PAUSE_S = 0.0005
 _DESCRIPTORS = Path("/proc/self/fd")
 """The files that this process has open, where the system has that."""
+_BESIDE = ("", "-wal", "-shm")
+"""How the names end of a database's file, of its log and of the index of that."""
 _GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
 
 
@@ -344,8 +346,8 @@ class SQLite(Dialect):
 
     def _begin(self, connection: Connection) -> None:
         opened: _Opened | None = connection.info.get("opened")
-        if opened is not None and not opened.is_there():
-            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{opened.path} {_GONE}"))
+        if opened is not None and (gone := opened.missing()) is not None:
+            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{gone} {_GONE}"))
         mode = connection.info.get("mode", Durability.WRITE)
         # Through the driver, here and below: through SQLAlchemy each takes several times as long.
         driver = connection.connection.driver_connection
@@ -431,30 +433,40 @@ class SQLite(Dialect):
 
 
 class _Opened(NamedTuple):
-    """The file that a connection has open, as it was found at its path."""
+    """The file that a connection has open, with its log and the index of that, as found at their paths.
+
+    What goes into a log that was taken away is there for whoever has it open, and for nobody who comes later:
+    neither the next gateway nor a robot that opens the file then.
+    """
 
     path: Path
-    device: int
-    inode: int
+    found: tuple[tuple[int, int] | None, ...]
 
     @classmethod
     def by(cls, connection: sqlite3.Connection) -> _Opened | None:
-        """Return the file of a connection, None for a database in memory."""
+        """Return the files of a connection, None for a database in memory."""
         rows = connection.execute("PRAGMA database_list").fetchall()
         file = next((file for _number, name, file in rows if name == "main"), "")
         if not file:
             return None
-        path = Path(file)
-        status = path.stat()
-        return cls(path, status.st_dev, status.st_ino)
+        # The log and its index are made by whoever reads first.
+        connection.execute("PRAGMA schema_version").fetchone()
+        return cls(Path(file), tuple(_inode(f"{file}{end}") for end in _BESIDE))
 
-    def is_there(self) -> bool:
-        """Tell whether it is still at its path: what is written into a file that was taken away is lost."""
-        try:
-            status = self.path.stat()
-        except OSError:
-            return False
-        return (status.st_dev, status.st_ino) == (self.device, self.inode)
+    def missing(self) -> str | None:
+        """Return the path where another file, or none, is by now: what is written next would be lost."""
+        for end, inode in zip(_BESIDE, self.found, strict=True):
+            if inode is not None and _inode(f"{self.path}{end}") != inode:
+                return f"{self.path}{end}"
+        return None
+
+
+def _inode(path: str) -> tuple[int, int] | None:
+    try:
+        status = Path(path).stat()
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino
 
 
 def _prepare(connection: Any, record: Any) -> None:

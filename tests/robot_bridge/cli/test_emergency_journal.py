@@ -126,6 +126,25 @@ def test_a_stop_that_was_stored_and_cleared_does_not_come_back(start_bridge, sam
     bridge.end()
 
 
+@pytest.mark.parametrize("end", ["-wal", "-shm"])
+def test_a_stop_outlives_a_gateway_whose_log_was_deleted(start_bridge, sample_site, end):
+    """Whoever deletes the files beside the database takes with them what is stored from then on."""
+    bridge = start_bridge(sample_site)
+    desk, robot = bridge.desk(), bridge.robot("ws")
+    robot.plug_in(1)
+    bridge.file.with_name(f"{bridge.file.name}{end}").unlink()
+    report = desk.ask("emergency_stop", {"command": "stop-0001"})
+    assert (report["in_force"], report["stored"]) == (True, False)
+    assert robot.wait_for("Abort")
+    with pytest.raises(RefusedError, match=f"{bridge.file.name}{end} was taken away or replaced"):
+        desk.ask("clear_emergency_stop", {"reason": "free"})
+    bridge.kill_gateway()
+    bridge.start_gateway()
+    with bridge.desk() as desk:
+        assert (desk.emergency["in_force"], desk.emergency["stop"]) == (True, "stop-0001")
+    bridge.end()
+
+
 def test_a_disk_that_hangs_holds_no_stop_up(start_bridge, sample_site):
     bridge = start_bridge(sample_site)
     desk, robot = bridge.desk(), bridge.robot("ws")

@@ -73,6 +73,26 @@ async def test_a_file_that_was_taken_away_is_not_written_until_it_is_back(url, r
     await database.close()
 
 
+@pytest.mark.parametrize("kind", ["sqlite"], indirect=True)
+@pytest.mark.parametrize("end", ["-wal", "-shm"])
+@pytest.mark.parametrize("replaced", [False, True])
+async def test_nothing_goes_into_a_log_that_was_taken_away(url, end, replaced):
+    database = Database(url)
+    await database.run(add, "a")
+    file = Path(f"{database.url.database}{end}")
+    aside = file.with_name(f"{file.name}.aside")
+    file.rename(aside)
+    if replaced:
+        shutil.copy(aside, file)
+    for ask in (database.run(add, "lost"), database.jot(add, "lost"), database.read(names)):
+        with pytest.raises(StoreError, match=rf"fleet-\d+\.db{end} was taken away or replaced"):
+            await ask
+    aside.rename(file)
+    await database.run(add, "b")
+    assert await database.read(names) == ["a", "b"]
+    await database.close()
+
+
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"], indirect=True)
 @pytest.mark.parametrize("wrong", ["port", "password", "database"])
 async def test_a_server_that_cannot_be_used_is_named_without_the_password(kind, empty_url, wrong):
