@@ -423,7 +423,8 @@ async def _hold_database(
         sole = SingletonLock(settings.database)
         await sole.acquire()
         stack.push_async_callback(sole.release)
-        return None, {"sole gateway": sole.hold}
+        await sole.check_age(database)
+        return None, {"sole gateway": lambda: sole.hold(database)}
     lease = lease_database(settings.database)
     stack.push_async_callback(lease.close, CLOSE_WITHIN)
     fleet = await database.run(fleet_id)

@@ -17,7 +17,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from pathlib import Path
 from typing import IO, Any, Protocol
 
-from sqlalchemy import URL, Connection, create_engine, delete, func, inspect, select
+from sqlalchemy import URL, Connection, create_engine, func, inspect, select
 from sqlalchemy.pool import NullPool
 
 from ...core.errors import BridgeError, StoreError, counted, in_one_line
@@ -28,7 +28,7 @@ from .database import run_once, shown
 from .dialects import make_sqlite_file, sqlite_path_in
 from .repositories import metadata as sqlite_file_metadata
 from .repositories.metadata import ID
-from .schema import bridge, metadata, rr
+from .schema import bridge, metadata
 from .singleton_lock import no_gateway
 
 # --- Backups of PostgreSQL and MariaDB: the rows as SQL, written and read by the server's own programs
@@ -379,9 +379,7 @@ class SqliteBackups:
 def _renew(connection: Connection) -> None:
     if bridge.name not in inspect(connection).get_table_names():
         return  # a database of version 0.1.0, which gets its id when it is upgraded
-    connection.execute(delete(rr))
-    connection.execute(delete(bridge).where(bridge.c.name == sqlite_file_metadata.ID))
-    sqlite_file_metadata.database_id(connection)
+    sqlite_file_metadata.renew_id(connection)
 
 
 @contextlib.contextmanager

@@ -25,10 +25,10 @@ from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ...core.errors import BridgeError, FatalError, StoreError, listed_names
 from ...core.json_decoder import SHORT, DecodingError, decode_json
-from .database import open_engine, shown
+from .database import Database, open_engine, shown
 from .dialects import Dialect, SQLite, sqlite_file_of
 from .repositories import gateways as stored_gateways
-from .repositories.metadata import fact
+from .repositories.metadata import fact, message_count, renew_id
 from .schema import bridge, gateways
 
 log = logging.getLogger(__name__)
@@ -43,6 +43,8 @@ GATEWAY = "gateway"
 RUN, ROW = "gateway", "gateway_lock"
 """The rows of ``bridge`` that say which gateway runs, and that is locked."""
 
+_SENT = ("database", "newest_message")
+"""What the lock of an SQLite file tells of the messages that were given out of it."""
 _TAKEN = {"55P03", 1205}
 """What PostgreSQL and MariaDB answer when somebody else holds the lock."""
 
@@ -101,8 +103,30 @@ class SingletonLock:
             raise BridgeError(f"database {self._where}: {_serve_together(self._does, fleet)}")
         await asyncio.to_thread(self._lock.write, self._run)
 
-    async def hold(self) -> None:
-        """Keep the database until cancelled.
+    async def check_age(self, database: Database) -> None:
+        """Have a file count as another database that is older than what robots were sent out of it.
+
+        Somebody put back a copy of it, and its next messages have ids that robots know. A robot acknowledges
+        such a message and does nothing, be it an Abort. Raises StoreError.
+        """
+        if not isinstance(self._lock, FileLock):
+            return
+        id, newest = await database.run(message_count)
+        sent = await asyncio.to_thread(self._lock.newest_message, id)
+        if sent <= newest:
+            return
+        await database.run(renew_id)
+        log.warning(
+            "database %s is older than what robots were sent out of it: the newest message that it knows is "
+            "%d, and %d was given out. It counts as another one from now on, as after 'robot-bridge database "
+            "restore': robots forget the ids of the messages that they know",
+            self._where,
+            newest,
+            sent,
+        )
+
+    async def hold(self, database: Database) -> None:
+        """Keep the database until cancelled, and note beside its file what was sent out of it.
 
         :raises FatalError: when another gateway has taken it over while this one was cut off from it.
         """
@@ -113,6 +137,11 @@ class SingletonLock:
             except StoreError as error:
                 log.error("%s; its lock is taken anew as soon as it is back", error)
                 await self._take_again()
+            if isinstance(self._lock, FileLock):
+                # A file that cannot be read gives out no messages; a full disk must not end the gateway.
+                with contextlib.suppress(StoreError, OSError):
+                    sent = await database.read(message_count)
+                    await asyncio.to_thread(self._lock.note_message, *sent)
 
     async def release(self) -> None:
         """Give the database back."""
@@ -157,11 +186,15 @@ async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
 
 
 class FileLock:
-    """A lock on a file beside an SQLite database; the system ends it with the process."""
+    """A lock on a file beside an SQLite database; the system ends it with the process.
+
+    The file says which gateway runs, and of which database that one gave out messages up to which.
+    """
 
     def __init__(self, url: URL) -> None:
         self._url = url
         self._file: int | None = None
+        self._run: dict[str, Any] = {}
 
     def acquire(self) -> bool:
         """Take the lock; a database in memory has none, as nobody else can open it."""
@@ -189,9 +222,26 @@ class FileLock:
 
     def write(self, run: dict[str, Any]) -> None:
         """Write down which gateway runs."""
+        sent = {name: value for name, value in self.read().items() if name in _SENT}
+        self._write({**run, **sent})
+
+    def newest_message(self, database: str) -> int:
+        """Return the newest message that was given out of the database with this id, as far as is known."""
+        noted_of, newest = (self.read().get(name) for name in _SENT)
+        return newest if noted_of == database and isinstance(newest, int) else 0
+
+    def note_message(self, database: str, newest: int) -> None:
+        """Note the newest message that was given out of the database with this id."""
+        if tuple(self._run.get(name) for name in _SENT) != (database, newest):
+            self._write({**self._run, **dict(zip(_SENT, (database, newest), strict=True))})
+
+    def _write(self, run: dict[str, Any]) -> None:
+        self._run = run
         if self._file is not None:
-            os.ftruncate(self._file, 0)
-            os.pwrite(self._file, json.dumps(run).encode(), 0)
+            # In this order: whoever reads meanwhile finds at worst an end too much, which is no JSON.
+            text = json.dumps(run).encode()
+            os.pwrite(self._file, text, 0)
+            os.ftruncate(self._file, len(text))
 
     def read(self) -> dict[str, Any]:
         """Return which gateway wrote itself down last."""

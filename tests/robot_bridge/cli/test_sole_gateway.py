@@ -92,15 +92,15 @@ def often(monkeypatch):
     monkeypatch.setattr(singleton_lock, "PING_INTERVAL", 0.1)
 
 
-async def holding(gateway):
+async def holding(gateway, address):
     await gateway.acquire()
-    return asyncio.create_task(gateway.hold())
+    return asyncio.create_task(gateway.hold(Database(address)))
 
 
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
     gateway = SingletonLock(address)
-    hold = await holding(gateway)
+    hold = await holding(gateway, address)
     server.kill()
     await asyncio.sleep(0.5)
     server.start()
@@ -122,7 +122,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address, server, often):
     gateway = SingletonLock(address)
-    hold = await holding(gateway)
+    hold = await holding(gateway, address)
     gateway._lock._connection.connection.driver_connection.close()
     other = {"run": "other", "host": "elsewhere", "process": 7, "since": 0}
     run_once_async = asyncio.to_thread(

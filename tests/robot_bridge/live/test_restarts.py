@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import math
+import shutil
+import sqlite3
 
 import pytest
 
@@ -201,3 +204,38 @@ def test_what_robots_wrote_while_the_gateway_was_away_is_dealt_with(bridge):
     assert (desk.robots["late"]["x"], desk.robots["late"]["stopped"]) == (3.0, True)
     wait_until(lambda: bridge.sql("select count(*) from rr") == [(0,)])
     assert [op for (op,) in bridge.sql("select op from sa order by id")] == ["OpAck", "SetMap", "OpAck"]
+
+
+def test_an_abort_stops_a_robot_though_an_older_copy_of_the_database_was_put_back(bridge, tmp_path):
+    """The ids of that copy's next messages are known to a robot that was there all along."""
+    bridge.start_robot("ws", (20.0, 20.0, 0.0), options=["--speed", "0.5"])
+    desk = watch(bridge)
+    desk.wait_for_robots("ws")
+    older = tmp_path / "older.db"
+    with (
+        contextlib.closing(sqlite3.connect(bridge.file)) as now,
+        contextlib.closing(sqlite3.connect(older)) as then,
+    ):
+        now.backup(then)
+    for y in (20.0, 21.0, 22.0):
+        desk.send(f"target-{y:g}", "ws", "SetPosEnd", x=180.0, y=y)
+        desk.wait_for_step(f"target-{y:g}", "acknowledged")
+    ((sent,),) = bridge.sql("select seq from sqlite_sequence where name = 'sa'")
+    lock = bridge.file.with_name(f"{bridge.file.name}.gateway")
+    wait_until(lambda: json.loads(lock.read_text()).get("newest_message") == sent)
+
+    bridge.kill_gateway()
+    for end in ("-wal", "-shm"):
+        bridge.file.with_name(f"{bridge.file.name}{end}").unlink()
+    shutil.copyfile(older, bridge.file)
+    bridge.start_gateway()
+
+    assert "It counts as another one from now on" in bridge.output()
+    desk = watch(bridge)
+    desk.until(lambda: desk.robots.get("ws", {}).get("v", 0.0) > 0.1 and desk.robots["ws"]["age"] < 1, 20)
+    desk.send("abort-0001", "ws", "Abort")
+    desk.until(lambda: abs(desk.robots["ws"]["v"]) < 0.02)
+    # It is the same database for the next gateway.
+    bridge.kill_gateway()
+    bridge.start_gateway()
+    assert bridge.output().count("It counts as another one from now on") == 1

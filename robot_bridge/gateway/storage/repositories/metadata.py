@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.dialects import postgresql
 
-from ..schema import audit, bridge, commands, observations, robots, trajectories
+from ..schema import audit, bridge, commands, observations, robots, rr, sa, trajectories
 
 # --- Facts about the database itself ---
 
@@ -25,6 +25,22 @@ def database_id(connection: Connection) -> str:
 def known_id(connection: Connection) -> str | None:
     """Return what tells this database from every other, None where no gateway has served it yet."""
     return _known(connection, ID)
+
+
+def renew_id(connection: Connection) -> None:
+    """Have the database count as another one: robots forget the ids of messages, which come again.
+
+    What waited in RR was said to the one before.
+    """
+    connection.execute(delete(rr))
+    connection.execute(delete(bridge).where(bridge.c.name == ID))
+    database_id(connection)
+
+
+def message_count(connection: Connection) -> tuple[str, int]:
+    """Return the id of an SQLite database and that of the newest message it gave out, 0 before the first."""
+    newest = connection.exec_driver_sql(f"select seq from sqlite_sequence where name = '{sa.name}'").scalar()
+    return database_id(connection), newest or 0
 
 
 def fact(connection: Connection, name: str, value: str) -> str:
