@@ -440,7 +440,8 @@ class _Opened(NamedTuple):
     """
 
     path: Path
-    found: tuple[tuple[int, int] | None, ...]
+    found: tuple[tuple[Path, tuple[int, int] | None], ...]
+    """The path of each, and its device and inode; None where there is none."""
 
     @classmethod
     def by(cls, connection: sqlite3.Connection) -> _Opened | None:
@@ -451,19 +452,20 @@ class _Opened(NamedTuple):
             return None
         # The log and its index are made by whoever reads first.
         connection.execute("PRAGMA schema_version").fetchone()
-        return cls(Path(file), tuple(_inode(f"{file}{end}") for end in _BESIDE))
+        paths = [Path(f"{file}{end}") for end in _BESIDE]
+        return cls(paths[0], tuple((path, _inode(path)) for path in paths))
 
-    def missing(self) -> str | None:
+    def missing(self) -> Path | None:
         """Return the path where another file, or none, is by now: what is written next would be lost."""
-        for end, inode in zip(_BESIDE, self.found, strict=True):
-            if inode is not None and _inode(f"{self.path}{end}") != inode:
-                return f"{self.path}{end}"
+        for path, inode in self.found:
+            if inode is not None and _inode(path) != inode:
+                return path
         return None
 
 
-def _inode(path: str) -> tuple[int, int] | None:
+def _inode(path: Path) -> tuple[int, int] | None:
     try:
-        status = Path(path).stat()
+        status = path.stat()
     except OSError:
         return None
     return status.st_dev, status.st_ino
