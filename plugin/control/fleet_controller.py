@@ -232,7 +232,8 @@ class FleetController(QObject):
     def _forget_robots(self) -> None:
         self._rules.forget_targets()
         self.selection.select(None)
-        lost = self.sending.outgoing.withdraw()
+        self.orders.forget_drafts()
+        lost = [*self.target_ways.withdraw(), *self.sending.outgoing.withdraw()]
         if self.drafts.draft is not None:
             lost.append(self.drafts.draft)
         for draft in lost:

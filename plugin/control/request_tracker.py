@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import uuid
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.messages.base import to_json
+from ...robot_bridge.core.messages.base import DESK_REQUESTS, to_json
 from ...robot_bridge.core.messages.commands import AbortAll, Send
 from ...robot_bridge.core.messages.roads import CloseRoad, ClosureReport, OpenRoad, ResolveConflict
 from ...robot_bridge.core.messages.robots import Abort
@@ -59,6 +59,9 @@ class RequestSender(QObject):
 
     def submit(self, request: OperatorRequest) -> None:
         """Send a request; raises NotSentError when it cannot be sent."""
+        if not (request.lasting or _stops(request) or DESK_REQUESTS[request.method].stops):
+            # Its places and robots are those that the operator sees: no other gateway may carry it out.
+            request = replace(request, ground=self._state.ground)
         if self._state.link.phase is ConnectionPhase.CONNECTED:
             self._connection.submit(request)
             return
@@ -144,6 +147,11 @@ class RequestTracker(QObject):
 
     def __len__(self) -> int:
         return len(self._pending)
+
+    def forget_drafts(self) -> None:
+        """Bring no draft back that was sent before: its places are another site's."""
+        for pending in self._pending.values():
+            pending.draft = None
 
     def send(self, draft: PendingCommand) -> str:
         """Send a draft and return the command's id.

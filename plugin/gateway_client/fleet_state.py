@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
@@ -29,13 +29,33 @@ from .robot_states import RobotStates, RobotTable, RobotView
 # --- What the operator asked for, and what became of it ---
 
 
+class RequestGround(NamedTuple):
+    """What the places and names in a request are of: the frame of a site, and the gateway's database."""
+
+    crs: str
+    origin: tuple[float, float]
+    rotation: float
+    database: str
+
+    @classmethod
+    def of(cls, site: SiteReport, database: str) -> RequestGround:
+        """Return the ground of a gateway that serves ``site``; an older one names no database."""
+        return cls(site.crs, tuple(site.origin), site.rotation, database)
+
+    def is_same(self, other: RequestGround) -> bool:
+        """Tell whether the same numbers are the same place, and the same names the same robots."""
+        is_same_fleet = not (self.database and other.database) or self.database == other.database
+        return is_same_fleet and self[:-1] == other[:-1]
+
+
 @dataclass(frozen=True)
 class OperatorRequest:
     """One thing that the operator asked for, with one button pressed once.
 
     ``key`` stays the same however often the order has to be repeated; for ``send`` it is the command's id,
     which lets the gateway recognise a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is
-    for what is right however late it comes, as an emergency stop is.
+    for what is right however late it comes, as an emergency stop is. ``ground`` is what the window knew of
+    the gateway when it was asked; None for what is right at every gateway.
     """
 
     key: str
@@ -43,6 +63,7 @@ class OperatorRequest:
     params: dict[str, Any] = field(default_factory=dict)
     requested_at: float = 0.0
     lasting: bool = False
+    ground: RequestGround | None = None
 
 
 @dataclass(frozen=True)
@@ -259,6 +280,11 @@ class FleetState(QObject):
     def url(self) -> str:
         """The address of the gateway whose reports these are; empty before the first."""
         return self._url
+
+    @property
+    def ground(self) -> RequestGround | None:
+        """What places and names are of that the window shows; None before the first gateway said so."""
+        return None if self.site is None else RequestGround.of(self.site, self._database)
 
     def start(self, url: str) -> None:
         """Collect from now on what the gateway at ``url`` reports.

@@ -22,7 +22,7 @@ from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in
 from .connection_status import DEFAULT_URL, MISREAD, misunderstood
-from .fleet_state import OperatorRequest, RequestResult, UpdateBuffer
+from .fleet_state import OperatorRequest, RequestGround, RequestResult, UpdateBuffer
 from .report_caches import observations_in, placements_in, plan_in, plans_in, queues_in
 from .robot_rows import table_from_rows
 
@@ -69,6 +69,8 @@ class RequestOutbox:
 
     A robot must not drive off because of something that was asked for long ago: an order older than
     ``repeat_within`` seconds is not repeated but handed back as not known to have arrived, unless it lasts.
+    Nor must it drive to the numbers of another site's frame: what was asked for on another ground is handed
+    back as well.
     """
 
     def __init__(self, repeat_within: float = REPEAT_WITHIN):
@@ -77,6 +79,9 @@ class RequestOutbox:
 
     def __len__(self) -> int:
         return len(self._waiting)
+
+    def __contains__(self, key: str) -> bool:
+        return key in self._waiting
 
     def add(self, order: OperatorRequest) -> bool:
         """Keep ``order`` until it is answered; false when the same order waits already."""
@@ -97,6 +102,13 @@ class RequestOutbox:
             del self._waiting[order.key]
         return list(self._waiting.values()), too_old
 
+    def without_ground(self, ground: RequestGround) -> list[OperatorRequest]:
+        """Take out the orders that were asked for on another ground than ``ground``, and return them."""
+        strange = [one for one in self._waiting.values() if not _holds_on(one, ground)]
+        for order in strange:
+            del self._waiting[order.key]
+        return strange
+
     def largest(self) -> tuple[OperatorRequest | None, int]:
         """Take out the largest order that still waits, and return it with its bytes; a stop is never it."""
         sizes = {key: len(json.dumps(one.params)) for key, one in self._waiting.items() if not one.lasting}
@@ -110,6 +122,10 @@ class RequestOutbox:
         left = list(self._waiting.values())
         self._waiting.clear()
         return left
+
+
+def _holds_on(order: OperatorRequest, ground: RequestGround) -> bool:
+    return order.ground is None or order.ground.is_same(ground)
 
 
 class GatewayProtocol:
@@ -139,6 +155,8 @@ class GatewayProtocol:
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
         self._pending: dict[int, OperatorRequest] = {}
+        self._ground: RequestGround | None = None
+        """What places and names are of at the gateway; None as long as none has greeted."""
         self._view: dict[str, Any] | None = None
         """The view that the window wants to be told of, None for every robot."""
         self._knows_views = False
@@ -170,7 +188,9 @@ class GatewayProtocol:
             return [self._subscription()] if self.ready and self._knows_views else []
         if not self._outbox.add(order) or not self.ready:
             return []
-        return [self._request(order)]
+        # The window may not know yet which gateway has greeted since it last looked.
+        self._hand_back_strange()
+        return [self._request(order)] if order.key in self._outbox else []
 
     def end_link(self) -> None:
         """Send nothing until the next link has been greeted."""
@@ -186,6 +206,11 @@ class GatewayProtocol:
                 size=-(-size // 1000),
             )
             self._buffer.add_answer(RequestResult(order, error=text))
+
+    def _hand_back_strange(self) -> None:
+        """Hand back what was asked for on another ground than the gateway's: its places are others here."""
+        for order in self._outbox.without_ground(self._ground):
+            self._buffer.add_answer(RequestResult(order, error=_other_ground()))
 
     def end(self) -> None:
         """Hand back every order that was not answered: nobody will ask for an answer any more."""
@@ -233,7 +258,9 @@ class GatewayProtocol:
         if method == "positions":
             self._buffer.add(robots=table_from_rows(params["robots"], self._clock.steady(), params))
         elif method == "site":
-            self._buffer.add(site=checked_site(administration.site_report(params)))
+            site = checked_site(administration.site_report(params))
+            self._ground = RequestGround.of(site, self._database)
+            self._buffer.add(site=site)
         elif method == "gateways":
             self._learn(params["gateways"])
         elif method in NEWEST_COUNTS:
@@ -307,12 +334,15 @@ class GatewayProtocol:
         self._learn(result.get("gateways"))
         if result.get("gateway"):
             self.names[self._url] = one_line(str(result["gateway"]), LONGEST_OPERATOR)
-        self._buffer.add(site=checked_site(administration.site_report(result["site"])), greeting_of=database)
+        site = checked_site(administration.site_report(result["site"]))
+        self._ground = RequestGround.of(site, database)
+        self._buffer.add(site=site, greeting_of=database)
         self.operator, self.role = (str(result.get(name) or "") for name in ("operator", "role"))
         if "emergency" in result:
             self._buffer.add(emergency=safety.emergency_report(result["emergency"]))
         self._choose_view(result)
         self.ready = True
+        self._hand_back_strange()
         orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
             self._buffer.add_answer(
@@ -419,6 +449,14 @@ def _code(message: dict[str, Any]) -> Any:
 def _found(message: dict[str, Any]) -> tuple[str, ...]:
     """Return what speaks against a request that can be overridden."""
     return tuple(str(text) for text in message["error"]["data"]["found"])
+
+
+def _other_ground() -> str:
+    return tr(
+        "Another site, or another fleet, is served now than when this was asked for, and the same numbers "
+        "are other places there: it was not sent to it. Look at the map, and ask for it again if it is still "
+        "needed."
+    )
 
 
 def _too_old(age: float) -> str:

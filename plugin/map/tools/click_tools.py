@@ -219,6 +219,8 @@ class ClosureTool(QgsMapTool):
     def _ask_to_close(self, place: Point, reach: float) -> None:
         dialog = ClosureDialog(self._window)
         dialog.confirmed.connect(lambda why, seconds: self._desk.close_road(place, reach, why, seconds))
+        # The place is another one on another site.
+        self._desk.state.forgotten.connect(dialog.reject)
         dialog.open()
 
     def _ask_to_open(self, closure: ClosureReport) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from contextlib import suppress
 
 import numpy as np
 from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY, QgsWkbTypes
@@ -19,6 +20,7 @@ from ...control.fleet_controller import FleetController
 from ...control.messages import SELECTION, Level
 from ...control.pending_command import CONE, START, PendingCommand, Point
 from ...control.route_queries import SHORTEST, RoutePreferences, RouteQuestion, route_in_words
+from ...layers.site_transform import SiteToMapTransform
 from ...ui.errors import FleetError, MapTransformError, NotSentError
 from ...ui.language import tr
 
@@ -424,6 +426,18 @@ class StartTool(DrawingTool):
 
     kind = START
 
+    def __init__(self, desk: FleetController):
+        super().__init__(desk)
+        self._begun: tuple[SiteToMapTransform, Point] | None = None
+        """Where the mouse went down: the map may move, as it does after robots, before it comes up again."""
+
+    def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
+        super().canvasPressEvent(event)
+        self._begun = None
+        with suppress(MapTransformError):
+            placement = self.desk.site_to_canvas.transform()
+            self._begun = placement, placement.to_site(self.toMapCoordinates(event.pos()))
+
     def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
         pressed = self._pressed_at
         if (
@@ -434,7 +448,7 @@ class StartTool(DrawingTool):
             super().canvasReleaseEvent(event)
             return
         self._pressed_at = None
-        self._try(lambda: self._drawn(self.toMapCoordinates(pressed), event.mapPoint()))
+        self._try(lambda: self._drawn(pressed, event.mapPoint()))
 
     def clicked(self, point: Point) -> None:
         self._put(point, None)
@@ -446,10 +460,16 @@ class StartTool(DrawingTool):
         self._try(lambda: self._put(moved_by_arrow(event, self.desk, draft.points[0]), draft.theta))
         return True
 
-    def _drawn(self, start: QgsPointXY, end: QgsPointXY) -> None:
+    def _drawn(self, pressed: QPoint, end: QgsPointXY) -> None:
         self._check_robot()
         placement = self.desk.site_to_canvas.transform()
-        place, ahead = placement.to_site(start), placement.to_site(end)
+        # Where it is not known, this says why.
+        begun = self._begun or (placement, placement.to_site(self.toMapCoordinates(pressed)))
+        if begun[0] is not placement:
+            raise FleetError(
+                tr("The site or the map's CRS has changed meanwhile. Draw the start position again.")
+            )
+        place, ahead = begun[1], placement.to_site(end)
         self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
     def _put(self, place: Point, theta: float | None) -> None:

@@ -153,6 +153,10 @@ class RouteDrag:
         self.give_up()
         return shown
 
+    def drop(self) -> None:
+        """Let go of a route that is not on the map any more: nothing of it comes back."""
+        self._from = self._shown = None
+
     def give_up(self) -> None:
         """Let go and show the route as it was."""
         before, moved = self._from, self._shown
@@ -319,6 +323,10 @@ class RouteTool(DrawingTool):
     def _changed(self) -> None:
         # Where only a check has come to its end, the vertex stays in hand.
         draft = self.draft
+        if draft is None and self._drag.holds:
+            # It was sent, or its site is not served any more: its numbers are other places on another one.
+            self._drag.drop()
+            self._pressed_at = None
         if draft is None or draft.points is not self._points:
             self._let_go()
         if draft is None or len(draft.points) < LEAST_POINTS:

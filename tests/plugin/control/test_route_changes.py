@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
+from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from qgis.PyQt.QtCore import QEvent, Qt
 from qgis.PyQt.QtGui import QKeyEvent
 from qgis.PyQt.QtTest import QTest
@@ -33,6 +36,16 @@ def test_a_vertex_is_dragged_and_the_route_goes_through_it(route):
 def test_a_leg_is_dragged_and_gets_a_vertex_there(route):
     route.drag((60, 45), (75, 45))
     assert list(route.points) == like((40, 30), (60, 30), (75, 45), (60, 60))
+
+
+def test_a_route_that_is_dragged_does_not_come_back_on_another_site(route, site, iface):
+    route.drag((60, 30), (70, 25), let_go=False)
+    route.gateway.tell("site", to_json(replace(site, origin=(488100.0, 5190000.0))))
+    route.wait(lambda: route.drafts.draft is None, what="the news of the other site")
+    left, none = Qt.MouseButton.LeftButton, Qt.KeyboardModifier.NoModifier
+    route._move(iface.pixel(75, 25), left)
+    QTest.mouseRelease(iface.canvas.viewport(), left, none, iface.pixel(75, 25))
+    assert route.drafts.draft is None
 
 
 def test_a_right_click_ends_drawing_and_another_click_goes_on_from_there(route):

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 
 import pytest
+from qgis.core import QgsCoordinateReferenceSystem
 from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtTest import QTest
 
-CTRL = Qt.KeyboardModifier.ControlModifier
+CTRL, NONE = Qt.KeyboardModifier.ControlModifier, Qt.KeyboardModifier.NoModifier
 
 
 @pytest.fixture
@@ -34,6 +36,28 @@ def test_a_drag_gives_the_heading_and_sends_nothing(start):
     start.key(Qt.Key.Key_Left, CTRL)
     start.key(Qt.Key.Key_Return)
     assert start.sent()["params"]["theta"] == pytest.approx(3 * math.pi / 4, abs=0.05)
+
+
+def pressed_and_let_go(start, meanwhile):
+    """Drag from (50, 50) towards the right, and do something before the mouse button comes up."""
+    start.drag((50, 50), (70, 50), let_go=False)
+    at = start.iface.pixel(70, 50)
+    meanwhile()
+    QTest.mouseRelease(start.iface.canvas.viewport(), Qt.MouseButton.LeftButton, NONE, at)
+    start.wait(start.iface.is_settled, what="the check of the draft")
+
+
+def test_a_start_position_stays_where_the_mouse_went_down_though_the_map_moves_after_a_robot(start):
+    pressed_and_let_go(start, lambda: start.iface.look_at(30, 0, 150, 100))
+    assert start.points == (pytest.approx((50, 50), abs=0.3),)
+    assert start.drafts.draft.theta == pytest.approx(0.0, abs=0.05)
+
+
+def test_a_drag_over_two_maps_is_no_start_position(start):
+    other = QgsCoordinateReferenceSystem("EPSG:3857")
+    pressed_and_let_go(start, lambda: start.iface.canvas.setDestinationCrs(other))
+    assert start.points is None
+    assert start.complained("the map's CRS has changed meanwhile")
 
 
 def test_a_start_position_may_be_where_a_robot_may_not_go_but_not_outside_the_site(start, layer_of, iface):

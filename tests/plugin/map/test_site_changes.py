@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.robot_bridge.core.messages.base import to_json
+from qgis.PyQt import sip
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QLabel
+from qgis.PyQt.QtWidgets import QDialog, QLabel
+
+from tests.support.patience import BUSY
 
 
 @pytest.fixture
@@ -105,3 +109,106 @@ def test_a_gateway_that_does_not_serve_what_was_chosen_is_named_until_it_does(at
     assert began == [text] and over == []
     tell(gateway, site, wait, at_desk)
     assert over == [text]
+
+
+# --- What is on its way when the gateway is started again where the same numbers are other places
+
+ELSEWHERE = (488100.0, 5190000.0)
+
+
+def start_elsewhere(gateway, wait, window, **how):
+    """Have the gateway killed and started again where the same numbers are other places."""
+    gateway.stop()
+    wait(lambda: window.desk.state.link.phase.value == "retrying", what="the loss of the link")
+    gateway.site, known = replace(gateway.site, **how), window.desk.state.robots.generation
+    gateway.start()
+    wait(lambda: window.desk.state.link.phase.value == "connected", 10, "the link")
+    wait(lambda: window.desk.state.robots.generation != known, what="the news of other robots")
+
+
+def send_unanswered(drawn, gateway, wait):
+    gateway.mute.add("send")
+    drawn.desk.sending.send()
+    wait(lambda: gateway.requests_of("send"), what="the command")
+
+
+@pytest.mark.parametrize("how", ["frame", "database"])
+def test_a_target_that_was_not_answered_goes_to_no_other_site_or_fleet(drawn, gateway, wait, iface, how):
+    if how == "database":
+        gateway.database = "one"
+        gateway.stop()
+        wait(lambda: drawn.desk.state.link.phase.value == "retrying", what="the loss of the link")
+        gateway.start()
+        wait(lambda: drawn.desk.state.link.phase.value == "connected", 10, "the link")
+        gateway.database = "two"
+    send_unanswered(drawn, gateway, wait)
+    start_elsewhere(gateway, wait, drawn, **({"origin": ELSEWHERE} if how == "frame" else {}))
+    wait(lambda: any("other places there: it was not sent to it" in text for text in iface.texts()))
+    # It is asked after the link: what would be repeated has been by then.
+    drawn.desk.abort_selected()
+    drawn.desk.abort_all()
+    wait(lambda: gateway.requests_of("abort_all"), what="the abort")
+    assert len(gateway.requests_of("send")) == 1
+    assert drawn.desk.drafts.draft is None
+
+
+def test_it_is_repeated_at_the_same_site_and_comes_back_to_the_map_where_it_is_refused(drawn, gateway, wait):
+    send_unanswered(drawn, gateway, wait)
+    gateway.stop()
+    wait(lambda: drawn.desk.state.link.phase.value == "retrying", what="the loss of the link")
+    gateway.mute.clear()
+    gateway.refuse["send"] = "it rains"
+    gateway.start()
+    wait(lambda: drawn.desk.drafts.draft is not None, 10, "the draft that comes back")
+    assert len(gateway.requests_of("send")) == 2
+
+
+def test_what_is_pressed_before_the_window_knows_of_the_other_site_is_not_sent(drawn, gateway, wait):
+    desk, greeted = drawn.desk, gateway.subscriptions
+    # A window that stands still: it looks at nothing that comes in.
+    desk.state._timer.stop()
+    gateway.stop()
+    gateway.site = replace(gateway.site, origin=ELSEWHERE)
+    gateway.start()
+    began = time.monotonic()
+    while gateway.subscriptions == greeted:
+        assert time.monotonic() - began < 10 * BUSY
+        time.sleep(0.02)
+    assert desk.state.site.origin != ELSEWHERE and desk.state.link.phase.value == "connected"
+    desk.sending.send()
+    # What stops is right wherever it comes to.
+    desk.emergency_stop()
+    wait(lambda: gateway.requests_of("emergency_stop"), what="the stop")
+    assert gateway.requests_of("send") == []
+    desk.state.pull()
+    assert desk.drafts.draft is None
+
+
+def test_a_target_whose_way_is_sought_goes_out_to_no_other_site(at_desk, gateway, site, wait, iface):
+    tell(gateway, replace(site, roads=True), wait, at_desk)
+    gateway.mute.add("get_route")
+    gateway.show(replace(gateway.robots["r1"], paths="cones"))
+    desk = at_desk.desk
+    wait(lambda: desk.state.report_of("r1").paths, what="what r1 takes")
+    desk.selection.select("r1")
+    at_desk.actions.cone.trigger()
+    iface.click(70, 55)
+    desk.sending.send()
+    desk.selection.select("r2")
+    iface.click(30, 30)
+    assert len(desk.target_ways._beside) == 1
+    tell(gateway, replace(site, roads=True, origin=ELSEWHERE), wait, at_desk)
+    assert not desk.target_ways._beside and desk.drafts.draft is None
+    assert [text for text in iface.texts() if "r1" in text and "another site is served now" in text]
+
+
+def test_a_road_is_not_closed_on_another_site_than_it_was_clicked_on(at_desk, gateway, site, wait, iface):
+    at_desk.actions.closures.trigger()
+    iface.click(70, 55)
+    dialog = iface.findChild(QDialog, "fleet_closure_dialog")
+    assert dialog.isVisible()
+    tell(gateway, replace(site, version="2"), wait, at_desk)
+    assert dialog.isVisible()
+    tell(gateway, replace(site, origin=ELSEWHERE), wait, at_desk)
+    wait(lambda: sip.isdeleted(dialog) or not dialog.isVisible(), what="the end of the question")
+    assert gateway.requests_of("close_road") == []
