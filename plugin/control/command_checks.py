@@ -8,7 +8,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import numpy.typing as npt
-from qgis.core import QgsProject, QgsVectorLayer, QgsWkbTypes
+from qgis.core import QgsMapLayer, QgsProject, QgsVectorLayer, QgsWkbTypes
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.geometry import pairs_between
@@ -22,7 +22,7 @@ from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import RobotView
 from ..gateway_client.state_words import ROBOT_STATES
-from ..layers.layer_source import LayerWatch
+from ..layers.layer_source import LayerWatch, is_readable
 from ..layers.roles import layers_with_role
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.language import age_in_words, tr
@@ -95,6 +95,8 @@ class LayerCheck(QObject):
         )
         self._kept: dict[Check, Found] = {}
         self._kept_for: tuple[Any, ...] = ()
+        self._unreadable: set[str] = set()
+        """Layers, by their ids, that are valid and cannot be read."""
         self._watch = LayerWatch(self)
         self._watch.changed.connect(self._forget)
 
@@ -121,11 +123,11 @@ class LayerCheck(QObject):
         self._kept_for = looked_at
         for of_one in layers.values():
             self._watch.watch(of_one)
-        findings = self._unseen()
+        findings = Findings()
         for number, check in enumerate(self._checks):
             work = self._look_by(check, layers[check], draft, placement)
             findings += yield from scaled_progress(work, number, len(self._checks))
-        return findings
+        return self._unseen() + findings
 
     def _look_by(
         self,
@@ -149,6 +151,10 @@ class LayerCheck(QObject):
             )
             for place, found in hits.items():
                 new[missing[place]] += found
+            self._unreadable.discard(layer.id())
+            if not hits and not is_readable(layer, layer.featureCount(), *_origin(layer)):
+                self._unreadable.add(layer.id())
+            yield 0.0
         found_for: list[tuple[CheckedPath, list[Any]]] = []
         still_needed: Found = {}
         for number, track in enumerate(tracks):
@@ -174,17 +180,24 @@ class LayerCheck(QObject):
                     ),
                 )
             )
-        return Findings(
-            overridable=tuple(
-                tr(
-                    "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
-                    "source, or take its role away.",
-                    layer=layer.name(),
-                )
-                for layer in layers
-                if not layer.isValid()
+        return Findings(overridable=tuple(text for layer in layers if (text := self._why_unseen(layer))))
+
+    def _why_unseen(self, layer: QgsMapLayer) -> str:
+        """Return why nobody can tell what of a layer is in a draft's way; empty where it can be told."""
+        if not layer.isValid() or layer.id() in self._unreadable:
+            return tr(
+                "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
+                "source, or take its role away.",
+                layer=layer.name(),
             )
-        )
+        if layer.isSpatial() and not layer.crs().isValid():
+            # QGIS draws it by its numbers in whatever CRS the map has.
+            return tr(
+                "The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer > "
+                "Set CRS of Layer), or take its role away.",
+                layer=layer.name(),
+            )
+        return ""
 
     def _layers(self, check: Check) -> list[QgsVectorLayer]:
         return [
@@ -239,6 +252,11 @@ def _name(hit: Any) -> Any:
     if isinstance(hit, str):
         return hit
     return hit[0] if isinstance(hit[0], str) else object()
+
+
+def _origin(layer: QgsVectorLayer) -> tuple[str, str]:
+    """Return by what a layer is opened once more; by nothing where it has changes that are not saved."""
+    return layer.providerType(), "" if layer.isEditable() else layer.source()
 
 
 def _has_areas(layer: QgsVectorLayer) -> bool:

@@ -62,6 +62,7 @@ class ObstacleSource:
     uri: str = ""
 
 
+LayerFeatureSource = QgsAbstractFeatureSource | QgsVectorLayer
 Setups = Callable[[QgsVectorLayer], LayerSetup]
 """Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
 
@@ -151,6 +152,42 @@ def _unique(names: Sequence[str]) -> list[str]:
         taken.add(candidate)
         unique.append(candidate)
     return unique
+
+
+# --- Whether a layer can still be read: QGIS keeps one as it was opened, and tells of no file that is gone
+
+
+def is_readable(features: LayerFeatureSource, count: int, provider: str, uri: str) -> bool:
+    """Tell whether ``features`` of a layer that counts so many can be read; from any thread.
+
+    A layer whose file or database is gone, or damaged, since it was opened is valid, has its count, and reads
+    as an empty one. Where it gives no feature it is opened once more by ``uri``, of which there is none for a
+    layer with changes that are not saved.
+    """
+    request = QgsFeatureRequest().setLimit(1).setFlags(QgsFeatureRequest.Flag.NoGeometry).setNoAttributes()
+    if count == 0 or any(True for _ in features.getFeatures(request)):
+        return True
+    if not uri:
+        return count < 0
+    options = QgsVectorLayer.LayerOptions()
+    options.loadDefaultStyle = False
+    layer = QgsVectorLayer(uri, "", provider, options)
+    # One that was emptied by another program since then has nothing to be read, and says so.
+    return layer.isValid() and layer.featureCount() <= 0
+
+
+def check_readable(source: ObstacleSource) -> None:
+    """Raise :class:`LayerTypeError` where ``source`` cannot be read: what was read of it may be a part."""
+    if not is_readable(source.features, source.count, source.provider, source.uri):
+        raise LayerTypeError(
+            tr(
+                "The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its "
+                "file or database was moved, damaged or cut off since the project was opened. Bring it back, "
+                "or repair the layer's data source, and open the project again.",
+                name=source.name,
+                count=max(source.count, 0),
+            )
+        )
 
 
 # --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---

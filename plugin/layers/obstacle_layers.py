@@ -29,7 +29,7 @@ from .geometry import (
     shapes_of,
 )
 from .layer_expressions import UNKNOWN, FeatureFilter, FeatureValues, LayerRules, Memory, ObstacleValues
-from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, without_geometry
+from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, check_readable, without_geometry
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
 
@@ -477,7 +477,11 @@ class _LayerReader:
         yield from self._batch.outlines()
 
     def finish(self) -> None:
-        """Add the warnings that are about the layer as a whole."""
+        """Add the warnings that are about the layer as a whole.
+
+        :raises LayerTypeError: when it cannot be read any more.
+        """
+        check_readable(self.source)
         name, role = self.source.name, self.source.role
         for warning in self._rules.warnings:
             self._warnings.add_text(warning)

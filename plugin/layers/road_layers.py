@@ -36,7 +36,14 @@ from .geometry import (
     shapes_of,
 )
 from .layer_expressions import UNKNOWN, FeatureFilter, LayerRules, Memory, Rule, as_flag, as_metres
-from .layer_source import FeatureReader, FeatureRow, FeatureWarnings, ObstacleSource, SomeFeatures
+from .layer_source import (
+    FeatureReader,
+    FeatureRow,
+    FeatureWarnings,
+    ObstacleSource,
+    SomeFeatures,
+    check_readable,
+)
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_transform import LayerToSiteTransform, SiteGeoreference
 
@@ -502,6 +509,8 @@ class _GroundLayer:
                 self.rules.at(row.feature)
             yield row
         reading.complete = reading.complete and reader.complete
+        if reader.complete:
+            check_readable(source)
 
     def features(
         self, reading: GroundReading, feedback: QgsFeedback

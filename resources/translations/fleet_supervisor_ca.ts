@@ -1078,6 +1078,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer &gt; Set CRS of Layer), or take its role away.</source>
+            <translation>La capa {layer} no té SRC, així que ningú no sap en quin lloc del recinte és. Definiu-lo (Capa &gt; Defineix el SRC de la capa) o traieu-li el paper.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
         </message>
@@ -1954,6 +1959,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>Another site, or another fleet, is served now than when this was asked for, and the same numbers are other places there: it was not sent to it. Look at the map, and ask for it again if it is still needed.</source>
+            <translation>Ara se serveix un altre recinte, o una altra flota, que quan es va demanar això, i els mateixos nombres hi són altres llocs: no s'hi ha enviat. Mireu el mapa i torneu-ho a demanar si encara cal.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>Cap operador no es pot connectar a {url}: el que hi respon no coneix cap consola, com tampoc l'adreça dels robots. La consola d'una passarel·la té el camí /desk, com a {default_url}. Corregiu l'URL i premeu Connecta.</translation>
         </message>
@@ -2421,6 +2431,11 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>La capa {name} ja no es pot llegir: dels seus elements ({count}) el QGIS no n'obté cap. El seu fitxer o la seva base de dades s'ha mogut, s'ha malmès o ha quedat inaccessible des que es va obrir el projecte. Recupereu-lo, o repareu l'origen de dades de la capa, i torneu a obrir el projecte.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3442,6 +3457,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>The site or the map's CRS has changed meanwhile. Draw the start position again.</source>
+            <translation>Mentrestant ha canviat el recinte o el SRC del mapa. Torneu a dibuixar la posició inicial.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>No hi ha res a refer.</translation>
         </message>
@@ -4320,6 +4340,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
+            <source>Commands</source>
+            <translation>Ordres</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log.py" />
             <source>Export commands</source>
             <translation>Exporta les ordres</translation>
         </message>
@@ -4736,11 +4761,6 @@
             <location filename="../../plugin/panel/connection_panel.py" />
             <source>the site's ca.pem; empty for public authorities</source>
             <translation>el ca.pem del recinte; buit per a autoritats públiques</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/dock.py" />
-            <source>Commands</source>
-            <translation>Ordres</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/dock.py" />

@@ -1078,6 +1078,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer &gt; Set CRS of Layer), or take its role away.</source>
+            <translation>La capa {layer} no tiene SRC, así que nadie sabe en qué lugar del recinto está. Defínalo (Capa &gt; Establecer SRC de la capa) o quítele el papel.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
         </message>
@@ -1954,6 +1959,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>Another site, or another fleet, is served now than when this was asked for, and the same numbers are other places there: it was not sent to it. Look at the map, and ask for it again if it is still needed.</source>
+            <translation>Ahora se sirve otro recinto, u otra flota, que cuando se pidió esto, y los mismos números son allí otros lugares: no se envió allí. Mire el mapa y vuelva a pedirlo si aún hace falta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>Ningún operador puede conectarse a {url}: lo que responde allí no conoce ninguna consola, como tampoco la dirección de los robots. La consola de una pasarela tiene la ruta /desk, como en {default_url}. Corrija la URL y pulse Conectar.</translation>
         </message>
@@ -2421,6 +2431,11 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>La capa {name} ya no se puede leer: de sus objetos ({count}) QGIS no obtiene ninguno. Su archivo o su base de datos se movió, se dañó o quedó inaccesible desde que se abrió el proyecto. Recupérelo, o repare el origen de datos de la capa, y vuelva a abrir el proyecto.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3442,6 +3457,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>The site or the map's CRS has changed meanwhile. Draw the start position again.</source>
+            <translation>Mientras tanto ha cambiado el recinto o el SRC del mapa. Dibuje de nuevo la posición inicial.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>No hay nada que rehacer.</translation>
         </message>
@@ -4320,6 +4340,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
+            <source>Commands</source>
+            <translation>Órdenes</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log.py" />
             <source>Export commands</source>
             <translation>Exportar órdenes</translation>
         </message>
@@ -4736,11 +4761,6 @@
             <location filename="../../plugin/panel/connection_panel.py" />
             <source>the site's ca.pem; empty for public authorities</source>
             <translation>el ca.pem del recinto; vacío para autoridades públicas</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/dock.py" />
-            <source>Commands</source>
-            <translation>Órdenes</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/dock.py" />

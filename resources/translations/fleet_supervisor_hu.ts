@@ -1072,6 +1072,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer &gt; Set CRS of Layer), or take its role away.</source>
+            <translation>A(z) {layer} rétegnek nincs vetülete, ezért senki sem tudja, hol fekszik a telephelyen. Állítsa be (Réteg &gt; Réteg vetületének beállítása), vagy vegye el a szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
         </message>
@@ -1946,6 +1951,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/protocol.py" />
+            <source>Another site, or another fleet, is served now than when this was asked for, and the same numbers are other places there: it was not sent to it. Look at the map, and ask for it again if it is still needed.</source>
+            <translation>Már másik telephely vagy másik flotta van szolgáltatva, mint amikor ezt kérték, és ugyanazok a számok ott más helyek: oda nem lett elküldve. Nézze meg a térképet, és kérje újra, ha még szükség van rá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/protocol.py" />
             <source>No operator can connect at {url}: what answers there knows no desk, as the address of robots does not. A gateway's desk has the path /desk, as in {default_url}. Correct the URL, then press Connect.</source>
             <translation>A(z) {url} címen kezelő nem kapcsolódhat: ami ott válaszol, nem ismer kezelőpultot, ahogy a robotok címe sem. Az átjáró kezelőpultjának útvonala /desk, mint itt: {default_url}. Javítsa az URL-t, majd nyomja meg a Kapcsolódás gombot.</translation>
         </message>
@@ -2411,6 +2421,11 @@
             <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>A(z) {name} réteg már nem olvasható: az elemei ({count}) közül a QGIS egyet sem kap meg. A fájlját vagy adatbázisát a projekt megnyitása óta áthelyezték, megsérült, vagy nem érhető el. Hozza vissza, vagy javítsa ki a réteg adatforrását, és nyissa meg újra a projektet.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -3421,6 +3436,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/tools/drawing_tools.py" />
+            <source>The site or the map's CRS has changed meanwhile. Draw the start position again.</source>
+            <translation>A telephely vagy a térkép vetülete közben megváltozott. Rajzolja meg újra a kiinduló helyzetet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/tools/drawing_tools.py" />
             <source>There is nothing to do again.</source>
             <translation>Nincs mit megismételni.</translation>
         </message>
@@ -4293,6 +4313,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/command_log.py" />
+            <source>Commands</source>
+            <translation>Parancsok</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_log.py" />
             <source>Export commands</source>
             <translation>Parancsok exportálása</translation>
         </message>
@@ -4709,11 +4734,6 @@
             <location filename="../../plugin/panel/connection_panel.py" />
             <source>the site's ca.pem; empty for public authorities</source>
             <translation>a telephely ca.pem fájlja; üres: nyilvános kiállítók</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/dock.py" />
-            <source>Commands</source>
-            <translation>Parancsok</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/dock.py" />

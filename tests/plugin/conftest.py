@@ -20,12 +20,14 @@ from fleet_supervisor.robot_bridge.core.messages.positions import RobotReport
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, RobotState
 from qgis.core import (
     QgsCoordinateReferenceSystem,
+    QgsCoordinateTransformContext,
     QgsFeature,
     QgsGeometry,
     QgsLocator,
     QgsProject,
     QgsRectangle,
     QgsSettings,
+    QgsVectorFileWriter,
     QgsVectorLayer,
 )
 from qgis.gui import QgsGui, QgsMapCanvas, QgsMapToolPan, QgsMessageBar
@@ -449,3 +451,22 @@ def memory_layer(name="walls", kind="LineString", fields=HEIGHT, features=(), cr
 def make_layer(qgis_app):
     """Make a layer in memory of what QGIS calls it: a type, fields, and WKT with values."""
     return memory_layer
+
+
+@pytest.fixture
+def save_layer(tmp_path):
+    """Write a layer into a file, and open that: ``save_layer(layer, "walls.gpkg")``."""
+
+    def save(layer: QgsVectorLayer, name: str) -> QgsVectorLayer:
+        file = tmp_path / name
+        options = QgsVectorFileWriter.SaveVectorOptions()
+        options.driverName = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".shp": "ESRI Shapefile"}[file.suffix]
+        options.layerName = file.stem
+        transforms = QgsCoordinateTransformContext()
+        failed = QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(file), transforms, options)
+        assert not failed[0], failed
+        made = QgsVectorLayer(str(file), layer.name(), "ogr")
+        assert made.isValid()
+        return made
+
+    return save

@@ -37,6 +37,41 @@ def test_a_target_on_an_obstacle_is_refused_and_the_feature_named(cone, layer_of
     assert "Not to be sent" not in cone.draft_text
 
 
+@pytest.mark.parametrize("role", ["keepout", "obstacle", "road_surface"])
+@pytest.mark.parametrize("name", ["bays.gpkg", "bays.geojson"])
+def test_a_layer_whose_file_goes_while_it_is_open_keeps_the_draft_here(
+    cone, layer_of, save_layer, tmp_path, role, name
+):
+    drawn = layer_of("Polygon", SQUARE)
+    layer = save_layer(drawn, name)
+    layer.setName("Bays")
+    layer.setCustomProperty("fleet/role", role)
+    QgsProject.instance().removeMapLayer(drawn.id())
+    QgsProject.instance().addMapLayer(layer)
+    (tmp_path / name).rename(tmp_path / "elsewhere")
+    assert layer.isValid() and layer.featureCount() == 1
+    cone.click((20, 20))
+    assert cone.complained("The layer Bays cannot be read, so what is in it was not looked at.")
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    (tmp_path / "elsewhere").rename(tmp_path / name)
+    cone.click((30, 20))
+    assert "cannot be read" not in cone.draft_text
+
+
+def test_a_layer_without_a_crs_keeps_the_draft_here_wherever_the_map_draws_it(cone, layer_of):
+    layer = layer_of("Polygon", SQUARE, crs="", role="keepout", name="Bays")
+    assert not layer.crs().isValid()
+    # In metres of the site, as surveys come: what is in it lies where nothing is looked for.
+    cone.click((70, 55))
+    assert cone.complained("The layer Bays has no CRS, so nobody knows where on the site it lies.")
+    cone.key(Qt.Key.Key_Return)
+    assert cone.nothing_sent()
+    layer.setCrs(QgsCoordinateReferenceSystem("EPSG:32633"))
+    cone.click((20, 20))
+    assert "has no CRS" not in cone.draft_text
+
+
 def test_where_no_layer_has_a_role_it_is_said_that_nobody_has_looked(cone, layer_of):
     cone.click((70, 55))
     assert "No layer of the project says where obstacles and keepouts are" in cone.draft_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from osgeo import ogr, osr
-from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingException, QgsProject
+from qgis.core import QgsCoordinateReferenceSystem, QgsProcessingException, QgsProject, QgsVectorLayer
 
 WALL = "LineString(0 5, 50 5)"
 
@@ -71,6 +71,32 @@ def test_an_unknown_site_crs_is_refused(refused, wall):
 def test_a_layer_without_a_crs_is_refused_by_name(refused, wall, make_layer):
     said = refused(wall, make_layer("scan", crs="", features=[(WALL, 1.0)]), CENTER="0,0")
     assert "The layer scan has no CRS" in said and "LOCAL=true" in said
+
+
+@pytest.mark.parametrize("name", ["scan.gpkg", "scan.geojson", "scan.shp"])
+@pytest.mark.parametrize("is_there", [False, True])
+def test_a_layer_whose_file_is_gone_since_it_was_opened_is_refused_by_name(
+    refused, wall, make_layer, save_layer, tmp_path, name, is_there
+):
+    layer = save_layer(make_layer("scan", features=[(WALL, 1.0)]), name)
+    for file in tmp_path.glob("scan.*"):
+        file.unlink()
+    if is_there:
+        (tmp_path / name).write_bytes(b"half of it")
+    # QGIS itself sees nothing wrong with it.
+    assert layer.isValid() and layer.featureCount() == 1 and list(layer.getFeatures()) == []
+    # Whether anything of it would be in the window or not.
+    for center in ("0,0", "5000,5000"):
+        said = refused(wall, layer, CENTER=center)
+        assert "The layer scan cannot be read any more: of its features (1)" in said, said
+
+
+def test_a_layer_that_another_program_emptied_is_none_that_is_gone(export, make_layer, save_layer, wall):
+    layer = save_layer(make_layer("scan", features=[(WALL, 1.0)]), "scan.gpkg")
+    other = QgsVectorLayer(layer.source(), "other", "ogr")
+    assert other.dataProvider().truncate()
+    assert layer.featureCount() == 1 and list(layer.getFeatures()) == []
+    assert len(export(wall, layer, CENTER="0,0").map.obstacles) == 1
 
 
 def test_a_layer_that_cannot_be_opened_is_refused_by_name(refused, wall, tmp_path):

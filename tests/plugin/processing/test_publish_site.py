@@ -110,6 +110,18 @@ def test_surfaces_are_published_with_their_names_and_where_they_come_from(publis
     assert told == [("asphalt", "Yard", "generated"), ("sand", "", "drawn")]
 
 
+@pytest.mark.parametrize("role", ["OBSTACLES", "ROAD_CENTRELINES", "ROAD_SURFACES", "KEEPOUTS"])
+def test_a_site_is_not_published_without_a_layer_whose_file_is_gone_since_it_was_opened(
+    publish, refused, yard, save_layer, tmp_path, role
+):
+    publish(**yard)
+    (layer,) = yard[role]
+    yard[role] = [save_layer(layer, f"{layer.name()}.gpkg")]
+    (tmp_path / f"{layer.name()}.gpkg").unlink()
+    said = refused(**yard)
+    assert f"The layer {layer.name()} cannot be read any more" in said
+
+
 def test_what_a_gateway_maps_is_what_it_would_read_of_the_layers(publish, yard):
     folder = publish(**yard, ORIGIN="-10,-20", ROTATION=33).folder
     mapped = read_site(folder)
