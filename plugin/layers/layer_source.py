@@ -10,7 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from qgis.core import (
     QgsAbstractFeatureSource,
@@ -176,8 +176,18 @@ def is_readable(features: LayerFeatureSource, count: int, provider: str, uri: st
     return layer.isValid() and layer.featureCount() <= 0
 
 
+def begin_reading() -> None:
+    """Forget what GDAL found wrong in this thread before a layer is read, for :func:`check_readable`."""
+    if (gdal := _gdal()) is not None:
+        gdal.ErrorReset()
+
+
 def check_readable(source: ObstacleSource) -> None:
-    """Raise :class:`LayerTypeError` where ``source`` cannot be read: what was read of it may be a part."""
+    """Raise :class:`LayerTypeError` where ``source`` could not be read, or only in part; after reading it.
+
+    Of a damaged file QGIS passes on what comes before the damage, and no error.
+    """
+    error = _error_of_gdal() if source.provider == "ogr" else ""
     if not is_readable(source.features, source.count, source.provider, source.uri):
         raise LayerTypeError(
             tr(
@@ -188,6 +198,31 @@ def check_readable(source: ObstacleSource) -> None:
                 count=max(source.count, 0),
             )
         )
+    if error:
+        raise LayerTypeError(
+            tr(
+                "The layer {name} cannot be read to its end ({error}): its file is damaged, or was not "
+                "copied whole. Replace it by a sound copy, or leave the layer out.",
+                name=source.name,
+                error=error,
+            )
+        )
+
+
+def _error_of_gdal() -> str:
+    """Return what went wrong last in this thread since :func:`begin_reading`, nothing where nothing did."""
+    gdal = _gdal()
+    failed = gdal is not None and gdal.GetLastErrorType() >= gdal.CE_Failure
+    return str(gdal.GetLastErrorMsg() or "GDAL") if failed else ""
+
+
+def _gdal() -> Any:
+    """Return GDAL by which QGIS reads files, None where its Python bindings are missing."""
+    try:
+        from osgeo import gdal
+    except ImportError:
+        return None
+    return gdal
 
 
 # --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---

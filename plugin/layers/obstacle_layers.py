@@ -29,7 +29,14 @@ from .geometry import (
     shapes_of,
 )
 from .layer_expressions import UNKNOWN, FeatureFilter, FeatureValues, LayerRules, Memory, ObstacleValues
-from .layer_source import FeatureWarnings, ObstacleSource, SomeFeatures, check_readable, without_geometry
+from .layer_source import (
+    FeatureWarnings,
+    ObstacleSource,
+    SomeFeatures,
+    begin_reading,
+    check_readable,
+    without_geometry,
+)
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
 
@@ -442,6 +449,7 @@ class _LayerReader:
         if self._around is not None:
             yield from without_geometry(self.source)
             request.setFilterRect(self._around)
+        begin_reading()
         yield from self.source.features.getFeatures(request)
 
     def read(self, feature: QgsFeature) -> None:

@@ -2439,6 +2439,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read to its end ({error}): its file is damaged, or was not copied whole. Replace it by a sound copy, or leave the layer out.</source>
+            <translation>La capa {name} no es pot llegir fins al final ({error}): el seu fitxer està malmès o no s'ha copiat sencer. Substituïu-lo per una còpia bona o ometeu la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} conté {held}, i només les línies i els polígons són obstacles: ometeu-la, doneu-li abans extensió (per exemple amb Buffer), o el paper mobiliari.</translation>
         </message>

@@ -2439,6 +2439,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read to its end ({error}): its file is damaged, or was not copied whole. Replace it by a sound copy, or leave the layer out.</source>
+            <translation>La capa {name} no se puede leer hasta el final ({error}): su archivo está dañado o no se copió entero. Sustitúyalo por una copia buena u omita la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>La capa {name} contiene {held}, y solo las líneas y los polígonos son obstáculos: omítala, déle antes extensión (por ejemplo con Buffer), o el papel mobiliario.</translation>
         </message>

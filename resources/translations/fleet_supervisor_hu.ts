@@ -2429,6 +2429,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {name} cannot be read to its end ({error}): its file is damaged, or was not copied whole. Replace it by a sound copy, or leave the layer out.</source>
+            <translation>A(z) {name} réteg nem olvasható végig ({error}): a fájlja sérült, vagy nem lett teljesen átmásolva. Cserélje ép másolatra, vagy hagyja ki a réteget.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} holds {held}, and only lines and polygons are obstacles: leave it out, give it an extent first (for example with Buffer), or the role furniture.</source>
             <translation>A(z) {name} réteg tartalma: {held}, és csak vonalak és poligonok akadályok: hagyja ki, adjon neki előbb kiterjedést (például Övezettel), vagy a berendezés szerepet.</translation>
         </message>

@@ -453,6 +453,9 @@ def make_layer(qgis_app):
     return memory_layer
 
 
+DRIVERS = {".fgb": "FlatGeobuf", ".geojson": "GeoJSON", ".gpkg": "GPKG", ".shp": "ESRI Shapefile"}
+
+
 @pytest.fixture
 def save_layer(tmp_path):
     """Write a layer into a file, and open that: ``save_layer(layer, "walls.gpkg")``."""
@@ -460,7 +463,7 @@ def save_layer(tmp_path):
     def save(layer: QgsVectorLayer, name: str) -> QgsVectorLayer:
         file = tmp_path / name
         options = QgsVectorFileWriter.SaveVectorOptions()
-        options.driverName = {".gpkg": "GPKG", ".geojson": "GeoJSON", ".shp": "ESRI Shapefile"}[file.suffix]
+        options.driverName = DRIVERS[file.suffix]
         options.layerName = file.stem
         transforms = QgsCoordinateTransformContext()
         failed = QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(file), transforms, options)

@@ -91,6 +91,28 @@ def test_a_layer_whose_file_is_gone_since_it_was_opened_is_refused_by_name(
         assert "The layer scan cannot be read any more: of its features (1)" in said, said
 
 
+@pytest.mark.parametrize("name", ["scan.gpkg", "scan.fgb"])
+def test_a_layer_that_is_damaged_in_the_middle_is_no_map_of_half_of_it(
+    refused, wall, make_layer, save_layer, tmp_path, name
+):
+    walls = [(f"LineString({x} 0, {x} 5)", 1.0) for x in range(5000)]
+    layer = save_layer(make_layer("scan", features=walls), name)
+    file = tmp_path / name
+    source, content = layer.source(), bytearray(file.read_bytes())
+    del layer
+    if file.suffix == ".gpkg":
+        middle = len(content) // 2 // 4096 * 4096
+        content[middle : middle + 4 * 4096] = b"\xa5" * 4 * 4096
+    else:
+        # As it is while it is being copied.
+        del content[len(content) * 2 // 3 :]
+    file.write_bytes(content)
+    layer = QgsVectorLayer(source, "scan", "ogr")
+    assert layer.isValid() and layer.featureCount() == 5000 > sum(1 for _ in layer.getFeatures())
+    said = refused(wall, layer, CENTER="2500,0", WIDTH=6000, HEIGHT=20)
+    assert "The layer scan cannot be read to its end (" in said, said
+
+
 def test_a_layer_that_another_program_emptied_is_none_that_is_gone(export, make_layer, save_layer, wall):
     layer = save_layer(make_layer("scan", features=[(WALL, 1.0)]), "scan.gpkg")
     other = QgsVectorLayer(layer.source(), "other", "ogr")
