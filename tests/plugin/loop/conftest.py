@@ -40,6 +40,12 @@ class Loop:
         found = self._processes.wait_for_line(f"gateway-{self._runs}", r"listening on (ws://\S+:(\d+))", 30)
         self.address, self.port = found.group(1), int(found.group(2))
 
+    def start_on_empty_database(self):
+        """Start a gateway on the same port for another fleet, as one of another frame has to."""
+        self.file = self.file.with_name("other.db")
+        self._database = f"sqlite:///{self.file}"
+        self.start_gateway(self.port)
+
     def find_first_way(self):
         """Have a way found: on a busy machine the first takes longer than a desk waits for it."""
         with suppress(StageError):

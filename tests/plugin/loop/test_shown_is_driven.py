@@ -6,6 +6,8 @@ The sample site's keepout *Water basin* lies between (60, 22) and (70.26, 42.57)
 from __future__ import annotations
 
 import math
+import shutil
+import signal
 
 import pytest
 from fleet_supervisor.plugin.control.pending_command import ApproachKind
@@ -15,6 +17,8 @@ from qgis.core import QgsProject
 from qgis.PyQt.QtCore import QEvent
 from qgis.PyQt.QtWidgets import QApplication, QLabel
 from shapely.geometry import Point, Polygon
+
+from tests.support.operators import ask
 
 POSE, GOAL = (60, 22, 0), (70.26, 42.57)
 ANGLES = [math.tau * k / 48 for k in range(48)]
@@ -114,3 +118,38 @@ def test_one_that_neither_asks_nor_takes_cones_with_a_path_is_shown_and_refused_
     operator.press("fleet_send")
     operator.pause(0.5)
     assert operator.sent_to("r3") == []
+
+
+def test_a_target_that_was_not_answered_is_not_driven_to_at_a_gateway_of_another_frame(
+    start_loop, operator, root, tmp_path
+):
+    sample, site = root / "resources" / "sample_site", tmp_path / "site"
+    site.mkdir()
+    for name in ("site.gpkg", "site.toml"):
+        shutil.copy(sample / name, site)
+    loop = start_loop(site)
+    loop.start_robot("r3", POSE, speed=6)
+    operator.connect_to(loop, ["r3"])
+    operator.wait("where r3 is", lambda: operator.report("r3").x is not None, 10)
+    operator.select("r3")
+    operator.choose("fleet_cone_target")
+    operator.click_site(*GOAL)
+    operator.wait_for_draft("the target")
+    operator.wait("the way to it", lambda: knows_way(operator) and draft(operator).is_checked, 20)
+    loop.gateway.send_signal(signal.SIGSTOP)
+    asked = len(operator.desk.orders)
+    operator.desk.sending.send()
+    operator.wait("the order on its way", lambda: len(operator.desk.orders) == asked + 1, 10)
+    loop.gateway.send_signal(signal.SIGKILL)
+    loop.gateway.wait()
+    settings = site / "site.toml"
+    settings.write_text(settings.read_text().replace("640420.0", "640410.0"))
+    loop.start_on_empty_database()
+    operator.wait("the other frame", lambda: operator.desk.state.site.origin[0] == 640410.0, 30)
+    operator.wait("r3 there", lambda: "r3" in operator.states(), 30)
+    operator.wait("word of it", lambda: len(operator.desk.orders) == 0, 30)
+    # What is asked now comes after all that was repeated on the new link.
+    ask(loop.address, ("abort", {"command": "asked-afterwards", "robot": "r3"}))
+    commands = ask(loop.address, ("get_commands", {}))[0]["commands"]
+    assert {one["op"] for one in commands} == {"Abort"}
+    assert draft(operator) is None
