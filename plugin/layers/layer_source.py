@@ -199,14 +199,18 @@ def check_readable(source: ObstacleSource) -> None:
             )
         )
     if error:
-        raise LayerTypeError(
-            tr(
-                "The layer {name} cannot be read to its end ({error}): its file is damaged, or was not "
-                "copied whole. Replace it by a sound copy, or leave the layer out.",
-                name=source.name,
-                error=error,
-            )
+        raise _half_read(source.name, error)
+
+
+def _half_read(name: str, error: str) -> LayerTypeError:
+    return LayerTypeError(
+        tr(
+            "The layer {name} cannot be read to its end ({error}): its file is damaged, or was not "
+            "copied whole. Replace it by a sound copy, or leave the layer out.",
+            name=name,
+            error=error,
         )
+    )
 
 
 def _error_of_gdal() -> str:
@@ -456,6 +460,8 @@ class FeatureReader:
     """Yields every feature of the layer ``name``, which ``placing`` brings to the site, as FeatureRow.
 
     Without a filter ``counted`` all count. ``complete`` is false after a cancel.
+
+    :raises LayerTypeError: at the end of a layer whose file is damaged.
     """
 
     name: str
@@ -467,12 +473,17 @@ class FeatureReader:
     complete: bool = True
 
     def __iter__(self) -> Iterator[FeatureRow]:
+        begin_reading()
         for feature in each_feature(self.source, self.feedback, self.progress):
             notes: list[str] = []
             counts = self.counted is None or self.counted.keeps(feature, notes)
             geometry = self.placing.of_feature(feature, notes) if counts else None
             yield FeatureRow(feature, counts, geometry, notes)
         self.complete = not self.feedback.isCanceled()
+        # A layer in its role is asked whether it is there at all first, by check_readable.
+        error = _error_of_gdal() if isinstance(self.source, QgsFeatureSource) else ""
+        if self.complete and error:
+            raise _half_read(self.name, error)
 
 
 # --- Warnings about features, summed up: a city has thousands that differ in nothing but the feature ---

@@ -42,7 +42,6 @@ from .layer_source import (
     FeatureWarnings,
     ObstacleSource,
     SomeFeatures,
-    begin_reading,
     check_readable,
 )
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
@@ -504,7 +503,6 @@ class _GroundLayer:
     def rows(self, reading: GroundReading, feedback: QgsFeedback) -> Iterator[FeatureRow]:
         """Yield every feature; of one with a geometry the rules speak until the next is asked for."""
         source = self.source
-        begin_reading()
         reader = FeatureReader(source.name, source.features, self.placing, self._filter, feedback)
         for row in reader:
             if row.geometry is not None:

@@ -64,6 +64,22 @@ def nav2(file):
     return content, edges
 
 
+def test_roads_that_are_damaged_in_the_middle_are_no_network_of_half_of_them(
+    export, make_layer, save_layer, tmp_path
+):
+    lines = [(f"LINESTRING({x} 0, {x + 1} 0)",) for x in range(5000)]
+    layer = save_layer(make_layer("roads", fields="", features=lines), "roads.fgb")
+    source, file = layer.source(), tmp_path / "roads.fgb"
+    del layer
+    # As it is while it is being copied.
+    file.write_bytes(file.read_bytes()[: file.stat().st_size * 2 // 3])
+    layer = QgsVectorLayer(source, "roads", "ogr")
+    assert layer.isValid() and layer.featureCount() == 5000 > sum(1 for _ in layer.getFeatures()) > 0
+    with pytest.raises(QgsProcessingException, match=r"The layer roads cannot be read to its end \("):
+        export(layer)
+    assert not (tmp_path / "out").exists()
+
+
 def test_the_dialog_offers_what_is_written():
     assert list(FORMAT_NAMES) == list(FORMAT_WRITERS)
 
