@@ -23,7 +23,7 @@ from ..core.clock import ClockWatch, check_clock_at_start
 from ..core.errors import AccessError, BridgeError, SiteError, StoreError
 from ..core.messages.administration import Stopping
 from ..core.messages.base import MessageError, check_robot_name, to_json
-from ..core.sites.site import Site, check_site, frame_mismatch, read_site
+from ..core.sites.site import Site, check_site, frame_mismatch, frame_text, read_site
 from ..protocol.asyncapi import served
 from .api.http_pages import HEALTH, METRICS, SiteQueries, StatusPages
 from .api.operator_server import OWN, OperatorSession
@@ -357,6 +357,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         if folder != settings.site:
             stamp = await asyncio.to_thread(stamp_of, folder)
             site = await asyncio.to_thread(_chosen, folder, site)
+        await _check_frame(site, settings, database, cluster)
         journal = await asyncio.to_thread(_journal, settings)
         gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
@@ -476,6 +477,24 @@ def _chosen(folder: Path, given: Site) -> Site:
             f"{given.id} with --site-as-given"
         )
     return site
+
+
+async def _check_frame(
+    site: Site, settings: GatewaySettings, database: Database, cluster: Cluster | None
+) -> None:
+    """Raise BridgeError for a site whose metres are other places than those in the database; StoreError.
+
+    Robots would be sent to the numbers of what they were to do, and find other places there.
+    """
+    frame = frame_text(site.settings)
+    is_alone = cluster is None or not cluster.membership.others()
+    kept = await database.run(lambda its: metadata.frame_of_places(its, frame, is_alone=is_alone))
+    if kept != frame:
+        raise BridgeError(
+            f"{settings.site}: site {site.settings.id} is in the frame {frame}, and the places in database "
+            f"{database.where} are in {kept}: the same metres are other places. Publish the site in that "
+            "frame, or start the gateway with a database of its own"
+        )
 
 
 def _journal(settings: GatewaySettings) -> StopJournal | None:

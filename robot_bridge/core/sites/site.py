@@ -419,12 +419,16 @@ def frame_mismatch(served: SiteSettings, other: SiteSettings) -> str | None:
     """Return why ``other`` cannot follow ``served`` where commands and positions are kept, None if it can."""
     if (served.crs, served.origin, served.rotation_deg) == (other.crs, other.origin, other.rotation_deg):
         return None
-    x, y = other.origin
     return (
-        f"{other.id} has another frame ({other.crs}, origin {x:.12g}, {y:.12g}, "
-        f"rotation {other.rotation_deg:g}°) than {served.id}, and positions of the one are wrong in the "
-        "other; start a gateway on it, with a database of its own"
+        f"{other.id} has another frame ({frame_text(other)}) than {served.id}, and positions of the one are "
+        "wrong in the other; start a gateway on it, with a database of its own"
     )
+
+
+def frame_text(settings: SiteSettings) -> str:
+    """Return the frame of a site in words: two texts are the same where the frames are, to a micrometre."""
+    x, y = settings.origin
+    return f"{settings.crs}, origin {x:.12g}, {y:.12g}, rotation {settings.rotation_deg:.12g}°"
 
 
 # --- What a site has in a box beside its obstacles: keepouts, and roads with their widths and speeds ---

@@ -128,3 +128,30 @@ def test_a_gateway_does_not_start_with_another_site_than_the_chosen_one(bridge, 
         restart(bridge)
     restart(bridge, "--site-as-given")
     assert bridge.desk().site["id"] == "sample"
+
+
+def serve_elsewhere(bridge, sites):
+    """Start the gateway on its database with the site of another frame."""
+    bridge.hang_up()
+    bridge.kill_gateway()
+    bridge.site = sites / "elsewhere"
+    bridge.start_gateway()
+
+
+def test_a_database_with_places_in_it_is_not_served_with_a_site_of_another_frame(bridge, sites):
+    robot, desk = bridge.robot("r1"), bridge.desk()
+    robot.plug_in(1)
+    robot.close()
+    # It would drive to these numbers on the other site as soon as it is back.
+    target = {"op": "SetPosEnd", "params": {"x": 24.0, "y": 8.0}}
+    desk.ask("send", {"command": "waits-for-r1", "robot": "r1", **target})
+    with pytest.raises(StageError, match=r"(?s)640000, 5193000.*other places.*of its own"):
+        serve_elsewhere(bridge, sites)
+    assert bridge.sql("select count(*) from commands") == [(1,)]
+
+
+def test_a_database_without_any_place_goes_with_the_site_that_is_served(bridge, sites):
+    assert bridge.desk().site["id"] == "sample"
+    serve_elsewhere(bridge, sites)
+    assert bridge.desk().site["id"] == "elsewhere"
+    assert "640000, 5193000" in bridge.sql("select value from bridge where name = 'frame'")[0][0]

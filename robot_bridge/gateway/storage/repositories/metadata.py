@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from sqlalchemy import Connection, delete, func, insert, select, update
 from sqlalchemy.dialects import postgresql
 
-from ..schema import audit, bridge, commands, observations, robots, rr, sa, trajectories
+from ..schema import audit, bridge, closures, commands, observations, plans, robots, rr, sa, trajectories
 
 # --- Facts about the database itself ---
 
 ID = "id"
 """The name of the fact that tells the database from every other."""
-_SITE = "site"
+_SITE, _FRAME = "site", "frame"
 
 
 def database_id(connection: Connection) -> str:
@@ -65,6 +65,20 @@ def replace_fact(connection: Connection, name: str, before: str, value: str) -> 
 def forget_facts(connection: Connection, names: Sequence[str]) -> None:
     """Know nothing under ``names`` any more."""
     connection.execute(delete(bridge).where(bridge.c.name.in_(names)))
+
+
+_WITH_PLACES = robots, commands, plans, closures
+"""Tables of which one has a row wherever there is a place at all."""
+
+
+def frame_of_places(connection: Connection, frame: str, *, is_alone: bool) -> str:
+    """Return the frame that all places in the database are in; ``frame`` from now on where there are none.
+
+    ``is_alone`` tells that no other gateway serves the database, which may have its own ones in mind.
+    """
+    if is_alone and not any(connection.execute(select(one).limit(1)).first() for one in _WITH_PLACES):
+        forget_facts(connection, [_FRAME])
+    return fact(connection, _FRAME, frame)
 
 
 def chosen_site(connection: Connection) -> str | None:

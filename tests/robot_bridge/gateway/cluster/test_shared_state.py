@@ -14,6 +14,7 @@ from robot_bridge.core.robotmap.binary import decode
 from robot_bridge.core.sites.site import read_site, write_site
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
+from tests.support.errors import StageError
 from tests.support.patience import BUSY
 
 NUMBERS = itertools.count(1)
@@ -68,6 +69,17 @@ def health_of(bridge):
     url = bridge.address.replace("ws://", "http://") + "/healthz"
     with urllib.request.urlopen(url, timeout=BUSY * 10) as page:
         return json.load(page)
+
+
+def test_a_gateway_with_a_site_of_another_frame_does_not_enter_the_fleet(
+    pair, start_bridge, sites, sample_site, fleet_url, tmp_path
+):
+    # First of all: nobody has chosen a site yet, which would be served in place of the given one.
+    publish(tmp_path / "far", sample_site, origin=(640_000.0, 5_193_000.0))
+    options = ["--gateway-name", "far", "--state", tmp_path]
+    with pytest.raises(StageError, match=r"(?s)640000, 5193000.*the same metres are other places"):
+        start_bridge(tmp_path / "far", fleet_url, options)
+    assert desk_at(pair.a).ask("get_sites")["sites"]
 
 
 def test_a_choice_of_a_site_goes_for_all_gateways(pair, name):
