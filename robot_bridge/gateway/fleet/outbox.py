@@ -267,18 +267,20 @@ class RobotOutboxes:
             if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
                 # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
                 await self._saving.save(*admitted)
+            # What is given out outlives a power cut, also a map, which would be sent again: the next message
+            # would have its id, and a robot acknowledges what it knows and does nothing, be it an Abort.
             if request_ids:
-                # A request whose answer a power cut undid is there again, and is dealt with again.
+                # A request that a power cut brought back is dealt with again.
                 # It may have waited for long: where the robot was then must not be in memory alone.
-                await self._saving.jot_with(finish_requests, outcomes, rows, request_ids)
-            elif not all(isinstance(one.answer, SetMap) and not one.admitted for one in outcomes):
+                work = finish_requests, outcomes, rows, request_ids
+                await self._saving.write_with(*work, lasting=bool(rows))
+            elif reader is None or not all(
+                isinstance(one.answer, SetMap) and not one.admitted for one in outcomes
+            ):
                 await self._database.run(finish_calls, outcomes, rows)
-            # A map that a power cut undoes is sent again: the robot says Ready on its next connection.
-            elif reader is None:
-                await self._database.jot(finish_calls, outcomes, rows)
             else:
                 changes = self._changes[reader[0]]
-                read = await self._database.jot(finish_and_read, outcomes, rows, reader)
+                read = await self._database.run(finish_and_read, outcomes, rows, reader)
                 # Whatever else was written for it meanwhile may not be among that.
                 fresh = (reader, read) if self._changes[reader[0]] == changes else None
         for outcome in outcomes:

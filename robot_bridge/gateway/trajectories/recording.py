@@ -229,27 +229,31 @@ class TrajectoryWriter:
         self._unsaved.update(robots)
         await to_its_end(self._save(self._begun if robots else None))
 
-    async def jot_with(self, work: Callable[..., None], *arguments: Any) -> None:
+    async def write_with(self, work: Callable[..., None], *arguments: Any, lasting: bool = False) -> None:
         """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
 
-        A power cut may undo it; the positions are then stored again. Raises StoreError.
+        Unless it is ``lasting`` a power cut may undo it; the positions are then stored again. Raises
+        StoreError.
         """
-        await to_its_end(self._jot_with(work, arguments))
+        await to_its_end(self._write_with(work, arguments, lasting=lasting))
 
-    async def _jot_with(self, work: Callable[..., None], arguments: tuple[Any, ...]) -> None:
+    async def _write_with(
+        self, work: Callable[..., None], arguments: tuple[Any, ...], *, lasting: bool
+    ) -> None:
+        write = self._database.run if lasting else self._database.jot
         async with self._writing:
             fixes, session = self._recorder.next_batch(self._clock.time()), self._database.session
             try:
-                await self._database.jot(work, *arguments, fixes)
+                await write(work, *arguments, fixes)
             except DataRefusedError:
                 # One of the positions is refused, or something of the work: each is stored by itself.
                 await self._write_or_give_back(fixes)
                 fixes = []
-                await self._database.jot(work, *arguments, fixes)
+                await write(work, *arguments, fixes)
             except Exception:
                 self._recorder.give_back(fixes)
                 raise
-            if fixes:
+            if fixes and not lasting:
                 self._jotted.append((session, fixes))
 
     async def _save(self, begun: int | None) -> None:

@@ -7,10 +7,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from sqlalchemy import func, select
+
 from robot_bridge.core.errors import StoreError, UncertainError
 from robot_bridge.gateway.storage.database import Database, DatabaseWorker, _settle, shown
 from robot_bridge.gateway.storage.dialects import PATIENCE_S
+from robot_bridge.gateway.storage.schema import sa
 
+NEWEST = select(func.max(sa.c.id))
 _ENGINES: dict = {}
 """One for each address: to compile statements anew takes SQLAlchemy longer than the database to do them."""
 
@@ -77,8 +81,15 @@ class MortalDatabase(Database):
         return await self._live_through(super().run, work, *arguments)
 
     async def jot(self, work, *arguments):
-        """As :meth:`run`."""
-        return await self._live_through(super().jot, work, *arguments)
+        """As :meth:`run`, for work that gives out no message: its id would come again after a power cut."""
+
+        def checked(connection, *arguments):
+            before = connection.scalar(NEWEST)
+            result = work(connection, *arguments)
+            assert (connection.scalar(NEWEST) or 0) <= (before or 0), f"{work} gives out a message"
+            return result
+
+        return await self._live_through(super().jot, checked, *arguments)
 
     async def read(self, work, *arguments):
         """Read, unless the gateway is dead: reading changes nothing, so that it does not die here."""

@@ -97,7 +97,7 @@ async def test_what_is_being_saved_when_the_gateway_is_told_to_end_is_stored_onc
 
 async def test_what_is_being_written_with_answers_when_the_gateway_is_told_to_end_is_stored_once(yard, busy):
     yard.tell(1.0, 2.0)
-    writing = asyncio.ensure_future(yard.saving.jot_with(trajectories.add))
+    writing = asyncio.ensure_future(yard.saving.write_with(trajectories.add))
     await asyncio.sleep(0.05)
     writing.cancel()
     await asyncio.gather(writing, return_exceptions=True)
@@ -112,7 +112,7 @@ async def test_where_a_robot_is_is_never_stored_before_where_it_was(yard, busy):
         raise StoreError("the disk is full")
 
     yard.tell(1.0, 2.0)
-    writing = asyncio.ensure_future(yard.saving.jot_with(fail))
+    writing = asyncio.ensure_future(yard.saving.write_with(fail))
     await asyncio.sleep(0)
     saving = asyncio.ensure_future(yard.saving.save())
     await asyncio.sleep(0.05)
@@ -147,9 +147,9 @@ async def test_what_a_killed_server_may_have_forgotten_is_stored_again(killed):
     server = ForgetfulServer()
     yard = Yard(server)
     yard.tell(1.0, 2.0)
-    await yard.saving.jot_with(None)
+    await yard.saving.write_with(None)
     yard.tell(3.0)
-    await yard.saving.jot_with(None)
+    await yard.saving.write_with(None)
     if killed:
         server.kill()
     yard.tell(4.0)
@@ -169,7 +169,7 @@ async def test_a_server_that_is_killed_while_it_stores_is_told_again_what_it_for
     server = KilledOnce()
     yard = Yard(server)
     yard.tell(1.0, 2.0)
-    await yard.saving.jot_with(None)
+    await yard.saving.write_with(None)
     yard.tell(3.0)
     await yard.saving.save()
     assert sorted(server.kept) == sorted(told(1.0, 2.0, 3.0))
@@ -257,7 +257,7 @@ async def test_answers_that_are_refused_with_positions_are_written_without_and_e
             raise DataRefusedError("one of the positions is refused")
         written.append("answers")
 
-    await yard.saving.jot_with(write)
+    await yard.saving.write_with(write)
     assert written == ["answers"]
     await yard.saving.save()
     assert await yard.stored() == ([1.0, 2.0], 2.0)
