@@ -218,7 +218,7 @@ def _check_bus(settings: GatewaySettings) -> Iterator[Finding]:
         yield Finding(Level.OK, "bus", cluster.bus)
         return
     try:
-        fleet = run_once(settings.database, metadata.known_id)
+        fleet = run_once(settings.database, metadata.known_fleet)
     except StoreError:
         fleet = None
     if fleet is None:

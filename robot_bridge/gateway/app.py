@@ -57,10 +57,11 @@ from .retention import Retention
 from .site.site_maps import SiteMaps
 from .site_updates import FETCH_INTERVAL, SiteCopy, SiteWatch, stamp_of
 from .storage.database import Database
+from .storage.dialects import sqlite_file_of
 from .storage.repositories import metadata
 from .storage.repositories.metadata import newest_time
 from .storage.roles.choice import has_accounts
-from .storage.singleton_lock import SingletonLock
+from .storage.singleton_lock import MessageNote, SingletonLock
 from .traffic.road_planning import RoadPlanner
 from .trajectories.recording import TrajectoryPages
 
@@ -424,17 +425,30 @@ async def _hold_database(
         sole = SingletonLock(settings.database)
         await sole.acquire()
         stack.push_async_callback(sole.release)
-        await sole.check_age(database)
-        return None, {"sole gateway": lambda: sole.hold(database)}
+        note = MessageNote(database, _state_folder(settings))
+        await note.check()
+        stack.push_async_callback(note.close, CLOSE_WITHIN)
+        return None, {"sole gateway": sole.hold, "newest message": note.hold}
     lease = lease_database(settings.database)
     stack.push_async_callback(lease.close, CLOSE_WITHIN)
     fleet = await database.run(fleet_id)
+    note = MessageNote(database, _state_folder(settings), settings.cluster.name)
+    await note.check()
+    stack.push_async_callback(note.close, CLOSE_WITHIN)
     cluster = await join_cluster(settings.cluster, database, lease, fleet)
     stack.push_async_callback(cluster.membership.leave)
     # At once: to read a city takes longer than a lease lasts.
     holding = asyncio.create_task(cluster.membership.hold())
     stack.callback(holding.cancel)
-    return cluster, {"lease": lambda: asyncio.shield(holding)}
+    return cluster, {"lease": lambda: asyncio.shield(holding), "newest message": note.hold}
+
+
+def _state_folder(settings: GatewaySettings) -> Path | None:
+    """Return the folder for what the gateway notes on this computer; None for a database in memory."""
+    if settings.database.get_backend_name() == "sqlite":
+        file = sqlite_file_of(settings.database)
+        return None if file is None else file.parent
+    return settings.state or settings.site.resolve().parent
 
 
 def _relays(

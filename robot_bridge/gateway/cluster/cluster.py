@@ -165,14 +165,14 @@ def fleet_id(connection: Connection) -> str:
     if here is not None and (before := metadata.fact(connection, PLACE, here)) != here:
         is_served = any(member.alive for member in gateways.members(connection))
         if not is_served and metadata.replace_fact(connection, PLACE, before, here):
-            metadata.forget_facts(connection, [metadata.ID, KEY])
+            metadata.forget_facts(connection, [metadata.ID, metadata.FLEET, KEY])
             log.warning(
                 "this database is a copy of another one, or was moved: from now on it is fleet %s, which the "
                 "account on a NATS server has to be allowed",
-                id := metadata.database_id(connection),
+                id := metadata.fleet_id(connection),
             )
             return id
-    return metadata.database_id(connection)
+    return metadata.fleet_id(connection)
 
 
 def fleet_key(connection: Connection) -> bytes:

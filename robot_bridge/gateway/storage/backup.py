@@ -379,7 +379,7 @@ class SqliteBackups:
 def _renew(connection: Connection) -> None:
     if bridge.name not in inspect(connection).get_table_names():
         return  # a database of version 0.1.0, which gets its id when it is upgraded
-    sqlite_file_metadata.renew_id(connection)
+    sqlite_file_metadata.renew_id(connection, sqlite_file_metadata.database_id(connection))
 
 
 @contextlib.contextmanager

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import hashlib
 import json
 import logging
 import os
@@ -24,11 +25,13 @@ from sqlalchemy import URL, Connection, Engine, inspect, select, text, update
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from ...core.errors import BridgeError, FatalError, StoreError, listed_names
+from ...core.files import write_state
 from ...core.json_decoder import SHORT, DecodingError, decode_json
+from ...core.logs import TroubleNews
 from .database import Database, open_engine, shown
 from .dialects import Dialect, SQLite, sqlite_file_of
 from .repositories import gateways as stored_gateways
-from .repositories.metadata import fact, message_count, renew_id
+from .repositories.metadata import database_id, fact, message_count, renew_id
 from .schema import bridge, gateways
 
 log = logging.getLogger(__name__)
@@ -43,8 +46,6 @@ GATEWAY = "gateway"
 RUN, ROW = "gateway", "gateway_lock"
 """The rows of ``bridge`` that say which gateway runs, and that is locked."""
 
-_SENT = ("database", "newest_message")
-"""What the lock of an SQLite file tells of the messages that were given out of it."""
 _TAKEN = {"55P03", 1205}
 """What PostgreSQL and MariaDB answer when somebody else holds the lock."""
 
@@ -103,30 +104,8 @@ class SingletonLock:
             raise BridgeError(f"database {self._where}: {_serve_together(self._does, fleet)}")
         await asyncio.to_thread(self._lock.write, self._run)
 
-    async def check_age(self, database: Database) -> None:
-        """Have a file count as another database that is older than what robots were sent out of it.
-
-        Somebody put back a copy of it, and its next messages have ids that robots know. A robot acknowledges
-        such a message and does nothing, be it an Abort. Raises StoreError.
-        """
-        if not isinstance(self._lock, FileLock):
-            return
-        id, newest = await database.run(message_count)
-        sent = await asyncio.to_thread(self._lock.newest_message, id)
-        if sent <= newest:
-            return
-        await database.run(renew_id)
-        log.warning(
-            "database %s is older than what robots were sent out of it: the newest message that it knows is "
-            "%d, and %d was given out. It counts as another one from now on, as after 'robot-bridge database "
-            "restore': robots forget the ids of the messages that they know",
-            self._where,
-            newest,
-            sent,
-        )
-
-    async def hold(self, database: Database) -> None:
-        """Keep the database until cancelled, and note beside its file what was sent out of it.
+    async def hold(self) -> None:
+        """Keep the database until cancelled.
 
         :raises FatalError: when another gateway has taken it over while this one was cut off from it.
         """
@@ -137,11 +116,6 @@ class SingletonLock:
             except StoreError as error:
                 log.error("%s; its lock is taken anew as soon as it is back", error)
                 await self._take_again()
-            if isinstance(self._lock, FileLock):
-                # A file that cannot be read gives out no messages; a full disk must not end the gateway.
-                with contextlib.suppress(StoreError, OSError):
-                    sent = await database.read(message_count)
-                    await asyncio.to_thread(self._lock.note_message, *sent)
 
     async def release(self) -> None:
         """Give the database back."""
@@ -186,15 +160,11 @@ async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
 
 
 class FileLock:
-    """A lock on a file beside an SQLite database; the system ends it with the process.
-
-    The file says which gateway runs, and of which database that one gave out messages up to which.
-    """
+    """A lock on a file beside an SQLite database; the system ends it with the process."""
 
     def __init__(self, url: URL) -> None:
         self._url = url
         self._file: int | None = None
-        self._run: dict[str, Any] = {}
 
     def acquire(self) -> bool:
         """Take the lock; a database in memory has none, as nobody else can open it."""
@@ -222,26 +192,9 @@ class FileLock:
 
     def write(self, run: dict[str, Any]) -> None:
         """Write down which gateway runs."""
-        sent = {name: value for name, value in self.read().items() if name in _SENT}
-        self._write({**run, **sent})
-
-    def newest_message(self, database: str) -> int:
-        """Return the newest message that was given out of the database with this id, as far as is known."""
-        noted_of, newest = (self.read().get(name) for name in _SENT)
-        return newest if noted_of == database and isinstance(newest, int) else 0
-
-    def note_message(self, database: str, newest: int) -> None:
-        """Note the newest message that was given out of the database with this id."""
-        if tuple(self._run.get(name) for name in _SENT) != (database, newest):
-            self._write({**self._run, **dict(zip(_SENT, (database, newest), strict=True))})
-
-    def _write(self, run: dict[str, Any]) -> None:
-        self._run = run
         if self._file is not None:
-            # In this order: whoever reads meanwhile finds at worst an end too much, which is no JSON.
-            text = json.dumps(run).encode()
-            os.pwrite(self._file, text, 0)
-            os.ftruncate(self._file, len(text))
+            os.ftruncate(self._file, 0)
+            os.pwrite(self._file, json.dumps(run).encode(), 0)
 
     def read(self) -> dict[str, Any]:
         """Return which gateway wrote itself down last."""
@@ -433,3 +386,127 @@ def _named(run: dict[str, Any]) -> str:
         since = time.strftime("%Y-%m-%d %H:%M:%S UTC", time.gmtime(run["since"]))
         return f": process {run['process']} on {run['host']}, since {since}"
     return ""
+
+
+# --- An older state of the database, which somebody put back by other means than ``database restore``
+
+
+class MessageNote:
+    """The newest message that a database gave out, noted in a file of this computer under the database's id.
+
+    A database that has given out fewer was put back to an older state, and its next messages have ids that
+    robots know. A robot acknowledges such a message and does nothing, be it an Abort. So the database counts
+    as another one from then on, and robots forget.
+
+    That is so too where other gateways serve it: to leave it as it is would leave their robots in that
+    danger. They find the new id in :data:`PING_INTERVAL`, and end to be started again with it; meanwhile
+    their robots can connect to this one. ``folder`` is None for a database in memory, of which nothing is
+    noted.
+    """
+
+    def __init__(self, database: Database, folder: Path | None, gateway: str | None = None) -> None:
+        self._database = database
+        self._folder, self._gateway = folder, gateway
+        self._id = ""
+        self._newest = self._written = 0
+        self._news = TroubleNews()
+
+    async def check(self) -> None:
+        """Have a database count as another one that is older than what is noted of it; raises StoreError."""
+        self._id = await self._database.run(database_id)
+        if (count := await self._database.run(message_count)) is None:
+            return
+        newest, noted = count[1], await asyncio.to_thread(self._read)
+        if noted is None and newest:
+            log.info("nothing is noted in %s of the messages that this database gave out", self._folder)
+        if noted is not None and noted > newest:
+            await self._renew(noted, newest)
+        await self._write(newest)
+
+    async def hold(self) -> None:
+        """Note the newest message until cancelled.
+
+        :raises FatalError: when the database was put back to an older state. What this gateway knows of
+            commands and robots is of another one; when it is started again it does what is needed.
+        """
+        while True:
+            await asyncio.sleep(PING_INTERVAL)
+            count = None
+            # Who needs the database says that it is away; meanwhile it gives out no messages.
+            with contextlib.suppress(StoreError):
+                count = await self._database.read(message_count)
+            if count is None:
+                continue
+            id, newest = count
+            if id != self._id or newest < self._newest:
+                raise FatalError(
+                    f"database {self._database.where} was put back to an older state while this gateway "
+                    "served it, or counts as another one since that; this one ends, to be started again"
+                )
+            await self._write(newest)
+
+    async def close(self, timeout: float) -> None:
+        """Note the newest message once more, unless the database does not answer by then."""
+        with contextlib.suppress(StoreError, TimeoutError):
+            async with asyncio.timeout(timeout):
+                count = await self._database.read(message_count)
+                if count is not None and count[0] == self._id:
+                    await self._write(count[1])
+
+    async def _renew(self, noted: int, newest: int) -> None:
+        is_new, members = await self._database.run(_renewed, self._id)
+        self._id = await self._database.run(database_id)
+        if not is_new:
+            return
+        others = [name for name in members if name != self._gateway]
+        log.warning(
+            "database %s is older than what robots were sent out of it: the newest message that it knows is "
+            "%d, and %d was given out. It counts as another one from now on, as after 'robot-bridge database "
+            "restore': robots forget the ids of the messages that they know%s",
+            self._database.where,
+            newest,
+            noted,
+            f". Served by {listed_names(others)}, too: see that each ends and starts again" if others else "",
+        )
+
+    async def _write(self, newest: int) -> None:
+        self._newest = max(self._newest, newest)
+        if newest <= self._written or self._folder is None:
+            return
+        content = json.dumps({"database": self._id, "newest_message": newest}).encode()
+        file = self._folder / f"{self._stem()}{'' if self._gateway is None else f'-{self._gateway}'}.json"
+        try:
+            await asyncio.to_thread(write_state, file, content, 0o600)
+            self._written = newest
+        except OSError as error:
+            # It must not keep the gateway from its work.
+            if self._news.has("note", str(error)):
+                log.warning(
+                    "%s cannot be written: %s; an older state of the database that is put back may not be "
+                    "noticed at the next start",
+                    file,
+                    error.strerror,
+                )
+
+    def _read(self) -> int | None:
+        """Return the newest message that a gateway of this computer noted, None where nothing is noted."""
+        found = []
+        for file in [] if self._folder is None else self._folder.glob(f"{self._stem()}*.json"):
+            try:
+                note = _run_in(file.read_text(encoding="utf-8"))
+            except (OSError, UnicodeDecodeError) as error:
+                log.warning("%s cannot be read: %s", file, error)
+                continue
+            if note.get("database") == self._id and type(newest := note.get("newest_message")) is int:
+                found.append(newest)
+        return max(found, default=None)
+
+    def _stem(self) -> str:
+        return f"newest-message-{hashlib.sha256(self._id.encode()).hexdigest()[:12]}"
+
+
+def _renewed(connection: Connection, before: str) -> tuple[bool, list[str]]:
+    """Have the database count as another one; tell whether that was new, and who serves it together."""
+    is_shared = connection.dialect.name == "postgresql"
+    members = stored_gateways.members(connection) if is_shared else []
+    return renew_id(connection, before), sorted(member.gw for member in members if member.alive)

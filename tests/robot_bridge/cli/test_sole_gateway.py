@@ -2,6 +2,7 @@
 
 import asyncio
 import json
+import secrets
 import signal
 import subprocess
 import sys
@@ -11,12 +12,20 @@ import pytest
 from sqlalchemy import insert, select, text
 
 from robot_bridge.core.errors import BridgeError, FatalError, StoreError
+from robot_bridge.core.messages.robots import Abort
 from robot_bridge.gateway.storage import singleton_lock
 from robot_bridge.gateway.storage.database import Database, open_engine, read_address, run_once
+from robot_bridge.gateway.storage.repositories import requests
 from robot_bridge.gateway.storage.repositories.metadata import fact
-from robot_bridge.gateway.storage.schema import bridge
-from robot_bridge.gateway.storage.singleton_lock import SingletonLock, check_no_sole_gateway, no_gateway
+from robot_bridge.gateway.storage.schema import bridge, metadata
+from robot_bridge.gateway.storage.singleton_lock import (
+    MessageNote,
+    SingletonLock,
+    check_no_sole_gateway,
+    no_gateway,
+)
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.databases.database_server import add_accounts
 from tests.support.patience import START
 
 HOLDER = """
@@ -92,15 +101,15 @@ def often(monkeypatch):
     monkeypatch.setattr(singleton_lock, "PING_INTERVAL", 0.1)
 
 
-async def holding(gateway, address):
+async def holding(gateway):
     await gateway.acquire()
-    return asyncio.create_task(gateway.hold(Database(address)))
+    return asyncio.create_task(gateway.hold())
 
 
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_the_lock_is_taken_again_when_the_server_comes_back(address, server, often, caplog):
     gateway = SingletonLock(address)
-    hold = await holding(gateway, address)
+    hold = await holding(gateway)
     server.kill()
     await asyncio.sleep(0.5)
     server.start()
@@ -122,7 +131,7 @@ async def test_the_lock_is_taken_again_when_the_server_comes_back(address, serve
 @pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
 async def test_a_gateway_that_another_replaced_while_it_was_cut_off_ends(address, server, often):
     gateway = SingletonLock(address)
-    hold = await holding(gateway, address)
+    hold = await holding(gateway)
     gateway._lock._connection.connection.driver_connection.close()
     other = {"run": "other", "host": "elsewhere", "process": 7, "since": 0}
     run_once_async = asyncio.to_thread(
@@ -165,3 +174,49 @@ def test_gateways_of_a_fleet_look_at_a_new_database_at_the_same_moment(new_datab
         assert not second.done()
         first.commit()
         second.result(60)
+
+
+@pytest.fixture
+def own_account(new_database, kind, request):
+    """A database with a robot on SQL, as a gateway's own account connects to it."""
+    url = new_database.another(kind)
+    robot = {"name": "bot", "magic": 1, "link": "sql", "received_at": 1.0, "ended_in_order": 0}
+    run_once(read_address(url), lambda c: c.execute(insert(metadata.tables["robots"]).values(**robot)))
+    admin = request.getfixturevalue(f"{kind}_server").admin_url(url)
+    name = f"gw{secrets.token_hex(4)}"
+    return read_address(add_accounts(read_address(url), read_address(admin), [], name)[name])
+
+
+@pytest.mark.parametrize("kind", ["postgresql", "mariadb"])
+async def test_a_gateways_own_account_may_do_what_an_older_state_needs(own_account, tmp_path, caplog):
+    database = Database(own_account)
+    try:
+        await database.run(requests.add, "bot", Abort())
+        await MessageNote(database, tmp_path).check()
+        (file,) = tmp_path.iterdir()
+        note = json.loads(file.read_text())
+        assert note["newest_message"] == 1
+        file.write_text(json.dumps({**note, "newest_message": 100}))
+        await MessageNote(database, tmp_path).check()
+        assert "the newest message that it knows is 1, and 100 was given out" in caplog.text
+        told = await database.read(lambda c: [row.op for row in requests.read_answers(c, "bot")])
+        assert told == ["Abort", "Start"]
+    finally:
+        await database.close()
+
+
+async def test_a_state_folder_that_cannot_be_written_keeps_no_gateway_from_its_work(
+    address, tmp_path, caplog
+):
+    database = Database(address)
+    try:
+        await database.run(requests.add, "bot", Abort())
+        await MessageNote(database, tmp_path / "gone").check()
+        assert "cannot be written: No such file or directory" in caplog.text
+        assert "may not be noticed at the next start" in caplog.text
+        caplog.clear()
+        # Nothing is known of what was given out, and nothing is changed.
+        await MessageNote(database, tmp_path).check()
+        assert "counts as another one" not in caplog.text
+    finally:
+        await database.close()

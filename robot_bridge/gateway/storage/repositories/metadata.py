@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+import json
 import uuid
 from collections.abc import Sequence
 
-from sqlalchemy import Connection, delete, func, insert, select, update
+from sqlalchemy import Connection, delete, func, insert, select, text, update
 from sqlalchemy.dialects import postgresql
 
-from ..schema import audit, bridge, closures, commands, observations, plans, robots, rr, sa, trajectories
+from ..schema import audit, bridge, closures, commands, observations, plans, robots, rr, trajectories
 
 # --- Facts about the database itself ---
 
 ID = "id"
 """The name of the fact that tells the database from every other."""
+FLEET = "fleet"
+"""The name of the fact that tells the fleet on this database from others on the same NATS servers."""
 _SITE, _FRAME = "site", "frame"
 
 
@@ -22,25 +25,61 @@ def database_id(connection: Connection) -> str:
     return fact(connection, ID, str(uuid.uuid4()))
 
 
-def known_id(connection: Connection) -> str | None:
-    """Return what tells this database from every other, None where no gateway has served it yet."""
-    return _known(connection, ID)
+def fleet_id(connection: Connection) -> str:
+    """Return the id of the fleet on this database: the first id of that.
+
+    It stays when the database counts as another one to robots, since accounts on NATS servers are given it.
+    """
+    return fact(connection, FLEET, database_id(connection))
 
 
-def renew_id(connection: Connection) -> None:
-    """Have the database count as another one: robots forget the ids of messages, which come again.
+def known_fleet(connection: Connection) -> str | None:
+    """Return the id of the fleet on this database, None where no gateway has served it yet."""
+    return _known(connection, FLEET) or _known(connection, ID)
 
+
+def renew_id(connection: Connection, before: str) -> bool:
+    """Have the database count as another one than ``before``; false where somebody was faster.
+
+    Robots forget the ids of messages, which come again: those on SQL, who do not connect, are sent Start.
     What waited in RR was said to the one before.
     """
+    if not replace_fact(connection, ID, before, after := str(uuid.uuid4())):
+        return False
     connection.execute(delete(rr))
-    connection.execute(delete(bridge).where(bridge.c.name == ID))
-    database_id(connection)
+    connection.execute(text(GREETING.format(schema="")), {"params": json.dumps({"database": after})})
+    return True
 
 
-def message_count(connection: Connection) -> tuple[str, int]:
-    """Return the id of an SQLite database and that of the newest message it gave out, 0 before the first."""
-    newest = connection.exec_driver_sql(f"select seq from sqlite_sequence where name = '{sa.name}'").scalar()
-    return database_id(connection), newest or 0
+GREETING = (
+    "insert into {schema}sa (robot, op, params) "
+    "select name, 'Start', :params from {schema}robots where link = 'sql'"
+)
+"""SQL that tells robots on SQL the id of the database, with ``params`` of a Start."""
+
+_NEWEST = {
+    "sqlite": "select coalesce(max(seq), 0) from sqlite_sequence where name = 'sa'",
+    # A gateway's account of an older set-up may not read it.
+    "postgresql": (
+        "select case when has_sequence_privilege(s, 'select, usage') "
+        "then coalesce(pg_sequence_last_value(s), 0) end "
+        "from cast(pg_get_serial_sequence('public.sa', 'id') as regclass) as s"
+    ),
+    "mariadb": (
+        "select auto_increment - 1 from information_schema.tables "
+        "where table_schema = database() and table_name = 'sa'"
+    ),
+}
+
+
+def message_count(connection: Connection) -> tuple[str, int] | None:
+    """Return the id of the database and that of the newest message it gave out, 0 before the first.
+
+    None where one of them is not known, as while somebody restores it.
+    """
+    id = _known(connection, ID)
+    newest = connection.scalar(text(_NEWEST[connection.dialect.name]))
+    return None if id is None or newest is None else (id, int(newest))
 
 
 def fact(connection: Connection, name: str, value: str) -> str:

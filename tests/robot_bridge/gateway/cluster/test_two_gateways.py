@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
+import json
 import signal
 import time
 
@@ -13,6 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 from tests.support.databases.database_client import DatabaseClient
+from tests.support.databases.older_state import OlderState
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port
@@ -547,3 +549,81 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
     assert dict(second.sql("select name, value from bridge")) == ids[1]
     first.end()
     second.end()
+
+
+OLDER = "It counts as another one from now on"
+
+
+@pytest.fixture
+def noting_pair(start_bridge, site, postgresql_server, new_database, tmp_path):
+    pair = GatewayPair(start_bridge, site, new_database.another("postgresql"), tmp_path)
+    yield pair
+    pair.a.end()
+    pair.b.end()
+
+
+def driven(pair, folder):
+    """Have a robot at b drive that was sent on since the state of the database that is returned."""
+    pair.b.start_robot("r1", (20.0, 20.0, 0.0), options=["--speed", "0.5"])
+    desk = desk_at(pair.b)
+    desk.wait_for_robots("r1")
+    older = OlderState(pair.b.database, folder)
+    for y in (20.0, 21.0, 22.0):
+        desk.send(f"target-{y:g}", "r1", "SetPosEnd", x=180.0, y=y)
+        desk.wait_for_step(f"target-{y:g}", "acknowledged")
+    ((newest,),) = pair.b.sql("select max(sa_id) from commands")
+    for name in "ab":
+        wait_until(
+            lambda name=name: any(
+                json.loads(note.read_text())["newest_message"] >= newest
+                for note in (folder / name).glob("newest-message-*.json")
+            )
+        )
+    return older
+
+
+def abort_at(bridge):
+    """Abort the robot, which drives; fail unless it stands soon."""
+    desk = desk_at(bridge)
+    desk.until(lambda: desk.robots.get("r1", {}).get("v", 0.0) > 0.1 and desk.robots["r1"]["age"] < 1, 20)
+    desk.send("abort-0001", "r1", "Abort")
+    desk.until(lambda: abs(desk.robots["r1"]["v"]) < 0.02)
+
+
+def test_an_abort_stops_a_robot_though_the_database_was_put_back_while_no_gateway_ran(noting_pair, tmp_path):
+    pair, older = noting_pair, driven(noting_pair, tmp_path)
+    for bridge in (pair.a, pair.b):
+        bridge.kill_gateway()
+    older.put_back()
+    pair.b.start_gateway()
+    pair.a.start_gateway()
+    assert (pair.b.output() + pair.a.output()).count(OLDER) == 1
+    abort_at(pair.b)
+
+
+def test_gateways_end_whose_database_is_put_back_to_an_older_state_meanwhile(noting_pair, tmp_path):
+    pair, older = noting_pair, driven(noting_pair, tmp_path)
+    older.put_back()
+    for bridge in (pair.a, pair.b):
+        assert bridge.gateway.wait(BUSY * 20) == 1
+        assert "was put back to an older state while this gateway served it" in bridge.output()
+    pair.b.start_gateway()
+    assert OLDER in pair.b.output()
+    abort_at(pair.b)
+
+
+def test_a_gateway_that_serves_an_older_database_and_knows_nothing_of_that_ends(noting_pair, tmp_path):
+    """Its robots can connect to the one that knows it."""
+    pair, older = noting_pair, driven(noting_pair, tmp_path)
+    for bridge in (pair.a, pair.b):
+        bridge.kill_gateway()
+    for note in (tmp_path / "b").glob("newest-message-*.json"):
+        note.unlink()
+    older.put_back()
+    pair.b.start_gateway()
+    assert OLDER not in pair.b.output()
+    pair.a.start_gateway()
+    assert OLDER in pair.a.output()
+    assert "Served by b, too: see that each ends and starts again" in pair.a.output()
+    assert pair.b.gateway.wait(BUSY * 20) == 1
+    abort_at(pair.a)
