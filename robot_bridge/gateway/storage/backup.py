@@ -108,8 +108,8 @@ class ServerBackups:
         with gzip.open(file, "rb") as source:
             while piece := source.read(_PIECE):
                 yield piece
-        new_id = _new_id(self.schema + bridge.name) if run_once(self._url, _has_id) else []
-        yield b"\n" + "\n".join([*new_id, *self._after(tables)]).encode() + b"\n"
+        new_id, greeting = _new_id(self.schema) if run_once(self._url, _has_id) else ([], [])
+        yield b"\n" + "\n".join([*new_id, *self._after(tables, greeting)]).encode() + b"\n"
 
     def _run(
         self, command: Sequence[str], script: Iterable[bytes] | None, output: gzip.GzipFile | None
@@ -156,7 +156,7 @@ class ServerBackups:
     def _before(self, tables: Collection[str]) -> list[str]:
         raise NotImplementedError
 
-    def _after(self, tables: Collection[str]) -> list[str]:
+    def _after(self, tables: Collection[str], greeting: Sequence[str]) -> list[str]:
         raise NotImplementedError
 
     def _secrets(self) -> Mapping[str, str]:
@@ -203,12 +203,13 @@ class PostgreSqlBackups(ServerBackups):
     def _before(self, tables: Collection[str]) -> list[str]:
         return [f"delete from public.{name};" for name in (*tables, "rr")]  # nosec B608 # our tables
 
-    def _after(self, tables: Collection[str]) -> list[str]:
-        return [
+    def _after(self, tables: Collection[str], greeting: Sequence[str]) -> list[str]:
+        numbers = [
             f"select setval(pg_get_serial_sequence('public.{name}', 'id'), {_highest(f'public.{name}')});"
             for name in tables
             if name in NUMBERED
-        ] + [_BY_DAY]
+        ]
+        return [*numbers, *greeting, _BY_DAY]
 
     def _secrets(self) -> Mapping[str, str]:
         url = self._url
@@ -252,9 +253,10 @@ class MariaDbBackups(ServerBackups):
     def _before(self, tables: Collection[str]) -> list[str]:
         return ["set autocommit = 0;", *(f"delete from `{name}`;" for name in (*tables, "rr"))]  # nosec B608 # names of ours
 
-    def _after(self, tables: Collection[str]) -> list[str]:
+    def _after(self, tables: Collection[str], greeting: Sequence[str]) -> list[str]:
         # Inserting moved the numbers of the others on; those of sa may be known to robots and gone from it.
         return [
+            *greeting,
             "commit;",
             f"set @next = {_highest('sa')} + 1;",
             "execute immediate concat('alter table sa auto_increment = ', @next);",
@@ -286,12 +288,19 @@ def _has_id(connection: Connection) -> bool:
     return bridge.name in inspect(connection).get_table_names()
 
 
-def _new_id(table: str) -> list[str]:
-    """Return SQL that gives the database another id: messages come again under numbers that robots know."""
+def _new_id(schema: str) -> tuple[list[str], list[str]]:
+    """Return SQL that gives the database another id: messages come again under numbers that robots know.
+
+    And SQL that tells robots on SQL of that, who do not connect; for when numbers are given out again.
+    """
+    table, id = schema + bridge.name, str(uuid.uuid4())
+    start = sqlite_file_metadata.GREETING.format(schema=schema).replace(
+        ":params", f"'{json.dumps({'database': id})}'"
+    )
     return [
         f"delete from {table} where name = '{ID}';",  # nosec B608 # our tables
-        f"insert into {table} (name, value) values ('{ID}', '{uuid.uuid4()}');",  # nosec B608 # our tables
-    ]
+        f"insert into {table} (name, value) values ('{ID}', '{id}');",  # nosec B608 # our tables
+    ], [f"{start};"]
 
 
 def _highest(table: str) -> str:
