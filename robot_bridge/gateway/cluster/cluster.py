@@ -165,7 +165,8 @@ def fleet_id(connection: Connection) -> str:
     if here is not None and (before := metadata.fact(connection, PLACE, here)) != here:
         is_served = any(member.alive for member in gateways.members(connection))
         if not is_served and metadata.replace_fact(connection, PLACE, before, here):
-            metadata.forget_facts(connection, [metadata.ID, metadata.FLEET, KEY])
+            metadata.forget_facts(connection, [metadata.FLEET, KEY])
+            metadata.renew_id(connection, metadata.database_id(connection))
             log.warning(
                 "this database is a copy of another one, or was moved: from now on it is fleet %s, which the "
                 "account on a NATS server has to be allowed",

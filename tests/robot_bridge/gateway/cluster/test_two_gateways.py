@@ -521,6 +521,8 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
     options = ["--gateway-name", "a", "--bus", nats.url]
     first = start_bridge(site, url, [*options, "--state", tmp_path])
     end_gateway(first)
+    values = "('on-sql', 1, 'sql', 1.0, 1)"
+    first.sql(f"insert into robots (name, magic, link, received_at, ended_in_order) values {values}")
     copy = postgresql_server.copied_database(url.rpartition("/")[2])
     if not is_noticed:
         with contextlib.closing(DatabaseClient(copy)) as client:
@@ -530,6 +532,10 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
     second = start_bridge(site, copy, [*options, "--state", tmp_path / "copy"])
     ids = [dict(one.sql("select name, value from bridge")) for one in (first, second)]
     assert (ids[0]["id"] != ids[1]["id"]) == (ids[0]["bus_key"] != ids[1]["bus_key"]) == is_noticed
+    assert (ids[0]["fleet"] != ids[1]["fleet"]) == is_noticed
+    # Robots on SQL do not connect, and would not know that the ids of messages begin again.
+    starts = second.sql("select params from sa where robot = 'on-sql' and op = 'Start'")
+    assert [json.loads(params)["database"] for (params,) in starts] == [ids[1]["id"]] * is_noticed
     said = "is a copy of another one" if is_noticed else "gateway a serves a copy of this fleet's database"
     wait_until(lambda: said in second.output())
     robot, desk = first.robot(name), desk_at(second)
