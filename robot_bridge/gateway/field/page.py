@@ -234,6 +234,11 @@ def site_outline(site: Site) -> dict[str, Any]:
         "id": site.id,
         "name": site.name,
         "version": site.version,
+        "frame": {
+            "crs": site.frame.crs,
+            "origin": list(site.frame.origin),
+            "rotation": site.frame.rotation,
+        },
         "bounds": degrees(_rim(site.bounds)),
         "to_earth": earth_polynomial(site.frame, site.bounds)._asdict(),
         "keepouts": [

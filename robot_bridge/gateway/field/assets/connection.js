@@ -6,6 +6,11 @@ export const SILENT_AFTER_MS = 3000;
 const ANSWER_WITHIN_MS = 10000;
 const FIRST_WAIT_MS = 500;
 const LONGEST_WAIT_MS = 8000;
+/** Milliseconds in which nothing of the page ran, after which it was asleep: what waited meanwhile is of long ago. */
+const ASLEEP_AFTER_MS = 5000;
+const HEADERS_WITHIN_MS = 10000;
+/** Milliseconds for an answer about what holds robots, before it is asked for on another link, and between two. */
+const FIRST_ANSWER_MS = 1500, BETWEEN_MS = 300;
 /** Close codes that say that the token, or the session, does not hold any more. */
 const ENDED = new Set([4003, 4004]);
 /** The rate of a subscription cannot be 0: so seldom, and of next to nobody, where positions are asked for. */
@@ -24,6 +29,28 @@ export class AnswerError extends Error {
 export function newId() {
   const bytes = crypto.getRandomValues(new Uint8Array(16));
   return Array.from(bytes, (byte) => byte.toString(16).padStart(2, "0")).join("");
+}
+
+let clocks = { date: Date.now(), steady: performance.now() }, slept = 0;
+
+/** Milliseconds that only grow, those included for which the phone slept: performance.now() stands still then. */
+export function steadyNow() {
+  const date = Date.now(), steady = performance.now(), more = date - clocks.date - (steady - clocks.steady);
+  clocks = { date, steady };
+  // A clock that is set ahead makes what is known older than it is, never newer.
+  if (more > ASLEEP_AFTER_MS) slept += more;
+  return steady + slept;
+}
+
+/** Ask for the site, which a phone may load for a minute; rejects where the gateway does not begin to answer. */
+export async function fetchSite(token) {
+  const aborter = new AbortController(), timer = setTimeout(() => aborter.abort(), HEADERS_WITHIN_MS);
+  const headers = token ? { Authorization: `Bearer ${token}` } : {};
+  try {
+    return await fetch("/field/site.json", { headers, signal: aborter.signal });
+  } finally {
+    clearTimeout(timer);
+  }
 }
 
 function address() {
@@ -52,9 +79,9 @@ function openSocket(token) {
 }
 
 /**
- * Events: `up` (detail: the answer to hello), `down`, `ended` (detail: why the session is over), `notice`
+ * Events: `open` (a link is there, and nothing came on it yet), `up` (detail: the answer to hello), `down`, `ended` (detail: why the session is over), `notice`
  * (detail: {method, params}), `positions` (detail: {robots: rows by name, everything, removed,
- * view: null where nothing is new of it}; removed also names those that the page is told of no more).
+ * untracked: those that the page is told of no more, view: null where nothing is new of it}).
  */
 export class Connection extends EventTarget {
   constructor() {
@@ -71,9 +98,12 @@ export class Connection extends EventTarget {
     this._wait = FIRST_WAIT_MS;
     this._timer = null;
     this._wanted = false;
+    this._ranAt = steadyNow();
     setInterval(() => this._watch(), ASK_EVERY_MS);
     window.addEventListener("online", () => this._retryNow());
-    document.addEventListener("visibilitychange", () => document.hidden || this._retryNow());
+    document.addEventListener("visibilitychange", () => document.hidden || this._wake() || this._retryNow());
+    // Kept by the browser while another page was shown: its link is over, whatever it looks like.
+    window.addEventListener("pageshow", ({ persisted }) => persisted && this._renew());
   }
 
   start(token) {
@@ -92,7 +122,7 @@ export class Connection extends EventTarget {
 
   /** Seconds since the gateway was heard last, null before it was. */
   silence() {
-    return this.heardAt === null ? null : (performance.now() - this.heardAt) / 1000;
+    return this.heardAt === null ? null : (steadyNow() - this.heardAt) / 1000;
   }
 
   /** Ask for something; rejects with AnswerError when it is refused, not sent or not answered. */
@@ -134,6 +164,22 @@ export class Connection extends EventTarget {
     });
   }
 
+  /** Ask for what holds robots: past a link that does not answer, the same again, for as long as `goesOn` says so. */
+  async insist(method, params, goesOn) {
+    const until = steadyNow() + ANSWER_WITHIN_MS;
+    let sent = false;
+    for (let aside = false; ; aside = true) {
+      try {
+        return await (aside ? this.askAside(method, params, FIRST_ANSWER_MS) : this.ask(method, params, FIRST_ANSWER_MS));
+      } catch (error) {
+        if (!error.silent) throw error;
+        sent ||= error.sent;
+        if (!this._wanted || steadyNow() > until || !goesOn()) throw new AnswerError("no answer", { silent: true, sent });
+        await new Promise((resolve) => setTimeout(resolve, BETWEEN_MS));
+      }
+    }
+  }
+
   /** Choose how positions come: told when they change, or asked for every 600 ms; of all robots, or by a view. */
   choosePositions(byPolling, rate, form, view) {
     this.byPolling = byPolling;
@@ -164,6 +210,7 @@ export class Connection extends EventTarget {
     const socket = openSocket(this.token);
     this._socket = socket;
     socket.onopen = async () => {
+      this._tell("open", null);
       try {
         const hello = await this.ask("hello", { operator: "field page", protocol: 1 }, SILENT_AFTER_MS);
         this.isUp = true;
@@ -179,7 +226,9 @@ export class Connection extends EventTarget {
   }
 
   _read(data) {
-    this.heardAt = performance.now();
+    // What lay here while the page slept looks as if it came now.
+    if (this._wake()) return;
+    this.heardAt = steadyNow();
     this.received += data.byteLength ?? data.length;
     if (typeof data !== "string") {
       this.positionsReceived += data.byteLength;
@@ -229,12 +278,25 @@ export class Connection extends EventTarget {
     if (wasUp) this._tell("down", null);
   }
 
+  /** Note that the page runs; return whether it slept before that. Then its link is made again. */
+  _wake() {
+    const now = steadyNow(), wasAsleep = now - this._ranAt > ASLEEP_AFTER_MS;
+    this._ranAt = now;
+    if (wasAsleep) this._renew();
+    return wasAsleep;
+  }
+
+  _renew() {
+    if (!this._wanted) return;
+    this._drop();
+    this._wait = FIRST_WAIT_MS;
+    this._retryNow();
+  }
+
   _watch() {
-    if (!this.isUp) return;
+    if (this._wake() || !this.isUp) return;
     if (this.silence() * 1000 > SILENT_AFTER_MS + ASK_EVERY_MS) {
-      this._drop();
-      this._wait = FIRST_WAIT_MS;
-      this._retryNow();
+      this._renew();
       return;
     }
     this.ask("hello", { operator: "field page", protocol: 1 }).then(
@@ -261,7 +323,7 @@ function rowsOf(params) {
 }
 
 function newsOf({ everything, removed, untracked, view }) {
-  return { everything: everything === true, removed: [...(removed ?? []), ...(untracked ?? [])], view: view ?? null };
+  return { everything: everything === true, removed: removed ?? [], untracked: untracked ?? [], view: view ?? null };
 }
 
 const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities"]);

@@ -1,7 +1,7 @@
 /** The field page: wires the connection, the map, the emergency stop and what is said of robots. */
 
 import { PositionBudget } from "/field/budget.js";
-import { Connection, newId, otherPages, SILENT_AFTER_MS } from "/field/connection.js";
+import { AnswerError, Connection, fetchSite, newId, otherPages, SILENT_AFTER_MS, steadyNow } from "/field/connection.js";
 import { SiteMap } from "/field/map.js";
 import { EmergencyStop } from "/field/stop.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
@@ -13,15 +13,31 @@ const LISTED = 50;
 const STILL_MS = 250;
 /** Milliseconds after which a list that stays open is asked for again. */
 const LISTED_FOR_MS = 5000;
+/** Milliseconds after which the site is asked for again where it did not come, or not the one that is served. */
+const SITE_AGAIN_MS = 2000;
+/** Milliseconds for which a list stays as it is after a finger left it: the click comes later. */
+const FINGER_MS = 300;
 const by = (id) => document.getElementById(id);
 
 class Field {
   constructor() {
     this.robots = new Map();
     this.tasks = new Map();
-    this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
-    this.unlisted = { geofence: 0, nearness: 0 };
+    this._forgetAlarms();
     this.account = null;
+    /** Whether a token is tried of which the gateway has not said yet that it does not hold. */
+    this.isSigningIn = false;
+    /** The database and the frame of the gateway: of others, the same names and metres are other robots and places. */
+    this.database = null;
+    this.frame = null;
+    /** Whether the positions are of the link that there is. */
+    this.isCurrent = false;
+    /** The target that is being made: its robot, and the id that it keeps however often it is sent. */
+    this.draft = null;
+    /** How often something was pressed that holds robots. */
+    this.holds = 0;
+    this.resumes = 0;
+    this._isListHeld = false;
     this.others = [];
     this.selected = null;
     this.place = null;
@@ -37,7 +53,7 @@ class Field {
     this.stop = new EmergencyStop(
       this.connection,
       { button: by("stop"), state: by("stop-state"), clear: by("clear") },
-      () => this.account?.role ?? null,
+      () => this.account?.role ?? (this.isSigningIn ? "" : null),
     );
     this.banners = new Map();
     this._listenToGateway();
@@ -61,11 +77,18 @@ class Field {
   // --- the account
 
   async _signIn(token, { remember = false, quietly = false } = {}) {
+    clearTimeout(this._retry);
+    const attempt = (this._attempt = {});
     this._setConnection("connecting");
+    // A stop goes out with it already, however long the site takes.
+    this.connection.token = token;
+    this.isSigningIn = true;
     let answer;
     try {
       answer = await fetchSite(token);
+      if (attempt !== this._attempt) return;
     } catch {
+      if (attempt !== this._attempt) return;
       // Not reached: the page tries on, and signs in when there is a network again.
       this._retry = setTimeout(() => this._signIn(token, { remember, quietly }), 2000);
       this._setConnection("none");
@@ -79,12 +102,16 @@ class Field {
     keep(TOKEN, token, remember || localStorage.getItem(TOKEN) === token);
     by("login").hidden = true;
     this.token = token;
-    await this._readSite(answer);
+    // Robots and the stop before the site, which may be long on its way.
     this.connection.start(token);
+    await this._readSite(answer).catch(() => {});
+    this._siteAgain();
   }
 
   _showLogin(reason) {
     this.account = null;
+    this.isSigningIn = false;
+    this.stop.forget();
     by("login-reason").textContent = reason;
     by("login").hidden = false;
     this._setConnection("out");
@@ -92,8 +119,11 @@ class Field {
   }
 
   _signOut(reason = "") {
+    clearTimeout(this._retry);
+    this._attempt = null;
     keep(TOKEN, "", false);
     this.connection.stop();
+    this._select(null);
     this._close("menu");
     this._showLogin(reason);
   }
@@ -103,12 +133,14 @@ class Field {
       this._banner("site", tr("The site is not drawn: {reason}", { reason: await answer.text() }));
       return;
     }
-    const site = await answer.json();
+    const site = await answer.json(), before = this.site;
+    // Asked for before the gateway was another one.
+    if (this.frame !== null && !isSame(site.frame, this.frame)) return;
     this._banner("site", "");
-    if (["id", "version", "gateway"].every((fact) => site[fact] === this.site?.[fact])) return;
+    if (["id", "version", "gateway"].every((fact) => site[fact] === before?.[fact])) return;
     this.site = site;
     by("site").textContent = document.title = site.name;
-    this.map.showSite(site);
+    this.map.showSite(site, site.id === before?.id);
     this.views.restart();
     this._renewView();
     if (site.left_out.length) this._banner("left-out", tr("Too much to draw: {what} are not all shown.", { what: site.left_out.join(", ") }));
@@ -127,6 +159,8 @@ class Field {
 
   _listenToGateway() {
     const gateway = this.connection, on = (type, act) => gateway.addEventListener(type, ({ detail }) => act(detail));
+    // What goes on is told again on a new link, and what is over is not.
+    on("open", () => this._forgetAlarms());
     on("up", (hello) => {
       this._greeted(hello);
       this._choosePositions();
@@ -138,7 +172,10 @@ class Field {
       this._greeted(hello);
       if (this.views.isDue) this._renewView();
     });
-    on("down", () => this._tick());
+    on("down", () => {
+      this.isCurrent = false;
+      this._tick();
+    });
     on("ended", (reason) => this._signOut(reason));
     on("refused", (reason) => this._banner("refused", reason));
     on("positions", (positions) => this._positions(positions));
@@ -147,6 +184,7 @@ class Field {
 
   _greeted(hello) {
     const before = this.account?.role;
+    this._standOn(hello);
     this.account = { name: hello.operator, role: hello.role };
     this.others = otherPages(hello.gateways);
     this.bounds = hello.site.bounds;
@@ -158,13 +196,47 @@ class Field {
     this._setConnection("up");
   }
 
-  _positions({ robots, everything, removed, view }) {
+  /** Forget what is of another fleet or another frame than this gateway's: nothing of it may be sent to this one. */
+  _standOn({ database, site: { crs, origin, rotation } }) {
+    const frame = { crs, origin, rotation }, isKnown = this.database !== null;
+    const isAnother = isKnown && (database !== this.database || !isSame(frame, this.frame));
+    this.database = database;
+    this.frame = frame;
+    if (isAnother) {
+      this.robots.clear();
+      this.tasks.clear();
+      this.fleet = null;
+      this.found = { robots: new Map(), count: 0, at: -Infinity };
+      this._select(null);
+      this._remark("ground", tr("Another site, or another fleet, is served now than before. What was being made was not sent. Look at the map."));
+    }
+    if (this.site && !isSame(this.site.frame, frame)) {
+      this.site = null;
+      this.views.restart();
+      this.map.hideSite();
+      this._siteAgain();
+    }
+  }
+
+  _positions({ robots, everything, removed, untracked, view }) {
     if (everything) this.robots.clear();
     if (everything || view) this.fleet = view;
-    for (const name of removed) this.robots.delete(name);
-    const at = performance.now();
+    for (const name of [...removed, ...untracked]) this.robots.delete(name);
+    const at = steadyNow();
     for (const [name, one] of robots) this.robots.set(name, { ...one, at });
+    this.isCurrent = this.connection.isUp;
+    // One of that name that comes later is another one.
+    const isGone = removed.includes(this.selected) || (everything && !view && !this.robots.has(this.selected));
+    if (this.selected !== null && isGone) {
+      this._remark("gone", tr("{robot} was removed.", { robot: this.selected }));
+      this._select(null);
+    }
     this._draw();
+  }
+
+  _forgetAlarms() {
+    this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
+    this.unlisted = { geofence: 0, nearness: 0 };
   }
 
   _notice({ method, params }) {
@@ -180,12 +252,21 @@ class Field {
     this._showAlarms();
   }
 
-  _newSite() {
-    fetchSite(this.token).then((answer) => this._readSite(answer), () => {});
+  async _newSite() {
+    await fetchSite(this.token).then((answer) => this._readSite(answer)).catch(() => {});
+    this._siteAgain();
+  }
+
+  /** Ask for the site until it is there: without it neither it nor robots are drawn. */
+  _siteAgain() {
+    clearTimeout(this._siteTimer);
+    if (this.site === null && this.account) this._siteTimer = setTimeout(() => this._newSite(), SITE_AGAIN_MS);
   }
 
   _task(report) {
     this.tasks.set(report.robot, report);
+    // Of one that was not answered the gateway says so after all.
+    if (this.draft && report.command === this.draft.command) this._wasSent(this.draft);
     if (report.robot === this.selected) this._showRobot();
   }
 
@@ -279,7 +360,7 @@ class Field {
   }
 
   _draw() {
-    this.map.showRobots(this.robots.values(), this.fleet?.density, this.selected, !this.connection.isUp);
+    this.map.showRobots(this.robots.values(), this.fleet?.density, this.selected, !this.isCurrent);
     if (!by("menu").hidden) this._list();
     this._showAlarms();
   }
@@ -299,19 +380,20 @@ class Field {
   async _find() {
     clearTimeout(this._typing);
     const text = by("search").value.trim();
-    this.found.at = performance.now();
+    this.found.at = steadyNow();
     const asked = (this._asked = { text, limit: LISTED });
     const answer = await this.connection.ask("find_robots", asked).catch(() => null);
     // Another text was typed meanwhile, or there was no answer: it is asked for again.
     if (answer === null || asked !== this._asked) return;
-    const at = performance.now(), robots = new Map(answer.robots.map((one) => [one.robot, { ...one, at }]));
+    const at = steadyNow(), robots = new Map(answer.robots.map((one) => [one.robot, { ...one, at }]));
     this.found = { robots, count: answer.count, at };
     this._list();
   }
 
   _list() {
     const wanted = by("search").value.trim().toLowerCase();
-    if (this.fleet && performance.now() - this.found.at > LISTED_FOR_MS) this._find();
+    if (this._isListHeld) return;
+    if (this.fleet && steadyNow() - this.found.at > LISTED_FOR_MS) this._find();
     const known = this.fleet ? this.found.robots : this.robots, list = by("robots");
     const names = [...known.keys()].filter((name) => name.toLowerCase().includes(wanted)).sort();
     const shown = names.slice(0, LISTED);
@@ -328,11 +410,16 @@ class Field {
         list.append(item);
       }
       button.dataset.robot = name;
-      const text = `${name}: ${tr(one.state)}`;
+      const text = `${name}: ${this._stateOf(one)}`;
       if (button.textContent !== text) button.textContent = text;
     });
     const more = (this.fleet ? this.found.count : names.length) - shown.length;
     by("robots-more").textContent = more > 0 ? tr("{n} more: search for them", { n: more }) : names.length ? "" : tr("no robots");
+  }
+
+  /** Return the state of a robot as it is, or as it was where the gateway is not heard. */
+  _stateOf({ state }) {
+    return this.isCurrent ? tr(state) : tr("was {state}", { state: tr(state) });
   }
 
   _showAlarms() {
@@ -381,9 +468,9 @@ class Field {
     if (name === null || !by("target-panel").hidden) return;
     const one = this.robots.get(name), task = this.tasks.get(name), role = this.account?.role ?? "viewer";
     by("robot-name").textContent = name;
-    const since = one ? (performance.now() - one.at) / 1000 : 0, facts = [];
+    const since = one ? (steadyNow() - one.at) / 1000 : 0, facts = [];
     if (one) {
-      facts.push(tr(one.state));
+      facts.push(this._stateOf(one));
       // Of very many robots no more than state and place is told.
       if (one.age !== undefined) facts.push(tr("heard {s} s ago", { s: Math.round(one.age + since) }));
       if (one.x === undefined) facts.push(tr("has not said where it is"));
@@ -402,16 +489,47 @@ class Field {
     if (!may) this._answer("robot-answer", tr("Your role, {role}, may only look.", { role }), true);
   }
 
-  async _do(method, params, into = "robot-answer") {
+  /**
+   * Ask for something of a robot, and say what became of it: at `into`, unless another robot is chosen by then, or
+   * something else was pressed or another target of it is made: then where it is read all the same.
+   */
+  async _do(what, ask, into = "robot-answer") {
+    const robot = this.selected, draft = this.draft, press = (this._press = {});
+    const say = (text, refused = false) => {
+      if (draft?.wasSent) return;
+      if (this.selected === robot && this.draft === draft && this._press === press) this._answer(into, text, refused);
+      else this._remark(`answer ${robot} ${what}`, `${robot}, ${what}: ${text}`, refused);
+    };
     this._answer(into, "…");
     try {
-      const result = await this.connection.ask(method, params);
-      this._answer(into, tr("sent"));
+      const result = await ask();
+      // It may have been reported before it was answered.
+      if (draft && draft === this.draft) this._wasSent(draft);
+      else say(tr("sent"));
       return result;
     } catch (error) {
-      this._answer(into, failure(error), true);
+      say(failure(error), true);
       return null;
     }
+  }
+
+  /** Ask for what sets a robot in motion: of no gateway that has not said yet which fleet is its own. */
+  _move(method, params) {
+    if (this.connection.isUp) return this.connection.ask(method, params);
+    return Promise.reject(new AnswerError("not connected", { silent: true, sent: false }));
+  }
+
+  /** Abort or pause the chosen robot, past a link that does not answer. */
+  _hold(what, method, params, goesOn) {
+    this.holds++;
+    const all = { ...params, robot: this.selected, reason: "field page" };
+    return this._do(what, () => this.connection.insist(method, all, goesOn));
+  }
+
+  _pause() {
+    const resumed = this.resumes;
+    // Resumed meanwhile, it is not paused later.
+    return this._hold(tr("Pause"), "pause_robot", {}, () => this.resumes === resumed);
   }
 
   _answer(id, text, refused = false) {
@@ -419,15 +537,21 @@ class Field {
     by(id).classList.toggle("refused", refused);
   }
 
-  async _resume() {
-    const robot = this.selected, queue = await this._do("get_queue", { robot });
-    const found = queue?.queues?.[0];
-    if (found) await this._do("resume_queue", { robot, revision: found.revision });
+  _resume() {
+    const robot = this.selected, holds = this.holds;
+    this.resumes++;
+    return this._do(tr("Resume"), async () => {
+      const { queues } = await this._move("get_queue", { robot });
+      // Its answer may be of after a pause that was pressed meanwhile, which is what holds.
+      if (holds !== this.holds) throw new AnswerError(tr("something that holds robots was pressed since"));
+      if (queues[0]) await this._move("resume_queue", { robot, revision: queues[0].revision });
+    });
   }
 
   // --- a target
 
   _beginTarget(byCoordinates) {
+    this.draft = { robot: this.selected, command: null, params: "" };
     this.place = null;
     this.map.markTarget(null);
     this.map.isChoosing = !byCoordinates;
@@ -445,6 +569,7 @@ class Field {
   }
 
   _endTarget() {
+    this.draft = null;
     this.map.isChoosing = false;
     by("map").classList.remove("choosing");
     this.map.markTarget(null);
@@ -485,15 +610,20 @@ class Field {
       return;
     }
     by("send").disabled = true;
-    const params = { positions: [{ robot: this.selected, ...where, cone: by("cone").checked }] };
-    const sent = await this._do("set_positions", params, "target-answer");
-    by("send").disabled = false;
-    if (sent) {
-      sent.commands.forEach((one) => this._task(one));
-      this._endTarget();
-      this._answer("robot-answer", tr("sent"));
-      this._showRobot();
-    }
+    const draft = this.draft, params = { ...where, cone: by("cone").checked };
+    // Sent again after no answer it is the same, and done once; another place is another one.
+    if (draft.params !== JSON.stringify(params)) Object.assign(draft, { command: newId(), params: JSON.stringify(params) });
+    const order = { command: draft.command, robot: draft.robot, op: "SetPosEnd", params };
+    const sent = await this._do(tr("Send"), () => this._move("send", order), "target-answer");
+    if (sent) this._task(sent);
+    if (draft === this.draft) by("send").disabled = false;
+  }
+
+  _wasSent(draft) {
+    draft.wasSent = true;
+    this._endTarget();
+    this._answer("robot-answer", tr("sent"));
+    this._showRobot();
   }
 
   // --- the page itself
@@ -503,8 +633,8 @@ class Field {
     on("menu-button", "click", () => (by("menu").hidden ? this._openMenu() : this._close("menu")));
     on("search", "input", () => this._typed());
     on("robot-close", "click", () => this._select(null));
-    on("abort", "click", () => this._do("abort", { command: newId(), robot: this.selected, reason: "field page" }));
-    on("pause", "click", () => this._do("pause_robot", { robot: this.selected, reason: "field page" }));
+    on("abort", "click", () => this._hold(tr("Abort"), "abort", { command: newId() }, () => true));
+    on("pause", "click", () => this._pause());
     on("resume", "click", () => this._resume());
     on("target", "click", () => this._beginTarget(false));
     on("coordinates", "click", () => this._beginTarget(true));
@@ -522,6 +652,18 @@ class Field {
       this._signIn(by("token").value.trim(), { remember: by("remember").checked });
       by("token").value = "";
     });
+    // No other robot may come under a finger that is down on the list.
+    on("robots", "pointerdown", () => {
+      clearTimeout(this._lifting);
+      this._isListHeld = true;
+    });
+    // A long press is a pointercancel, and a click all the same.
+    for (const type of ["pointerup", "touchend", "touchcancel"]) {
+      window.addEventListener(type, () => {
+        clearTimeout(this._lifting);
+        this._lifting = setTimeout(() => (this._isListHeld = false), FINGER_MS);
+      });
+    }
     this.map.addEventListener("robot", ({ detail }) => this._select(detail));
     this.map.addEventListener("place", ({ detail }) => this._choose(detail));
     this.map.addEventListener("moved", () => this._moved());
@@ -590,6 +732,14 @@ class Field {
     );
   }
 
+  /** Say what is to be read, and stays until it was. */
+  _remark(id, text, isBad = true) {
+    const button = element("button", tr("Close"));
+    button.type = "button";
+    button.onclick = () => this._banner(id, "");
+    this._banner(id, text, button, isBad ? "bad" : "");
+  }
+
   _banner(id, text, more = null, kind = "") {
     let one = this.banners.get(id);
     if (!text) {
@@ -608,8 +758,8 @@ class Field {
   }
 }
 
-function fetchSite(token) {
-  return fetch("/field/site.json", { headers: token ? { Authorization: `Bearer ${token}` } : {} });
+function isSame(one, other) {
+  return JSON.stringify(one) === JSON.stringify(other);
 }
 
 function failure(error) {

@@ -207,10 +207,12 @@ export class SiteMap extends EventTarget {
     this._layer.on("drawn", ({ robots }) => this.dispatchEvent(new CustomEvent("drawn", { detail: robots })));
     this._map.on("moveend", () => this.dispatchEvent(new Event("moved")));
     this._map.on("click", (event) => this._tapped(event));
+    // What is under the finger when it comes down is what was meant: until it is let go the map may move, and robots do.
+    element.addEventListener("pointerdown", (event) => (this._touched = event.isPrimary ? this._at(event) : null), true);
   }
 
-  /** Draw a site as site.json gives it, and look at the whole of it. */
-  showSite(site) {
+  /** Draw a site as site.json gives it, and look at the whole of it, unless it is the one that is seen already. */
+  showSite(site, isSeen) {
     this._site.clearLayers();
     this._toEarth = earthOf(site.to_earth);
     this._toSite = siteOf(site.to_earth);
@@ -227,7 +229,16 @@ export class SiteMap extends EventTarget {
     }
     const rim = L.polyline(swapped(site.bounds), { ...plain, color: BOUNDS, weight: 2 }).addTo(this._site);
     this._bounds = rim.getBounds();
-    this.showWhole();
+    if (!isSeen) this.showWhole();
+  }
+
+  /** Draw neither site nor robots: metres are other places now, and it is not known yet which. */
+  hideSite() {
+    this._site.clearLayers();
+    this._toEarth = this._toSite = this._density = null;
+    this._robots = [];
+    this._touched = null;
+    this._layer.show([], null, null, false);
   }
 
   showWhole() {
@@ -315,19 +326,28 @@ export class SiteMap extends EventTarget {
     tiles.addTo(this._site);
   }
 
-  _tapped({ latlng, containerPoint }) {
+  _tapped(event) {
+    // Assistive programs send a click alone.
+    const { lat, lng, nearest, circle } = this._touched ?? this._at(event.originalEvent);
+    this._touched = null;
     if (this.isChoosing) {
-      this.dispatchEvent(new CustomEvent("place", { detail: { lat: latlng.lat, lng: latlng.lng } }));
+      this.dispatchEvent(new CustomEvent("place", { detail: { lat, lng } }));
       return;
     }
-    let nearest = null, least = FINGER;
-    for (const one of this._robots) {
-      const away = this._map.latLngToContainerPoint(one.place).distanceTo(containerPoint);
-      if (away < least) [nearest, least] = [one.robot, away];
-    }
-    const circle = this._layer.circles?.find(({ x, y, radius }) => containerPoint.distanceTo([x, y]) < Math.max(radius, FINGER));
     if (nearest === null && circle) this._map.setZoomAround(L.point(circle.x, circle.y), this._map.getZoom() + CLOSER);
     else this.dispatchEvent(new CustomEvent("robot", { detail: nearest }));
+  }
+
+  /** Return the place under a finger, the robot that is nearest to it, and the circle there. */
+  _at(event) {
+    const { lat, lng } = this._map.mouseEventToLatLng(event), point = this._map.mouseEventToContainerPoint(event);
+    let nearest = null, least = FINGER;
+    for (const one of this._robots) {
+      const away = this._map.latLngToContainerPoint(one.place).distanceTo(point);
+      if (away < least) [nearest, least] = [one.robot, away];
+    }
+    const circle = this._layer.circles?.find(({ x, y, radius }) => point.distanceTo([x, y]) < Math.max(radius, FINGER));
+    return { lat, lng, nearest, circle };
   }
 }
 

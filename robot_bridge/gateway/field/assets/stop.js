@@ -1,16 +1,19 @@
 /** The emergency stop: sent at the touch, again until it is answered, and never silent about it. */
 
-import { newId } from "/field/connection.js";
+import { newId, SILENT_AFTER_MS, steadyNow } from "/field/connection.js";
 import { tr } from "/field/texts.js";
 
 const FIRST_TRY_MS = 900;
 const NEXT_TRY_MS = 2000;
 const BETWEEN_MS = 300;
+/** Milliseconds after which the last report is no longer what holds now: one comes each second. */
+const OLD_AFTER_MS = SILENT_AFTER_MS + 1000;
+const ARMED_MS = 4000;
 /** Shown as many names as fit. */
 const NAMES = 5;
 
 export class EmergencyStop {
-  /** `who` returns the role of this phone, null where it is not signed in. */
+  /** `who` returns the role of this phone, null where it is not signed in, "" where that is not known yet. */
   constructor(connection, { button, state, clear }, who) {
     this._connection = connection;
     this._button = button;
@@ -19,7 +22,9 @@ export class EmergencyStop {
     this._who = who;
     this._trying = null;
     this._report = null;
+    this._reportedAt = -Infinity;
     this._failure = "";
+    /** The stop of which a supervisor pressed once that it be cleared. */
     this._armed = null;
     // At the touch, and for a second thumb on the glass as well, for which there is no click.
     button.addEventListener("pointerdown", (event) => {
@@ -51,7 +56,7 @@ export class EmergencyStop {
         reason: tr("your role, {role}, may not stop robots. Use the robots' own stop buttons.", { role }),
       });
     } else if (!this._trying) {
-      this._trying = { command: newId(), since: performance.now() };
+      this._trying = { command: newId(), since: steadyNow() };
       this._try(this._trying);
     }
     this.show();
@@ -59,12 +64,22 @@ export class EmergencyStop {
 
   /** Take over what the gateway says of the stop. */
   update(report) {
+    // What was not stopped, or not cleared, is over with the next stop.
+    if (report.in_force !== this._report?.in_force || report.stop !== this._report?.stop) this._failure = "";
     this._report = report;
+    this._reportedAt = steadyNow();
+    if (this._armed && this._armed.stop !== report.stop) this._disarm();
+    this.show();
+  }
+
+  /** Say no more of what holds: nobody is signed in. */
+  forget() {
+    this._report = null;
     this.show();
   }
 
   show() {
-    const lines = [], waited = this._trying ? (performance.now() - this._trying.since) / 1000 : 0;
+    const lines = [], waited = this._trying ? (steadyNow() - this._trying.since) / 1000 : 0;
     if (this._trying) {
       lines.push(
         waited < FIRST_TRY_MS / 1000
@@ -73,8 +88,10 @@ export class EmergencyStop {
       );
     }
     if (this._failure) lines.push(this._failure);
-    const stop = this._report;
-    if (stop?.in_force) {
+    const stop = this._report, age = steadyNow() - this._reportedAt;
+    if (stop?.in_force && age > OLD_AFTER_MS) {
+      lines.push(tr("A stop by {who} was in force {s} s ago. It may have been cleared since: the gateway does not answer.", { who: stop.by, s: Math.round(age / 1000) }));
+    } else if (stop?.in_force) {
       lines.push(
         tr("STOP IN FORCE, by {who}: {acknowledged} of {robots} robots have answered, {standing} stand.", { ...stop, who: stop.by }),
       );
@@ -100,6 +117,11 @@ export class EmergencyStop {
           : await this._connection.ask("emergency_stop", params, within);
         this._trying = null;
         this.update(report);
+        if (!report.in_force) {
+          // It was answered late, and is over: who pressed does not know of either.
+          this._failure = tr("The stop was in force, and {who} has cleared it since.", { who: report.cleared_by ?? "?" });
+          this.show();
+        }
       } catch (error) {
         if (!error.silent) {
           this._trying = null;
@@ -118,23 +140,25 @@ export class EmergencyStop {
 
   _pressedClear() {
     if (!this._armed) {
-      this._armed = setTimeout(() => this._disarm(), 4000);
+      this._armed = { stop: this._report.stop, timer: setTimeout(() => this._disarm(), ARMED_MS) };
       this.show();
       return;
     }
+    const { stop } = this._armed;
     this._disarm();
-    const { stop } = this._report;
     this._connection.ask("clear_emergency_stop", { reason: "cleared at the field page", stop }).then(
       (report) => this.update(report),
       (error) => {
-        this._failure = tr("Refused: {reason}", { reason: error.message });
+        this._failure = error.silent
+          ? tr("No answer: it is not known whether the stop was cleared.")
+          : tr("Refused: {reason}", { reason: error.message });
         this.show();
       },
     );
   }
 
   _disarm() {
-    clearTimeout(this._armed);
+    clearTimeout(this._armed?.timer);
     this._armed = null;
     this.show();
   }

@@ -154,6 +154,33 @@ const TEXTS = {
     "La posició del telèfon només es dona a pàgines amb https.",
     "La posición del teléfono solo se da a páginas con https.",
   ],
+  "A stop by {who} was in force {s} s ago. It may have been cleared since: the gateway does not answer.": [
+    "{s} másodperce {who} leállítása érvényben volt. Azóta feloldhatták: az átjáró nem válaszol.",
+    "Fa {s} s una aturada de {who} era en vigor. Pot haver estat aixecada des de llavors: la passarel·la no respon.",
+    "Hace {s} s una parada de {who} estaba en vigor. Puede haberse levantado desde entonces: la pasarela no responde.",
+  ],
+  "The stop was in force, and {who} has cleared it since.": [
+    "A leállítás érvényben volt, és {who} azóta feloldotta.",
+    "L'aturada era en vigor, i {who} l'ha aixecada des de llavors.",
+    "La parada estaba en vigor, y {who} la ha levantado desde entonces.",
+  ],
+  "No answer: it is not known whether the stop was cleared.": [
+    "Nincs válasz: nem tudni, feloldották-e a leállítást.",
+    "Sense resposta: no se sap si l'aturada s'ha aixecat.",
+    "Sin respuesta: no se sabe si la parada se levantó.",
+  ],
+  "Another site, or another fleet, is served now than before. What was being made was not sent. Look at the map.": [
+    "Az eddigitől eltérő területet vagy flottát szolgál ki az átjáró. Ami készülőben volt, nem lett elküldve. Nézze meg a térképet.",
+    "Ara se serveix un altre recinte o una altra flota que abans. El que s'estava preparant no s'ha enviat. Mireu el mapa.",
+    "Ahora se sirve otro recinto u otra flota que antes. Lo que se estaba preparando no se ha enviado. Mire el mapa.",
+  ],
+  "{robot} was removed.": ["{robot} el lett távolítva.", "{robot} s'ha eliminat.", "{robot} se ha eliminado."],
+  "was {state}": ["korábban: {state}", "abans: {state}", "antes: {state}"],
+  "something that holds robots was pressed since": [
+    "azóta robotokat megállító gombot nyomtak meg",
+    "des de llavors s'ha premut un botó que atura robots",
+    "desde entonces se ha pulsado un botón que detiene robots",
+  ],
   "You are here, within {m} m": ["Ön itt van, {m} m pontossággal", "Sou aquí, amb {m} m de precisió", "Está aquí, con {m} m de precisión"],
 };
 
