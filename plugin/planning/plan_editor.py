@@ -285,10 +285,15 @@ class CollectionPlanner(QObject):
         self._desk, self._drafts = desk, drafts
         self._key: str | None = None
         desk.orders.answered.connect(self._answered)
+        desk.state.forgotten.connect(self._forget)
 
     def ask(self, request: CollectLayout) -> None:
         """Ask which cones to collect; raises NotSentError when that cannot be asked."""
         self._key = self._desk.orders.ask(request, tr("What is to be collected"))
+
+    def _forget(self) -> None:
+        # Answers come after the news of another site that came later: those places are the one's before.
+        self._key = None
 
     def _answered(self, answer: RequestResult) -> None:
         if answer.order.key != self._key:

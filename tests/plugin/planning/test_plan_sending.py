@@ -14,6 +14,7 @@ from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QDialog, QLabel, QLineEdit, QPushButton
 
 from tests.plugin.planning.panel_parts import answer, child, cones_of, hung, key, planned, press, question
+from tests.support.bridge.bridge_programs import wait_until
 
 
 def test_only_send_and_a_second_send_submit_the_plan_whole(panel, plans, gateway, wait):
@@ -152,6 +153,26 @@ def test_a_plan_that_is_driven_is_not_thrown_away_by_another_preview(under_way, 
     assert under_way.driven.known is driven and not under_way.drafts.busy
     under_way.collect(None)
     assert gateway.requests_of("collect_layout") == []
+
+
+def test_what_stands_on_one_site_is_collected_on_no_other(panel, gateway):
+    desk, greeted = panel._desk, gateway.subscriptions
+    stands = {"task": "collected-1", "kind": "collect", "x": 75.0, "y": 40.0, "cone": "c1", "placement": 1}
+    gateway.answers["collect_layout"] = lambda params: {"result": {"tasks": [stands], "in_queues": 0}}
+    # A window that stands still: the answer lies there when another site is served.
+    desk.state._timer.stop()
+    panel.collect(None)
+    wait_until(lambda: desk.state._source._buffer._update.answers)
+    gateway.stop()
+    gateway.site = replace(gateway.site, origin=(1000.0, 2000.0))
+    gateway.start()
+    wait_until(lambda: gateway.subscriptions != greeted)
+    refused = []
+    panel.collecting.refused.connect(refused.append)
+    desk.state.pull()
+    assert refused == []
+    assert desk.state.site.origin == (1000.0, 2000.0)
+    assert not panel.drafts.busy and panel.drafts.draft is None
 
 
 def test_a_plan_that_is_cleared_is_asked_of_the_gateway_and_shown_no_longer(under_way, plans, gateway, wait):
