@@ -56,6 +56,8 @@ class Vehicle:
         self.writer = MessageWriter(controller.vehicle)
         self.received_at = now
         self.is_introduced = False
+        self.untold: list[Settled] = []
+        """What came of commands before the gateway knew of it: an order that ended while nobody led it."""
         self._commands: dict[int, asyncio.Future[str | None]] = {}
         self._halts: list[asyncio.Future[None]] = []
 
@@ -295,6 +297,9 @@ class Vda5050Adapter(Adapter):
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
         link.add(vehicle.robot, abilities)
+        for settled in vehicle.untold:
+            self._tell_effect(vehicle, settled)
+        vehicle.untold.clear()
 
     # --- effects --------------------------------------------------------------------------------------
 
@@ -332,8 +337,12 @@ class Vda5050Adapter(Adapter):
     def _tell_effect(self, vehicle: Vehicle, effect: Effect) -> None:
         link = self._link
         if isinstance(effect, Settled):
-            if not vehicle.settle(effect) and effect.reason is not None and link is not None:
+            if vehicle.settle(effect) or effect.reason is None or link is None:
+                return
+            if vehicle.is_introduced:
                 link.give_up(vehicle.robot, effect.command_id, effect.reason)
+            else:
+                vehicle.untold.append(effect)
         elif isinstance(effect, Halted):
             vehicle.halted()
         elif isinstance(effect, VehicleReport) and link is not None and vehicle.is_introduced:

@@ -326,6 +326,20 @@ def test_an_adapter_that_is_killed_sends_no_goal_twice(desk, robot, adapter, nod
     assert len(events(nodes, name, "goal asked")) == 1
 
 
+def test_a_goal_that_ended_while_the_adapter_was_away_is_over(desk, robot, adapter, nodes):
+    near, far = robot(*SLOW), robot(*SLOW)
+    desk.send(f"go-{near}", near, "SetPosEnd", x=22.0, y=8.0)
+    desk.send(f"go-{far}", far, "SetPosEnd", x=24.0, y=8.0)
+    for name in (near, far):
+        desk.wait_for_step(f"go-{name}", "acknowledged")
+    adapter.kill()
+    desk.until(lambda: desk.robots[near]["state"] == "lost", 20)
+    wait_until(lambda: events(nodes, near, "goal ended"), 20)
+    adapter.start()
+    desk.wait_for_step(f"go-{near}", "reached", 10)
+    desk.wait_for_step(f"go-{far}", "reached", 10)
+
+
 def test_a_node_that_started_anew_while_the_adapter_was_away_is_sent_again(desk, robot, adapter, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 from tests.robot_bridge.links.vda5050.driving import (
     SLOW,
     begin,
@@ -73,3 +75,33 @@ def test_two_vehicles_under_one_serial_number_are_said(desk, yard):
     command = send(desk, vehicle, x=40.0, y=8.0)
     desk.wait_for_step(command, "failed")
     assert "two vehicles" in reason(desk, command)
+
+
+def test_an_order_that_is_done_while_the_adapter_is_away_is_reached(bridge, desk, yard):
+    vehicle = begin(yard, desk, speed=3.0)
+    command = send(desk, vehicle, x=26.0, y=8.0)
+    desk.wait_for_step(command, "acknowledged")
+    yard.kill("adapter")
+    desk.until(lambda: desk.robots[vehicle]["state"] == "lost")
+    desk.listen(4.0)
+    yard.start_adapter(bridge.address, "unanswered_after_s = 2.0")
+    desk.wait_for_step(command, "reached")
+
+
+def test_an_order_that_was_ended_while_the_adapter_was_away_has_failed(bridge, desk, yard):
+    vehicle = begin(yard, desk, speed=SLOW)
+    command = send(desk, vehicle, x=90.0, y=8.0)
+    desk.wait_for_step(command, "acknowledged")
+    yard.kill("adapter")
+    desk.until(lambda: desk.robots[vehicle]["state"] == "lost")
+    cancel = [{"actionType": "cancelOrder", "actionId": "theirs", "blockingType": "NONE"}]
+    head = {"headerId": 1, "timestamp": "2026-11-23T12:00:00Z", "version": "2.0.0"}
+    head |= {"manufacturer": "Acme", "serialNumber": vehicle}
+    yard.publish(
+        f"uagv/v2/Acme/{vehicle}/instantActions",
+        json.dumps({**head, "instantActions": cancel, "actions": cancel}),
+    )
+    desk.listen(1.0)
+    yard.start_adapter(bridge.address, "unanswered_after_s = 2.0")
+    desk.wait_for_step(command, "failed")
+    assert "ended its order" in reason(desk, command)
