@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -37,11 +38,11 @@ def _running(kind: str | None) -> Callable[..., None]:
 
         set_up_log(log_format, log_level)
         found = kind or kind_in(config)
-        settings, adapter = load(found, config)
         if check:
+            settings, _ = load(found, config)
             typer.echo(f"{config}: link {settings.name} of kind {found} can be run")
             return
-        run(settings, adapter, until_stdin_closes=until_stdin_closes)
+        run(partial(load, found, config), until_stdin_closes=until_stdin_closes)
 
     return command
 

@@ -63,6 +63,12 @@ class Link(Protocol):
     def restarted(self, robot: str) -> None:
         """Note that the robot has started anew and forgotten its tasks: what is open is sent once more."""
 
+    def adrift(self, robot: str) -> None:
+        """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all.
+
+        Its open commands have failed where it stands then. Said before :meth:`add`.
+        """
+
     def position(self, robot: str, position: SendPos | SendGPS) -> None:
         """Tell where ``robot`` is; of several within a moment the last is told, and none that is old."""
 

@@ -38,7 +38,7 @@ from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from .adapter import Adapter
-from .errors import CommandRefusedError, LinkError
+from .errors import CommandRefusedError, FrameChangedError, LinkError
 from .frames import LinkFrame
 from .linked_robots import Commanding, Kept, LinkedRobot, frame_of, gps_call
 from .memory import LinkMemory
@@ -72,7 +72,9 @@ class LinkClient:
         )
         self._addresses = GatewayAddresses(gateway.url, has_token=gateway.token_file is not None)
         self._robots: dict[str, LinkedRobot] = {}
-        self._commanding = Commanding(adapter, memory, settings.answer_within_s, self._post)
+        self._commanding = self._new_commanding()
+        self._calming: dict[str, asyncio.Task[None]] = {}
+        """What stops robots that are adrift."""
         self._ids = itertools.count(1)
         self._pending_calls: dict[int, Callable[[jsonrpc.Reply], None]] = {}
         self._urgent: deque[str] = deque()
@@ -154,6 +156,10 @@ class LinkClient:
         if self._is_welcome:
             known.lose()
             self._say_ready(known)
+
+    def adrift(self, robot: str) -> None:
+        """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all."""
+        self._memory.adrift.add(robot)
 
     def position(self, robot: str, position: SendPos | SendGPS) -> None:
         """Tell where ``robot`` is."""
@@ -387,17 +393,8 @@ class LinkClient:
             log.error("the gateway does not take this link: %s", reply.error)
             return
         site = site_report(reply.result["site"])
-        self._memory.use_database(str(reply.result["database"]))
+        self._use_site(site, str(reply.result["database"]))
         self.largest_image_bytes = int(reply.result.get("largest_image_bytes", 0))
-        if self._site is None or (site.crs, site.origin, site.rotation) != (
-            self._site.crs,
-            self._site.origin,
-            self._site.rotation,
-        ):
-            frame = SiteFrame(site.crs, site.origin, site.rotation)
-            self._frame = LinkFrame(self._settings.frame, frame, str(self._settings.file))
-            if self._frame.fit is not None:
-                log.warning("%s", self._frame.fit.text)
         self._site = site
         self._is_welcome = True
         self._addresses.answered()
@@ -407,6 +404,32 @@ class LinkClient:
             self._say_ready(robot)
         for answer in self._areas:
             self._ask_areas(answer)
+
+    def _use_site(self, site: SiteReport, database: str) -> None:
+        """Go by a site and a database; raises FrameChangedError where the site's metres are other places."""
+        frame = SiteFrame(site.crs, site.origin, site.rotation)
+        before = self._site
+        if before is None:
+            self._frame = LinkFrame(self._settings.frame, frame, str(self._settings.file))
+            if self._frame.fit is not None:
+                log.warning("%s", self._frame.fit.text)
+        elif (before.crs, before.origin, before.rotation) != (site.crs, site.origin, site.rotation):
+            raise FrameChangedError(f"link {self.name} begins anew: the site has another frame than before")
+        if self._memory.use_database(database, f"{frame} {self._settings.frame}"):
+            self._forget()
+
+    def _forget(self) -> None:
+        """Forget what another gateway asked, and what is still to be said to it: it means nothing here."""
+        self._commanding.close()
+        self._commanding = self._new_commanding()
+        for robot in self._robots.values():
+            kept, robot.kept = robot.kept, []
+            for one in kept:
+                if not one.answer.done():
+                    one.answer.set_exception(CommandRefusedError("the gateway has another database by now"))
+
+    def _new_commanding(self) -> Commanding:
+        return Commanding(self._adapter, self._memory, self._settings.answer_within_s, self._post)
 
     def _ask_areas(self, answer: asyncio.Future[SiteAreas]) -> None:
         params = to_json(GetAreas(self._areas[answer]))
@@ -440,8 +463,23 @@ class LinkClient:
     def _say_ready(self, robot: LinkedRobot) -> None:
         if not self._is_welcome or self._robots.get(robot.name) is not robot or robot.admitted:
             return
+        if robot.name in self._memory.adrift and not robot.is_only_seen:
+            if robot.name not in self._calming:
+                self._calming[robot.name] = asyncio.create_task(self._calm(robot))
+            return
         params = {"robot": robot.name, **to_json(robot.ready(self._memory.magic(robot.name)))}
         self._call(Ready.__name__, params, lambda reply: self._readied(robot, reply))
+
+    async def _calm(self, robot: LinkedRobot) -> None:
+        """Stop a robot that is adrift before anything can be asked of it; what it was to do has failed."""
+        log.warning("robot %s may do what it was asked before all changed: it is stopped", robot.name)
+        try:
+            if await self._commanding.calm(robot.name) and robot.name in self._robots:
+                self.stopped(robot.name)
+        finally:
+            self._memory.adrift.discard(robot.name)
+            del self._calming[robot.name]
+        self._say_ready(robot)
 
     def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:
         ack = reply.result if isinstance(reply.result, dict) else {}
@@ -525,12 +563,26 @@ def _reason(error: OSError | InvalidHandshake) -> str:
 # --- An adapter as a process: from its settings to its exit status ---
 
 
-def run(settings: LinkSettings, adapter: Adapter, *, until_stdin_closes: bool = False) -> None:
+Load = Callable[[], tuple[LinkSettings, Adapter]]
+
+
+def run(load: Load, *, until_stdin_closes: bool = False) -> None:
     """Run an adapter until SIGTERM or SIGINT; raises BridgeError for what has to be put right.
 
     Also ``until_stdin_closes``, which it does when the gateway that started this ends, however that ends.
+    ``load`` returns its settings and the adapter itself: once more for a site of another frame.
     """
-    asyncio.run(_run_until_stdin_closes(serve(settings, adapter), until_stdin_closes))
+    asyncio.run(_run_until_stdin_closes(_serve_frames(load), until_stdin_closes))
+
+
+async def _serve_frames(load: Load) -> None:
+    """Run adapters, each on sites of one frame: nothing that one knew of places is kept for the next."""
+    while True:
+        settings, adapter = load()
+        try:
+            await serve(settings, adapter)
+        except FrameChangedError as error:
+            log.warning("%s", error)
 
 
 async def serve(settings: LinkSettings, adapter: Adapter) -> None:

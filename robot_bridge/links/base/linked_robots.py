@@ -166,7 +166,8 @@ class Commanding:
         self._answer_within = answer_within
         self._post = post
         self._lines: dict[str, _Line] = {}
-        self._stops: set[asyncio.Task[None]] = set()
+        self._stops: set[asyncio.Task[bool]] = set()
+        self._is_closed = False
 
     def enqueue(self, robot: str, call: CallId, message: Answer) -> None:
         """Have ``robot`` told ``message`` behind what it is still to be told."""
@@ -195,11 +196,23 @@ class Commanding:
         if line.task is not None:
             line.task.cancel()
 
-    async def _stop(self, robot: str, call: CallId, *, emergency: bool) -> None:
+    def close(self) -> None:
+        """Give up all commands; note and answer nothing more: their ids are those of other messages now."""
+        self._is_closed = True
+        for robot in list(self._lines):
+            self.drop(robot)
+
+    async def calm(self, robot: str) -> bool:
+        """Stop a robot without being asked to; return whether its side confirmed that."""
+        self.drop(robot)
+        return await self._stop(robot, None, emergency=False)
+
+    async def _stop(self, robot: str, call: CallId, *, emergency: bool) -> bool:
         try:
             async with asyncio.timeout(self._answer_within):
                 await self._adapter.stop(robot, emergency=emergency)
             self._answer(call, None, urgent=True)
+            return True
         except CommandRefusedError as error:
             log.error("robot %s does not stop: %s", robot, error)
             self._answer(call, str(error), urgent=True)
@@ -209,6 +222,7 @@ class Commanding:
         except Exception:
             log.exception("robot %s: the Abort failed", robot)
             self._answer(call, "the link failed; its log says more", urgent=True)
+        return False
 
     async def _work(self, robot: str, line: _Line) -> None:
         while line.waiting:
@@ -231,10 +245,14 @@ class Commanding:
         try:
             done = await self._carried_out(Command(robot, id, message, again))
         except asyncio.CancelledError:
-            await asyncio.shield(self._memory.finish(robot, id, CompletedCall(OVERTAKEN)))
+            await asyncio.shield(self._finish(robot, id, CompletedCall(OVERTAKEN)))
             raise
-        await self._memory.finish(robot, id, done)
+        await self._finish(robot, id, done)
         return done
+
+    async def _finish(self, robot: str, id: int, done: CompletedCall) -> None:
+        if not self._is_closed:
+            await self._memory.finish(robot, id, done)
 
     async def _carried_out(self, command: Command) -> CompletedCall:
         what = type(command.message).__name__
@@ -252,7 +270,7 @@ class Commanding:
         return CompletedCall()
 
     def _answer(self, call: CallId, refusal: str | None, *, urgent: bool = False) -> None:
-        if call is None:
+        if call is None or self._is_closed:
             return
         if refusal is None:
             self._post(jsonrpc.result(call, to_json(OpAck())), urgent=urgent)

@@ -53,6 +53,9 @@ class LinkMemory:
     def __init__(self, file: Path | None = None) -> None:
         self._file = file
         self._database: str | None = None
+        self._frame: str | None = None
+        self.adrift: set[str] = set()
+        """Robots that may do what was asked of them with another database, or in another frame."""
         self._robots: dict[str, _Robot] = {}
         self._writing = asyncio.Lock()
         self._fault: OSError | None = None
@@ -81,14 +84,27 @@ class LinkMemory:
         self._append_if_possible({"robot": robot, "magic": magic})
         return magic
 
-    def use_database(self, database: str) -> None:
-        """Forget the messages of another database: their ids begin anew."""
-        if database == self._database:
-            return
-        self._database = database
-        for robot in self._robots.values():
-            robot.begun.clear()
-        self._append_if_possible({"database": database})
+    def use_database(self, database: str, frame: str = "") -> bool:
+        """Forget the messages of another database: their ids begin anew.
+
+        ``frame`` is where robots' coordinates lie. Who was asked anything with another database, or in
+        another frame, is adrift; return whether it is another one.
+        """
+        before = self._database, self._frame
+        if before == (database, frame):
+            return False
+        is_other = before[0] not in (None, database) or before[1] not in (None, frame)
+        if is_other:
+            self.adrift |= {name for name, robot in self._robots.items() if robot.begun}
+        self._serve(database, frame)
+        self._append_if_possible({"database": database, "frame": frame})
+        return is_other
+
+    def _serve(self, database: str, frame: str | None) -> None:
+        if database != self._database:
+            for robot in self._robots.values():
+                robot.begun.clear()
+        self._database, self._frame = database, frame
 
     def find(self, robot: str, id: int) -> CompletedCall | None:
         """Return what came of a message, None where it was never finished."""
@@ -197,9 +213,8 @@ class LinkMemory:
 
     def _take_line(self, line: dict[str, Any]) -> None:
         if "database" in line:
-            self._database = str(line["database"])
-            for robot in self._robots.values():
-                robot.begun.clear()
+            frame = line.get("frame")
+            self._serve(str(line["database"]), None if frame is None else str(frame))
         elif "magic" in line:
             known = self._robots.get(line["robot"])
             self._robots[line["robot"]] = _Robot(int(line["magic"]), known.begun if known else OrderedDict())
@@ -222,7 +237,8 @@ class LinkMemory:
 
     def _lines(self) -> Iterator[dict[str, Any]]:
         if self._database is not None:
-            yield {"database": self._database}
+            frame = {} if self._frame is None else {"frame": self._frame}
+            yield {"database": self._database, **frame}
         for name, robot in self._robots.items():
             yield {"robot": name, "magic": robot.magic}
             for id, done in robot.begun.items():

@@ -113,13 +113,13 @@ class VehicleController:
             self._init.begin(message, command_id, now)
             return
         ledger, task = self._ledger, self._ledger.task
-        if again and ledger.has_ended(command_id):
-            ledger.settle(command_id)
-            return
         if again and task is not None and command_id == task.command_id:
             task.confirm(now)
             if task.acknowledged:
                 ledger.settle(command_id)
+            return
+        if again and ledger.has_ended(command_id):
+            ledger.settle(command_id)
             return
         if message.cone or message.collect:
             ledger.settle(command_id, "vehicles of VDA 5050 place and collect no cones")

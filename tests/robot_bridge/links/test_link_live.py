@@ -370,3 +370,40 @@ def test_a_full_disk_keeps_no_stop_from_a_robot(bridge, link, desk, names, caplo
     wait_until(lambda: "can be written again" in caplog.text)
     desk.send(f"on-{names[0]}", names[0], "SetPosEnd", x=40.0, y=8.0)
     desk.wait_for_step(f"on-{names[0]}", "acknowledged")
+
+
+def watching(bridge):
+    desk = bridge.desk()
+    desk.ask("subscribe", {"rate": 50})
+    return desk
+
+
+def serve_another_database(bridge, database):
+    bridge.kill_gateway()
+    bridge.database = database
+    bridge.start_gateway()
+    return watching(bridge)
+
+
+def test_with_another_database_nothing_is_done_that_was_asked_before(
+    start_bridge, impatient_site, new_database, tmp_path
+):
+    bridge = start_bridge(impatient_site)
+    link = LinkOnTheLine(bridge, tmp_path)
+    link.adapter.during = lambda command: asyncio.sleep(4)
+    try:
+        desk = watching(bridge)
+        place(link, desk, ["agv"])
+        desk.send("go-before", "agv", "SetPosEnd", x=40.0, y=8.0)
+        wait_until(lambda: link.adapter.commands)
+        desk = serve_another_database(bridge, new_database("sqlite"))
+        # It has the id that the one before had in the other database.
+        place(link, desk, ["agv"])
+        desk.send("go-by-now", "agv", "SetPosEnd", x=30.0, y=8.0)
+        desk.wait_for_step("go-by-now", "acknowledged")
+        assert [command.message.x for command in link.adapter.commands] == [40.0, 30.0]
+        assert {command.id for command in link.adapter.commands} == {link.adapter.commands[0].id}
+        # Nobody at the gateway of now could have seen what it drives to.
+        assert link.adapter.stops == [("agv", False)]
+    finally:
+        link.end()

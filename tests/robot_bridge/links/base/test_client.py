@@ -66,6 +66,53 @@ class NewerGateway:
                     self.answered.set()
 
 
+class ReplacedGateway:
+    """Has another database, or site, on each connection; ``said`` is what the link said on the last one."""
+
+    def __init__(self, *welcomes: dict) -> None:
+        self._welcomes = list(welcomes)
+        self.said: list[str] = []
+        self.connection = None
+        self.let_in = asyncio.Event()
+
+    async def speak(self, connection) -> None:
+        welcome = self._welcomes.pop(0) if len(self._welcomes) > 1 else self._welcomes[0]
+        self.connection, self.said = connection, []
+        await connection.send(jsonrpc.call("Start", {"database": welcome["database"]}))
+        async for frame in connection:
+            message = json.loads(frame)
+            self.said.append(message.get("method"))
+            if message.get("method") == "hello":
+                await connection.send(jsonrpc.result(message["id"], welcome))
+            elif message.get("method") == "Ready":
+                await connection.send(jsonrpc.result(message["id"], {"ok": True}))
+                self.let_in.set()
+
+
+async def test_what_a_robot_gave_up_is_told_to_no_gateway_with_another_database(tmp_path):
+    gateway = ReplacedGateway(WELCOME, {**WELCOME, "database": "e"})
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+            await asyncio.wait_for(gateway.let_in.wait(), 20)
+            await gateway.connection.close()
+            while link.client.is_connected:
+                await asyncio.sleep(0.01)
+            # Message 5 is another one there, and maybe on its way to the robot.
+            await asyncio.to_thread(link.do, "give_up", "r1", 5, "no path")
+            gateway.let_in.clear()
+            await asyncio.wait_for(gateway.let_in.wait(), 20)
+            await asyncio.to_thread(link.do, "stopped", "r1")
+            async with asyncio.timeout(20):
+                while "Stopped" not in gateway.said:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    assert "OpAck" not in gateway.said
+
+
 async def test_a_message_that_the_link_does_not_know_is_refused_and_the_next_is_done(tmp_path):
     calls = [
         jsonrpc.call("Dance", {"robot": "r1", "steps": 3}, "r1/7"),

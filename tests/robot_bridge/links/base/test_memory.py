@@ -100,3 +100,24 @@ async def test_a_disk_that_fills_up_under_way_is_noticed_by_the_next_message(fil
     assert again.magic("agv-1") == magic
     assert await again.begin("agv-1", 7) is False
     assert await again.begin("agv-1", 8) is True
+
+
+async def test_robots_are_adrift_with_another_database_or_in_another_frame(file):
+    memory = LinkMemory(file)
+    assert memory.use_database("one", "here") is False
+    for robot in ("agv-1", "agv-2"):
+        memory.magic(robot)
+    await memory.begin("agv-1", 7)
+    await memory.finish("agv-1", 7, CompletedCall())
+
+    memory = LinkMemory(file)
+    assert memory.use_database("one", "here") is False and not memory.adrift
+    # Messages of the same database keep their ids: none is done once more.
+    assert memory.use_database("one", "there") is True and memory.adrift == {"agv-1"}
+    assert memory.find("agv-1", 7) == CompletedCall()
+
+    memory = LinkMemory(file)
+    assert memory.use_database("two", "there") is True and memory.adrift == {"agv-1"}
+    assert memory.find("agv-1", 7) is None
+    memory = LinkMemory(file)
+    assert memory.use_database("two", "there") is False and not memory.adrift

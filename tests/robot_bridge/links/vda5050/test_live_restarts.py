@@ -3,7 +3,14 @@
 from __future__ import annotations
 
 import json
+import math
+import re
+from dataclasses import replace
 
+import pytest
+
+from robot_bridge.core.sites.frame import SiteFrame
+from robot_bridge.core.sites.site import read_site, write_site
 from tests.robot_bridge.links.vda5050.driving import (
     SLOW,
     begin,
@@ -11,8 +18,13 @@ from tests.robot_bridge.links.vda5050.driving import (
     reason,
     send,
     steps,
+    wait_at,
+    wait_for_standing,
     wait_under_way,
 )
+from tests.robot_bridge.links.vda5050.peers import Yard
+from tests.support.bridge.bridge_programs import wait_until
+from tests.support.processes import Processes
 
 
 def test_a_vehicle_that_is_killed_and_started_again_goes_on(desk, yard):
@@ -105,3 +117,50 @@ def test_an_order_that_was_ended_while_the_adapter_was_away_has_failed(bridge, d
     yard.start_adapter(bridge.address, "unanswered_after_s = 2.0")
     desk.wait_for_step(command, "failed")
     assert "ended its order" in reason(desk, command)
+
+
+@pytest.fixture
+def moved_site(sample_site, tmp_path):
+    """The sample site with an origin 10 m further along its x axis."""
+    site = read_site(sample_site)
+    settings = site.settings
+    frame = SiteFrame(settings.crs, settings.origin, math.radians(settings.rotation_deg))
+    ((x, y),) = frame.to_crs([(10.0, 0.0)]).tolist()
+    moved = replace(settings, origin=(x, y))
+    write_site(tmp_path / "moved", moved, site.outlines, site.centrelines, site.surfaces, site.keepouts)
+    return tmp_path / "moved"
+
+
+def frame_lines(site):
+    """Return the settings of vehicles whose map is the frame of a site, wherever the gateway's site is."""
+    settings = read_site(site).settings
+    lines = [f'crs = "{settings.crs}"', f"origin = {list(settings.origin)}"]
+    return ["unanswered_after_s = 2.0", "[frame]", *lines, f"rotation_deg = {settings.rotation_deg}"]
+
+
+def test_on_a_site_of_another_frame_a_vehicle_is_where_it_is_and_drives_there(
+    start_bridge, new_database, sample_site, moved_site, modules, tmp_path
+):
+    bridge = start_bridge(sample_site)
+    with Processes(tmp_path / "logs") as processes:
+        yard = Yard(processes, tmp_path, modules)
+        yard.start_broker()
+        yard.start_adapter(bridge.address, *frame_lines(sample_site))
+        desk = bridge.desk()
+        desk.ask("subscribe", {"rate": 10})
+        stands, drives = begin(yard, desk), begin(yard, desk, y=16.0, speed=SLOW)
+        wait_at(desk, stands, 20.0, 8.0)
+        desk.wait_for_step(send(desk, drives, x=90.0, y=16.0), "acknowledged")
+        bridge.kill_gateway()
+        bridge.site, bridge.database = moved_site, new_database("sqlite")
+        bridge.start_gateway()
+
+        desk = bridge.desk()
+        desk.ask("subscribe", {"rate": 10})
+        desk.wait_for_robots(stands, drives)
+        wait_at(desk, stands, 10.0, 8.0)
+        desk.wait_for_step(send(desk, stands, x=14.0, y=8.0), "reached")
+        wait_until(lambda: re.search(r'"x":2[34]\.\d+,"y":8\b', yard.output(stands)[-5000:]))
+        # What it drove to was asked by nobody whom a desk knows of.
+        assert wait_for_standing(desk, drives) < 70.0
+        yard.end()
