@@ -66,7 +66,7 @@ class Link(Protocol):
     def adrift(self, robot: str) -> None:
         """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all.
 
-        Its open commands have failed where it stands then. Said before :meth:`add`.
+        Its open commands have failed then.
         """
 
     def position(self, robot: str, position: SendPos | SendGPS) -> None:

@@ -160,6 +160,10 @@ class LinkClient:
     def adrift(self, robot: str) -> None:
         """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all."""
         self._memory.adrift.add(robot)
+        known = self._robots.get(robot)
+        if known is not None and self._is_welcome:
+            known.lose()
+            self._say_ready(known)
 
     def position(self, robot: str, position: SendPos | SendGPS) -> None:
         """Tell where ``robot`` is."""
@@ -474,8 +478,10 @@ class LinkClient:
         """Stop a robot that is adrift before anything can be asked of it; what it was to do has failed."""
         log.warning("robot %s may do what it was asked before all changed: it is stopped", robot.name)
         try:
-            if await self._commanding.calm(robot.name) and robot.name in self._robots:
-                self.stopped(robot.name)
+            await self._commanding.calm(robot.name)
+            if robot.name in self._robots:
+                for id in self._memory.taken_on(robot.name):
+                    self.give_up(robot.name, id, "the link's settings or site have changed: it was stopped")
         finally:
             self._memory.adrift.discard(robot.name)
             del self._calming[robot.name]

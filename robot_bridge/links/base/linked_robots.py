@@ -166,7 +166,7 @@ class Commanding:
         self._answer_within = answer_within
         self._post = post
         self._lines: dict[str, _Line] = {}
-        self._stops: set[asyncio.Task[bool]] = set()
+        self._stops: set[asyncio.Task[None]] = set()
         self._is_closed = False
 
     def enqueue(self, robot: str, call: CallId, message: Answer) -> None:
@@ -202,17 +202,16 @@ class Commanding:
         for robot in list(self._lines):
             self.drop(robot)
 
-    async def calm(self, robot: str) -> bool:
-        """Stop a robot without being asked to; return whether its side confirmed that."""
+    async def calm(self, robot: str) -> None:
+        """Stop a robot without being asked to; return once its side has confirmed it, or had its time."""
         self.drop(robot)
-        return await self._stop(robot, None, emergency=False)
+        await self._stop(robot, None, emergency=False)
 
-    async def _stop(self, robot: str, call: CallId, *, emergency: bool) -> bool:
+    async def _stop(self, robot: str, call: CallId, *, emergency: bool) -> None:
         try:
             async with asyncio.timeout(self._answer_within):
                 await self._adapter.stop(robot, emergency=emergency)
             self._answer(call, None, urgent=True)
-            return True
         except CommandRefusedError as error:
             log.error("robot %s does not stop: %s", robot, error)
             self._answer(call, str(error), urgent=True)
@@ -222,7 +221,6 @@ class Commanding:
         except Exception:
             log.exception("robot %s: the Abort failed", robot)
             self._answer(call, "the link failed; its log says more", urgent=True)
-        return False
 
     async def _work(self, robot: str, line: _Line) -> None:
         while line.waiting:

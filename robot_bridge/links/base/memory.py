@@ -21,6 +21,8 @@ from .errors import LinkError
 
 log = logging.getLogger(__name__)
 
+MOST_OPEN = 20
+"""messages of one robot that may be under way: its map, its start, a target."""
 MOST_DONE = 1000
 """messages of one robot that are remembered: many more than a gateway ever has on their way to it."""
 LONGEST_FILE = 256 << 20
@@ -110,6 +112,12 @@ class LinkMemory:
         """Return what came of a message, None where it was never finished."""
         known = self._robots.get(robot)
         return None if known is None else known.begun.get(id)
+
+    def taken_on(self, robot: str) -> list[int]:
+        """Return the newest messages that a robot took on: what it does is for one of them."""
+        known = self._robots.get(robot)
+        begun = () if known is None else known.begun.items()
+        return [id for id, done in begun if done == CompletedCall()][-MOST_OPEN:]
 
     async def begin(self, robot: str, id: int) -> bool:
         """Note that a message is about to be done; return whether it was begun before.

@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import ClassVar
 
+import msgspec
+
 from ...core.logs import RepeatedLines
 from ...core.messages.robots import Alive, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
 from ...core.messages.safety import Ability
@@ -55,7 +57,7 @@ class Vehicle:
         self.controller = controller
         self.writer = MessageWriter(controller.vehicle)
         self.received_at = now
-        self.is_introduced = False
+        self.is_introduced = self.is_adrift = False
         self.untold: list[Settled] = []
         """What came of commands before the gateway knew of it: an order that ended while nobody led it."""
         self._commands: dict[int, asyncio.Future[str | None]] = {}
@@ -243,19 +245,38 @@ class Vda5050Adapter(Adapter):
             self._refused.add(identity)
             return None
         now = time.monotonic()
-        vehicle = Vehicle(robot, self._controller(identity, now), now)
-        self._vehicles[identity] = self._robots[robot] = vehicle
+        vehicle = self._vehicles[identity] = self._robots[robot] = self._recalled(identity, robot, now)
         return vehicle
 
-    def _controller(self, identity: VehicleId, now: float) -> VehicleController:
-        def made(remembered: Remembered | None) -> VehicleController:
-            return VehicleController(identity, self._led, self._maps, remembered, RandomNames(), now)
+    def _recalled(self, identity: VehicleId, robot: str, now: float) -> Vehicle:
+        """Return a vehicle with what was kept of it; adrift where the settings have changed since."""
+
+        def made(remembered: Remembered | None) -> Vehicle:
+            names = RandomNames()
+            controller = VehicleController(identity, self._led, self._maps, remembered, names, now)
+            return Vehicle(robot, controller, now)
 
         try:
-            return made(self._memory.recall(str(identity)))
+            kept = self._memory.recall(str(identity))
+            if kept is None or kept.basis in ("", self._basis(robot, kept)):
+                return made(kept)
+            log.warning("vehicle %s: what it was to do is given up: its settings have changed", identity)
+            vehicle = made(kept.without_task())
+            vehicle.is_adrift = True
+            former = kept.basis.partition(" ")[0]
+            if former != robot and self._link is not None:
+                # What was asked of that name is done by nobody.
+                self._link.adrift(former)
+            return vehicle
         except Vda5050Error as error:
             log.error("vehicle %s begins without what was kept: %s", identity, error)
             return made(None)
+
+    def _basis(self, robot: str, kept: Remembered) -> str:
+        """Return what of the settings goes for a vehicle's task: its name, and where the map of it lies."""
+        plan = None if kept.task is None else kept.task.plan
+        placed = None if plan is None else self._own.maps.get(plan.map_id)
+        return robot if placed is None else f"{robot} {placed}"
 
     def broker_changed(self, reason: str | None) -> None:
         """Note that the broker is there (None), or why it is not."""
@@ -296,6 +317,8 @@ class Vda5050Adapter(Adapter):
         abilities: list[Ability] = ["targets", "paths"]
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
+        if vehicle.is_adrift:
+            link.adrift(vehicle.robot)
         link.add(vehicle.robot, abilities)
         for settled in vehicle.untold:
             self._tell_effect(vehicle, settled)
@@ -315,8 +338,9 @@ class Vda5050Adapter(Adapter):
                 self._tell_effect(vehicle, effect)
 
     def _keep(self, vehicle: Vehicle, effect: Keep) -> bool:
+        kept = msgspec.structs.replace(effect.remembered, basis=self._basis(vehicle.robot, effect.remembered))
         try:
-            self._memory.keep(str(vehicle.controller.vehicle), effect.remembered)
+            self._memory.keep(str(vehicle.controller.vehicle), kept)
         except Vda5050Error as error:
             self._warn(vehicle.controller.vehicle, str(error))
             return False

@@ -221,13 +221,20 @@ class Remembered(Struct, frozen=True, kw_only=True):
     """What a vehicle is occupied with; ``ended`` are the newest commands that were taken on and are over.
 
     ``paused`` is true while a startPause of ours is to be lifted before the next order; ``revoked`` are
-    orders that the vehicle must not carry out.
+    orders that the vehicle must not carry out. ``basis`` is what of the settings the task goes by.
     """
 
     task: RememberedTask | None = None
     paused: bool = False
     revoked: list[str] = field(default_factory=list)
     ended: list[int] = field(default_factory=list)
+    basis: str = ""
+
+    def without_task(self) -> Remembered:
+        """Return what still counts where the settings say otherwise by now: its order must not be driven."""
+        plan = None if self.task is None else self.task.plan
+        revoked = self.revoked if plan is None else [*self.revoked, plan.order_id]
+        return msgspec.structs.replace(self, task=None, revoked=revoked, ended=[])
 
 
 class Memory:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
@@ -163,4 +164,50 @@ def test_on_a_site_of_another_frame_a_vehicle_is_where_it_is_and_drives_there(
         wait_until(lambda: re.search(r'"x":2[34]\.\d+,"y":8\b', yard.output(stands)[-5000:]))
         # What it drove to was asked by nobody whom a desk knows of.
         assert wait_for_standing(desk, drives) < 70.0
+        yard.end()
+
+
+def named(**serials):
+    """Return the settings of vehicles that have names of their own."""
+    tables = (
+        ["[[vda5050.vehicles]]", 'manufacturer = "Acme"', f'serial = "{serial}"', f'robot = "{robot}"']
+        for robot, serial in serials.items()
+    )
+    return ["unanswered_after_s = 2.0", *itertools.chain(*tables)]
+
+
+def placed(x):
+    """Return the settings of vehicles whose map begins at (x, 0) of the site."""
+    return ["unanswered_after_s = 2.0", "[vda5050.maps.local]", f"origin = [{x}, 0.0]"]
+
+
+OTHERWISE = {
+    "names": (named(left="one", right="two"), named(left="two", right="one"), ("left", "right")),
+    "map": (placed(0.0), placed(10.0), ("one", "one")),
+}
+
+
+@pytest.mark.parametrize(("before", "after", "names"), OTHERWISE.values(), ids=OTHERWISE)
+def test_settings_that_changed_on_the_way_stop_a_vehicle_and_its_command_has_failed(
+    start_bridge, sample_site, modules, tmp_path, before, after, names
+):
+    bridge = start_bridge(sample_site)
+    asked, drives = names
+    with Processes(tmp_path / "logs") as processes:
+        yard = Yard(processes, tmp_path, modules)
+        yard.start_broker()
+        yard.start_adapter(bridge.address, *before)
+        desk = bridge.desk()
+        desk.ask("subscribe", {"rate": 10})
+        yard.start_vehicle("one", 20.0, 8.0, speed=SLOW)
+        yard.start_vehicle("two", 20.0, 16.0)
+        desk.wait_for_robots(*names)
+        command = send(desk, asked, x=95.0, y=8.0)
+        wait_under_way(desk, asked)
+        yard.kill("adapter")
+        yard.start_adapter(bridge.address, *after)
+        # By the settings of now that place is another one, or another vehicle's.
+        desk.wait_for_step(command, "failed")
+        assert wait_for_standing(desk, drives) < 70.0
+        desk.wait_for_step(send(desk, drives, x=74.0, y=10.0), "reached")
         yard.end()
