@@ -9,6 +9,7 @@ import random
 
 import pytest
 
+from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.base.settings import read_settings
 from robot_bridge.links.vda5050.adapter import Vda5050Adapter
 from robot_bridge.links.vda5050.ledger import Keep, Publish
@@ -171,3 +172,9 @@ def test_on_a_full_disk_no_order_is_published_and_every_stop_is(adapter, tmp_pat
     assert carry_out(adapter, ORDER) == [[], []]
     assert carry_out(adapter, CANCEL) == [["instantActions"], []]
     assert "vehicle Acme/1" in caplog.text
+
+
+@pytest.mark.parametrize("table", ["frame", "vda5050.maps.hall"])
+def test_coordinates_in_degrees_are_refused(tmp_path, table):
+    with pytest.raises(LinkError, match=f"{table}.crs = 'wgs84': vehicles speak in metres"):
+        make(tmp_path, f"[{table}]", 'crs = "wgs84"')
