@@ -14,6 +14,8 @@ from tools.walkthrough.still_buttons import StillButtons
 
 PAGE_DPI = "75"
 """A page of A4 is then 620 × 877 pixels."""
+LOOKS = 5
+"""How often it is looked whether all can be read, before what cannot is a fault."""
 
 
 class Film:
@@ -39,10 +41,7 @@ class Film:
         :raises StageError: when a part of the plugin cannot be read or reached, a button of the panel has
             moved since the picture before, or something raised.
         """
-        self._operator.wait_for_map()
-        # While it draws, QGIS shows that in its status bar, which may then be broader than the screen.
-        self._operator.keep_to_the_screen()
-        looked_at = self._operator.out_of_sight(), self._operator.complaints(), self._buttons.moved()
+        looked_at = self._out_of_sight(), self._operator.complaints(), self._buttons.moved()
         if faults := [*chain(*looked_at)]:
             raise StageError(f"in the picture {name!r}: " + "; ".join(faults))
         path, seen = self._next(name), self._screen.look()
@@ -52,6 +51,18 @@ class Film:
             seen = self._screen.look()
         keep(seen, path)
         self.happened(f"{text}: {path.name}")
+
+    def _out_of_sight(self) -> list[str]:
+        """Return what cannot be read or reached in a window whose map is drawn."""
+        found: list[str] = []
+        for _ in range(LOOKS):
+            self._operator.wait_for_map()
+            # While it draws, QGIS shows that in its status bar, which may then be broader than the screen.
+            self._operator.keep_to_the_screen()
+            # It may begin to draw again at any moment: what is so each time is a fault.
+            if not (found := self._operator.out_of_sight()):
+                break
+        return found
 
     def look(self) -> Pixels:
         """Return what is on the screen now, whatever it draws; raises StageError when a button has moved."""
