@@ -418,7 +418,7 @@ class LinkClient:
             if self._frame.fit is not None:
                 log.warning("%s", self._frame.fit.text)
         elif (before.crs, before.origin, before.rotation) != (site.crs, site.origin, site.rotation):
-            raise FrameChangedError(f"link {self.name} begins anew: the site has another frame than before")
+            raise FrameChangedError(f"link {self.name} starts again: the site has another frame than before")
         if self._memory.use_database(database, f"{frame} {self._settings.frame}"):
             self._forget()
 

@@ -87,7 +87,7 @@ class LinkMemory:
         return magic
 
     def use_database(self, database: str, frame: str = "") -> bool:
-        """Forget the messages of another database: their ids begin anew.
+        """Forget the messages of another database: their ids begin again.
 
         ``frame`` is where robots' coordinates lie. Who was asked anything with another database, or in
         another frame, is adrift; return whether it is another one.
