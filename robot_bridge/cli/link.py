@@ -34,7 +34,7 @@ def _running(kind: str | None) -> Callable[..., None]:
         log_format: Format = "text",
         log_level: Level = "warning",
     ) -> None:
-        from ..links.base.client import run
+        from ..links.base.process import run
 
         set_up_log(log_format, log_level)
         found = kind or kind_in(config)

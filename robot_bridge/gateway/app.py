@@ -425,22 +425,29 @@ async def _hold_database(
         sole = SingletonLock(settings.database)
         await sole.acquire()
         stack.push_async_callback(sole.release)
-        note = MessageNote(database, _state_folder(settings))
-        await note.check()
-        stack.push_async_callback(note.close, CLOSE_WITHIN)
+        note = await _checked_note(settings, database, stack)
         return None, {"sole gateway": sole.hold, "newest message": note.hold}
     lease = lease_database(settings.database)
     stack.push_async_callback(lease.close, CLOSE_WITHIN)
     fleet = await database.run(fleet_id)
-    note = MessageNote(database, _state_folder(settings), settings.cluster.name)
-    await note.check()
-    stack.push_async_callback(note.close, CLOSE_WITHIN)
+    note = await _checked_note(settings, database, stack)
     cluster = await join_cluster(settings.cluster, database, lease, fleet)
     stack.push_async_callback(cluster.membership.leave)
     # At once: to read a city takes longer than a lease lasts.
     holding = asyncio.create_task(cluster.membership.hold())
     stack.callback(holding.cancel)
     return cluster, {"lease": lambda: asyncio.shield(holding), "newest message": note.hold}
+
+
+async def _checked_note(
+    settings: GatewaySettings, database: Database, stack: contextlib.AsyncExitStack
+) -> MessageNote:
+    """Return the note of the newest message, after the database was compared with it; StoreError."""
+    name = None if settings.cluster is None else settings.cluster.name
+    note = MessageNote(database, _state_folder(settings), name)
+    await note.check()
+    stack.push_async_callback(note.close, CLOSE_WITHIN)
+    return note
 
 
 def _state_folder(settings: GatewaySettings) -> Path | None:
@@ -512,9 +519,9 @@ async def _check_frame(
 
 
 def _journal(settings: GatewaySettings) -> StopJournal | None:
-    folder = settings.state or settings.site.resolve().parent
+    folder = _state_folder(settings)
     name = None if settings.cluster is None else settings.cluster.name
-    file = journal_file(settings.database, folder, name)
+    file = None if folder is None else journal_file(settings.database, folder, name)
     if file is None:
         return None
     journal = StopJournal(file)

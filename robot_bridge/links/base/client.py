@@ -1,14 +1,12 @@
-"""Client of the gateway's ``/link``: reconnects, does nothing twice; the process that runs an adapter."""
+"""Client of the gateway's ``/link``: it reconnects, and has nothing done twice."""
 
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import itertools
 import logging
-import signal
 from collections import deque
-from collections.abc import Callable, Coroutine, Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 from urllib.parse import quote
 
@@ -33,7 +31,6 @@ from ...core.messages.links import (
 )
 from ...core.messages.robots import Abort, Alive, OpAck, Ready, Request, SendGPS, SendPos, Start, Stopped
 from ...core.messages.safety import Ability
-from ...core.parent_process import call_at_end_of_input, notify
 from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
@@ -43,8 +40,6 @@ from .frames import LinkFrame
 from .linked_robots import Commanding, Kept, LinkedRobot, frame_of, gps_call
 from .memory import LinkMemory
 from .settings import LinkSettings
-
-# --- The link's connection to the gateway: it comes back, tells nothing old, and has nothing done twice
 
 log = logging.getLogger(__name__)
 
@@ -564,66 +559,3 @@ def _reason(error: OSError | InvalidHandshake) -> str:
         text = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
         return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
     return str(error)
-
-
-# --- An adapter as a process: from its settings to its exit status ---
-
-
-Load = Callable[[], tuple[LinkSettings, Adapter]]
-
-
-def run(load: Load, *, until_stdin_closes: bool = False) -> None:
-    """Run an adapter until SIGTERM or SIGINT; raises BridgeError for what has to be put right.
-
-    Also ``until_stdin_closes``, which it does when the gateway that started this ends, however that ends.
-    ``load`` returns its settings and the adapter itself: once more for a site of another frame.
-    """
-    asyncio.run(_run_until_stdin_closes(_serve_frames(load), until_stdin_closes))
-
-
-async def _serve_frames(load: Load) -> None:
-    """Run adapters, each on sites of one frame: nothing that one knew of places is kept for the next."""
-    while True:
-        settings, adapter = load()
-        try:
-            await serve(settings, adapter)
-        except FrameChangedError as error:
-            log.warning("%s", error)
-
-
-async def serve(settings: LinkSettings, adapter: Adapter) -> None:
-    """Run an adapter and its connection to the gateway until one of them fails, or this is cancelled."""
-    client = LinkClient(settings, adapter, LinkMemory(settings.memory_file))
-    connecting = asyncio.create_task(client.run())
-    adapting = asyncio.create_task(_adapt(client, adapter))
-    try:
-        done, _ = await asyncio.wait({connecting, adapting}, return_when=asyncio.FIRST_COMPLETED)
-        for task in done:
-            task.result()
-        raise LinkError(f"link {settings.name}: the {adapter.kind} side ended")
-    finally:
-        for task in (connecting, adapting):
-            task.cancel()
-        await asyncio.gather(connecting, adapting, return_exceptions=True)
-
-
-async def _adapt(client: LinkClient, adapter: Adapter) -> None:
-    await client.site_known()
-    notify("READY=1", f"STATUS=connected to {client.settings.gateway.url}")
-    await adapter.run(client)
-
-
-async def _run_until_stdin_closes(work: Coroutine[Any, Any, None], until_stdin_closes: bool) -> None:
-    stop = asyncio.Event()
-    if until_stdin_closes:
-        call_at_end_of_input(stop.set)
-    for number in (signal.SIGINT, signal.SIGTERM):
-        asyncio.get_running_loop().add_signal_handler(number, stop.set)
-    working, stopping = asyncio.create_task(work), asyncio.create_task(stop.wait())
-    await asyncio.wait({working, stopping}, return_when=asyncio.FIRST_COMPLETED)
-    stopping.cancel()
-    if working.done():
-        await working
-    working.cancel()
-    with contextlib.suppress(asyncio.CancelledError):
-        await working
