@@ -61,7 +61,7 @@ ALL_PLANS = "every plan"
 
 
 REPEAT_WITHIN = 30.0
-"""Seconds in which an order is sent, or repeated, on another link than it was asked for on."""
+"""Seconds in which an order is sent, or repeated, on another link than it was asked for on, and begun."""
 
 
 class RequestOutbox:
@@ -155,6 +155,8 @@ class GatewayProtocol:
         self._outbox = RequestOutbox()
         self._ids = itertools.count(1)
         self._pending: dict[int, OperatorRequest] = {}
+        self._gateway_ahead: float | None = None
+        """Seconds by which the gateway's clock for deadlines is ahead of the own; None where it has none."""
         self._ground: RequestGround | None = None
         """What places and names are of at the gateway; None as long as none has greeted."""
         self._view: dict[str, Any] | None = None
@@ -173,6 +175,7 @@ class GatewayProtocol:
     def begin(self) -> list[str]:
         """Return the first texts to send on a new link."""
         self._pending.clear()
+        self._gateway_ahead = None
         self.ready = False
         # A name that the gateway would refuse must not keep its operator away.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
@@ -246,7 +249,10 @@ class GatewayProtocol:
     def _request(self, order: OperatorRequest) -> str:
         number = next(self._ids)
         self._pending[number] = order
-        return json.dumps({"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params})
+        frame = {"jsonrpc": "2.0", "id": number, "method": order.method, "params": order.params}
+        if order.ground is not None and self._gateway_ahead is not None:
+            frame["deadline"] = round(order.requested_at + REPEAT_WITHIN + self._gateway_ahead, 3)
+        return json.dumps(frame)
 
     def _subscription(self) -> str:
         params = to_json(Subscribe(self._rate, PositionForm.COLUMNS))
@@ -341,6 +347,7 @@ class GatewayProtocol:
         if "emergency" in result:
             self._buffer.add(emergency=safety.emergency_report(result["emergency"]))
         self._choose_view(result)
+        self._set_clock(result)
         self.ready = True
         self._hand_back_strange()
         orders, too_old = self._outbox.renew(self._clock.steady())
@@ -362,6 +369,13 @@ class GatewayProtocol:
         self._knows_views = isinstance(robots, int)
         if self._view is None and self._knows_views and robots > VIEWS_FROM:
             self._view = to_json(View(tuple(result["site"]["bounds"])))
+
+    def _set_clock(self, values: dict[str, Any]) -> None:
+        """Know the gateway's clock for deadlines; what it said was a moment ago, so that none is too late."""
+        now = values.get("now")
+        if now is not None:
+            _check_number("the gateway's clock", now)
+            self._gateway_ahead = now - self._clock.steady()
 
     def _learn(self, told: object) -> None:
         """Know where else the fleet is reached, and have that kept for the next session."""
@@ -390,9 +404,10 @@ class GatewayProtocol:
     def _order_answered(self, order: OperatorRequest, message: dict[str, Any]) -> list[str]:
         waiting = self._outbox.answered(order.key)
         if "error" in message:
+            self._set_clock(_data(message))
             outdated = _code(message) == OUTDATED
             if outdated:
-                newer = message["error"].get("data") or {}
+                newer = _data(message)
                 self._buffer.add(queues=queues_in(newer), plans=plans_in(newer))
             if order.key == ALL_PLANS and _code(message) == UNKNOWN_METHOD:
                 self._buffer.add(is_driving=False)
@@ -444,6 +459,13 @@ def _error_text(message: dict[str, Any]) -> str:
 def _code(message: dict[str, Any]) -> Any:
     error = message["error"]
     return error.get("code") if isinstance(error, dict) else None
+
+
+def _data(message: dict[str, Any]) -> dict[str, Any]:
+    """Return what came with an error besides its text."""
+    error = message["error"]
+    data = error.get("data") if isinstance(error, dict) else None
+    return data if isinstance(data, dict) else {}
 
 
 def _found(message: dict[str, Any]) -> tuple[str, ...]:

@@ -57,6 +57,14 @@ class OverridableError(RefusedError):
         super().__init__(f"{named}: {otherwise}")
 
 
+class LateError(RefusedError):
+    """A request whose deadline was over before it was begun; ``now`` is the time by the same clock."""
+
+    def __init__(self, text: str, now: float) -> None:
+        super().__init__(text)
+        self.now = now
+
+
 class BusyError(RefusedError):
     """A request that is not dealt with because too many others wait."""
 

@@ -33,9 +33,13 @@ def channel(
     return described
 
 
-def calls(table: Mapping[str, type], suffix: str = "") -> dict[str, Schema]:
-    """Return the calls of each method in ``table``; params are as the schema of class and ``suffix`` says."""
-    return {name: message(name, cls, call(name, cls.__name__ + suffix)) for name, cls in table.items()}
+def calls(table: Mapping[str, type], suffix: str = "", more: Schema | None = None) -> dict[str, Schema]:
+    """Return the calls of each method in ``table``; params are as the schema of class and ``suffix`` says.
+
+    ``more`` are properties of their frames besides those of JSON-RPC.
+    """
+    described = {name: call(name, cls.__name__ + suffix, more) for name, cls in table.items()}
+    return {name: message(name, cls, described[name]) for name, cls in table.items()}
 
 
 def news(table: Mapping[str, type]) -> dict[str, Schema]:
@@ -64,9 +68,10 @@ def message(name: str, cls: type, payload: Schema) -> Schema:
     return {"name": name, "title": name, "summary": plain_text(cls.__doc__ or ""), "payload": payload}
 
 
-def call(method: str, params: str, *, with_id: bool = True) -> Schema:
+def call(method: str, params: str, more: Schema | None = None, *, with_id: bool = True) -> Schema:
     """Return the schema of a frame that calls ``method`` with what the schema ``params`` describes."""
     properties: Schema = {"method": {"type": "string", "const": method}, "params": schema_at(params)}
+    properties.update(more or {})
     if with_id:
         properties["id"] = schema_at("Id")
     return _frame(properties, required=["method"])
@@ -272,8 +277,9 @@ def _robot_channel(requests: Mapping[str, type], answers: Mapping[str, type]) ->
 
 def _desk_channel() -> Schema:
     answered = {f"{method}Result": cls.result for method, cls in DESK_REQUESTS.items()}
-    messages = {**calls(DESK_REQUESTS), **results(answered), **news(NOTIFICATIONS), **in_columns(HEADS)}
-    return channel("/desk", "An operator's connection.", {**messages, "error": error()})
+    asked = {**calls(DESK_REQUESTS, more=_DEADLINE), **results(answered)}
+    messages = {**asked, **news(NOTIFICATIONS), **in_columns(HEADS), "error": error()}
+    return channel("/desk", "An operator's connection.", messages)
 
 
 def _schemas() -> dict[str, Schema]:
@@ -297,6 +303,15 @@ _TOKEN: Schema = {
 _ID: Schema = {
     "description": "The id of the call, which its answer carries back.",
     "type": ["integer", "string"],
+}
+_DEADLINE: Schema = {
+    "deadline": {
+        "description": (
+            "The time, by hello's `now`, after which the call is refused instead of carried out; one that "
+            "stops or holds robots is carried out at any time."
+        ),
+        "type": "number",
+    }
 }
 _ERROR: Schema = {
     "type": "object",

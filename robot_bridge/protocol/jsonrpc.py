@@ -33,11 +33,15 @@ class FrameError(ValueError):
 
 @dataclass(frozen=True)
 class Call:
-    """A request, or a notification where ``id`` is None."""
+    """A request, or a notification where ``id`` is None.
+
+    ``deadline`` is as it came: a number where it says until when the request is to be carried out.
+    """
 
     method: str
     params: Any
     id: int | str | None = None
+    deadline: Any = None
 
 
 @dataclass(frozen=True)
@@ -68,7 +72,7 @@ def decode(frame: str | bytes) -> Call | Reply:
     if "method" in value:
         if not isinstance(value["method"], str):
             raise FrameError(INVALID_REQUEST, f"method is {value['method']!r}; give a string", id)
-        return Call(value["method"], value.get("params"), id)
+        return Call(value["method"], value.get("params"), id, value.get("deadline"))
     return _reply(value, id)
 
 

@@ -44,6 +44,7 @@ class HelloResult:
     ``database`` tells the gateway's database from every other: with another one, robots and commands of the
     same names are others. ``robots`` is how many there are now; a gateway that tells it knows views.
     ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways serve the fleet.
+    ``now`` is the gateway's time in seconds on a clock that nobody sets, for the deadlines of requests.
     """
 
     protocol: int
@@ -55,6 +56,7 @@ class HelloResult:
     robots: int | None = None
     gateway: str | None = None
     gateways: list[str] | None = None
+    now: float | None = None
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Coroutine
@@ -18,10 +19,12 @@ from typing import Any, NamedTuple
 import msgspec
 from websockets.exceptions import ConnectionClosed
 
+from ...core.clock import steady_time
 from ...core.errors import (
     BridgeError,
     BusyError,
     ForbiddenError,
+    LateError,
     OutdatedError,
     OverridableError,
     RefusedError,
@@ -311,6 +314,7 @@ class OperatorSession:
         try:
             if refusal is not None:
                 raise refusal
+            check_deadline(scheduled)
             result = jsonrpc.result(scheduled.call.id, await self._do(scheduled.request))
         except Exception as error:
             return self._refused(scheduled.call, error)
@@ -392,6 +396,7 @@ class OperatorSession:
             "emergency": to_json(self._fleet.emergency.report()),
             "database": self._fleet.reception.database_id,
             "robots": self._fleet.robots.count(),
+            "now": round(steady_time(), 3),
             **({} if gateways is None else to_json(gateways)),
         }
 
@@ -481,7 +486,31 @@ def _data_of(error: Exception) -> dict[str, Any] | None:
     """Return what the desk has to know of ``error`` besides its text."""
     if isinstance(error, OutdatedError):
         return error.newer
+    if isinstance(error, LateError):
+        return {"now": error.now}
     return {"found": error.found} if isinstance(error, OverridableError) else None
+
+
+def check_deadline(scheduled: ScheduledRequest) -> None:
+    """Raise LateError for a request whose deadline is over, MessageError for a deadline that is none.
+
+    A frame can lie in a buffer for minutes, where a network or this process stood still, and a robot must not
+    drive off on a request that its operator has given up. What stops or holds robots is right at any time;
+    what concerns the connection itself brings the time.
+    """
+    deadline, request = scheduled.call.deadline, scheduled.request
+    if deadline is None or scheduled.stops or request.stops or isinstance(request, OWN):
+        return
+    if isinstance(deadline, bool) or not isinstance(deadline, (int, float)) or not math.isfinite(deadline):
+        raise MessageError(f"{request.method}: deadline is no finite number; give seconds, as now of hello")
+    now = round(steady_time(), 3)
+    if now > deadline:
+        raise LateError(
+            f"{request.method}: its turn came {now - deadline:.1f} s after its deadline, so that it was not "
+            "done: a robot shall not drive off on an old request; look at the robots, and ask again if it is "
+            "still wanted",
+            now,
+        )
 
 
 def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:

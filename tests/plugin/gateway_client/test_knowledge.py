@@ -9,7 +9,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fleet_supervisor.plugin.gateway_client.command_cache import CommandCache, command_in_words
-from fleet_supervisor.plugin.gateway_client.fleet_state import MOST_COMMANDS, OperatorRequest, UpdateBuffer
+from fleet_supervisor.plugin.gateway_client.fleet_state import (
+    MOST_COMMANDS,
+    OperatorRequest,
+    RequestGround,
+    UpdateBuffer,
+)
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol, RequestOutbox
 from fleet_supervisor.plugin.gateway_client.report_caches import (
     PlacedConeCache,
@@ -169,6 +174,53 @@ def test_after_the_greeting_the_desk_subscribes_and_asks_for_commands(site):
         ("get_plans", {"documents": False, "ended": 10}),
     ]
     assert mailbox.collect().site == site
+
+
+def test_what_a_robot_may_drive_off_on_has_a_deadline_by_the_gateways_clock(site):
+    mailbox, clock = UpdateBuffer(), ManualClock(uptime=50.0)
+    protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, clock)
+    asked = OperatorRequest("one", "send", requested_at=40.0, ground=RequestGround.of(site, ""))
+
+    def greeting(more):
+        (hello,) = protocol.begin()
+        result = {"protocol": 1, "site": to_json(site), **more}
+        sent = protocol.receive(
+            json.dumps({"jsonrpc": "2.0", "id": json.loads(hello)["id"], "result": result})
+        )
+        return {one["method"]: one.get("deadline") for one in map(json.loads, sent)}
+
+    protocol.submit(asked)
+    without = dict.fromkeys(("subscribe", "get_commands", "get_closures", "get_queue", "get_plans"))
+    assert greeting({"now": 1000.0}) == {**without, "send": 1020.0}
+    (text,) = protocol.submit(OperatorRequest("stop", "emergency_stop", requested_at=49.0, lasting=True))
+    assert "deadline" not in json.loads(text)
+    # Another gateway has another clock, and an older one none.
+    clock.advance(5.0)
+    assert greeting({"now": 7.0}) == {**without, "send": 22.0, "emergency_stop": None}
+    assert greeting({}) == {**without, "send": None, "emergency_stop": None}
+    with pytest.raises(GatewayLinkError, match="the gateway's clock is 'noon', not a finite number"):
+        greeting({"now": "noon"})
+
+
+def test_a_refusal_sets_the_clock_for_deadlines_right(site):
+    mailbox, clock = UpdateBuffer(), ManualClock(uptime=50.0)
+    protocol = GatewayProtocol("anna", 10.0, GatewayAddresses("ws://here/desk"), mailbox, clock)
+    (hello,) = protocol.begin()
+    result = {"protocol": 1, "site": to_json(site), "now": 100.0}
+    protocol.receive(json.dumps({"jsonrpc": "2.0", "id": json.loads(hello)["id"], "result": result}))
+
+    def deadline(key):
+        request = OperatorRequest(key, "send", requested_at=clock.steady(), ground=RequestGround.of(site, ""))
+        (text,) = protocol.submit(request)
+        return json.loads(text)
+
+    first = deadline("one")
+    assert first["deadline"] == 130.0
+    refused = {"code": -32000, "message": "send: it came after its deadline", "data": {"now": 600.0}}
+    protocol.receive(json.dumps({"jsonrpc": "2.0", "id": first["id"], "error": refused}))
+    (answer,) = mailbox.collect().answers
+    assert (answer.error, answer.order.key) == ("send: it came after its deadline", "one")
+    assert deadline("two")["deadline"] == 630.0
 
 
 def test_another_version_of_the_site_is_taken_over_when_the_gateway_tells_of_it(site):

@@ -6,7 +6,9 @@ import contextlib
 import itertools
 import json
 import re
+import signal
 import sqlite3
+import time
 
 import pytest
 
@@ -32,8 +34,10 @@ class Hasty(Desk):
         self.ask("subscribe", {"rate": 20})
 
     def say(self, id, method, **params):
-        frame = {"jsonrpc": "2.0", "id": id, "method": method, "params": params}
-        self.connection.send(json.dumps(frame, separators=(",", ":")))
+        self._send({"jsonrpc": "2.0", "id": id, "method": method, "params": params})
+
+    def say_until(self, deadline, id, method, **params):
+        self._send({"jsonrpc": "2.0", "id": id, "method": method, "params": params, "deadline": deadline})
 
     def ask_of_points(self, id):
         frame = f'{{"jsonrpc":"2.0","id":{id},"method":"get_surface","params":{{"points":{POINTS_TEXT}}}}}'
@@ -46,6 +50,9 @@ class Hasty(Desk):
 
     def refusal(self, id):
         return self.answers[id]["error"]["message"]
+
+    def _send(self, frame):
+        self.connection.send(json.dumps(frame, separators=(",", ":")))
 
     def _hear(self, frame):
         if "method" in frame:
@@ -186,3 +193,61 @@ def test_too_many_questions_at_once_are_refused_and_the_others_answered(desk):
     assert 0 < len(refused) <= 150 - 64
     assert desk.answers[refused[0]]["error"]["code"] == -32005
     assert "wait for answers, then ask again" in desk.answers[refused[0]]["error"]["message"]
+
+
+# --- requests with a deadline -------------------------------------------------------------------------------
+
+TARGET = {"op": "SetPosEnd", "params": {"x": 30.0, "y": 20.0}}
+
+
+def test_what_lay_in_a_buffer_beyond_its_deadline_is_not_done_unless_it_stops_robots(bridge, desk, robot):
+    other, late = plugged_in(bridge, desk), new("target")
+    deadline = desk.ask("hello", {"operator": "Ada"})["now"] + 0.5
+    bridge.gateway.send_signal(signal.SIGSTOP)
+    try:
+        desk.say_until(deadline, 1, "send", command=late, robot=other.name, **TARGET)
+        desk.say_until(deadline, 2, "abort", command=new("abort"), robot=robot.name)
+        desk.say_until(deadline, 3, "pause_queue", robot=other.name)
+        time.sleep(1.0)
+    finally:
+        bridge.gateway.send_signal(signal.SIGCONT)
+    robot.say(robot.wait_for("Abort")["id"])
+    assert desk.wait_for_step(robot.task, "aborted")
+    desk.order(1, 2, 3)
+    assert "after its deadline, so that it was not done: a robot shall not drive off" in desk.refusal(1)
+    assert desk.answers[1]["error"]["data"]["now"] > deadline
+    assert "error" not in desk.answers[2] and "error" not in desk.answers[3]
+    assert late not in desk.commands
+    assert [call["method"] for call in other.calls if call["method"] == "SetPosEnd"] == []
+    other.connection.close()
+
+
+def test_what_has_its_turn_after_its_deadline_is_not_done(bridge, desk, robot):
+    deadline = desk.ask("hello", {"operator": "Ada"})["now"] + 0.5
+    with contextlib.closing(sqlite3.connect(bridge.file, isolation_level=None)) as hog:
+        hog.execute("begin immediate")
+        desk.say(1, "send", command=new("target"), robot=robot.name, **TARGET)
+        desk.say_until(deadline, 2, "send", command=new("target"), robot=robot.name, **TARGET)
+        time.sleep(1.0)
+        hog.execute("rollback")
+    desk.order(1, 2)
+    assert "error" not in desk.answers[1]
+    assert "after its deadline" in desk.refusal(2)
+
+
+def test_what_comes_in_time_is_done(desk, robot):
+    now = desk.ask("hello", {"operator": "Ada"})["now"]
+    desk.say_until(now + 600.0, 1, "send", command=new("target"), robot=robot.name, **TARGET)
+    desk.order(1)
+    assert desk.answers[1]["result"]["state"] == "queued"
+
+
+@pytest.mark.parametrize("deadline", ["soon", True, [], {}])
+def test_a_deadline_that_is_no_number_is_refused_and_keeps_no_stop(desk, robot, deadline):
+    desk.say_until(deadline, 1, "send", command=new("target"), robot=robot.name, **TARGET)
+    desk.order(1)
+    assert "deadline is no finite number; give seconds" in desk.refusal(1)
+    desk.say_until(deadline, 2, "abort", command=new("abort"), robot=robot.name)
+    robot.say(robot.wait_for("Abort")["id"])
+    desk.order(2)
+    assert "error" not in desk.answers[2]

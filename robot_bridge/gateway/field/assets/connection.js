@@ -92,6 +92,8 @@ export class Connection extends EventTarget {
     this.received = 0;
     this.positionsReceived = 0;
     this.heardAt = null;
+    /** Milliseconds of the gateway's clock for deadlines less those of the page's own; null where it has none. */
+    this._ahead = null;
     this._socket = null;
     this._waiting = new Map();
     this._nextId = 1;
@@ -125,7 +127,10 @@ export class Connection extends EventTarget {
     return this.heardAt === null ? null : (steadyNow() - this.heardAt) / 1000;
   }
 
-  /** Ask for something; rejects with AnswerError when it is refused, not sent or not answered. */
+  /**
+   * Ask for something; rejects with AnswerError when it is refused, not sent or not answered. What the page waits for no
+   * longer the gateway does not begin any more, unless it holds robots.
+   */
   ask(method, params, within = ANSWER_WITHIN_MS) {
     const socket = this._socket;
     if (!socket || socket.readyState !== WebSocket.OPEN) {
@@ -138,7 +143,8 @@ export class Connection extends EventTarget {
         reject(new AnswerError("no answer", { silent: true }));
       }, within);
       this._waiting.set(id, { resolve, reject, timer });
-      socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params }));
+      const deadline = this._ahead === null ? undefined : (steadyNow() + this._ahead + within) / 1000;
+      socket.send(JSON.stringify({ jsonrpc: "2.0", id, method, params, deadline }));
     });
   }
 
@@ -209,10 +215,11 @@ export class Connection extends EventTarget {
   _open() {
     const socket = openSocket(this.token);
     this._socket = socket;
+    this._ahead = null;
     socket.onopen = async () => {
       this._tell("open", null);
       try {
-        const hello = await this.ask("hello", { operator: "field page", protocol: 1 }, SILENT_AFTER_MS);
+        const hello = await this._greet(SILENT_AFTER_MS);
         this.isUp = true;
         this._wait = FIRST_WAIT_MS;
         this._tell("up", hello);
@@ -223,6 +230,13 @@ export class Connection extends EventTarget {
     };
     socket.onmessage = ({ data }) => this._read(data);
     socket.onclose = ({ code, reason }) => this._closed(socket, code, reason);
+  }
+
+  async _greet(within) {
+    const hello = await this.ask("hello", { operator: "field page", protocol: 1 }, within);
+    // Its time when it answered, so that none of what is asked for has longer than it should.
+    if (Number.isFinite(hello.now)) this._ahead = 1000 * hello.now - steadyNow();
+    return hello;
   }
 
   _read(data) {
@@ -299,7 +313,7 @@ export class Connection extends EventTarget {
       this._renew();
       return;
     }
-    this.ask("hello", { operator: "field page", protocol: 1 }).then(
+    this._greet().then(
       (hello) => this._tell("hello", hello),
       () => {},
     );

@@ -173,6 +173,21 @@ def test_a_cone_that_was_not_answered_is_known_of_and_sent_once(page, bridge, de
     assert len(commands(bridge)) == before + 1
 
 
+def test_a_target_for_which_nobody_waits_any_more_is_not_given_to_the_robot(page, bridge, desk):
+    choose_target(page, "r3")
+    before = len(commands(bridge))
+    bridge.gateway.send_signal(HELD)
+    try:
+        page.locator("#send").tap()
+        # The page waits for an answer for 10 s, and the gateway has the request in its buffer all the time.
+        page.wait_for_timeout(10_500)
+    finally:
+        bridge.gateway.send_signal(GOES_ON)
+    page.locator("#connection.up").wait_for(timeout=SLOW)
+    wait_until(lambda: [one for one in desk.ask("get_audit", {})["entries"] if "its deadline" in str(one)])
+    assert len(commands(bridge)) == before
+
+
 def test_a_cone_that_is_sent_again_is_sent_once(open_phone, bridge, desk):
     page = open_phone(bridge, expected=LOST)
     lost = []
