@@ -33,10 +33,9 @@ from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
 from ..storage.repositories.robots import FencedError
 
-# --- Emergency stops on their way into the database, in a small file of this computer ---
+# --- Emergency stops in force, or on their way into the database, in a small file of this computer ---
 # A stop goes out before it is stored. Where the database is away then, and the gateway dies before it is
-# back,
-# the next gateway knows of the stop by this file.
+# back, or where an older state of the database is put back, the next gateway knows of the stop by this file.
 
 log = logging.getLogger(__name__)
 
@@ -61,7 +60,7 @@ ROOM = 16_384
 
 
 class StopJournal:
-    """The stops that are not stored yet, as they were written down last; no file where there are none."""
+    """The stops in force or not stored, as they were written down last; no file where there are none."""
 
     def __init__(self, file: Path) -> None:
         self._file = file

@@ -143,8 +143,8 @@ class StopRelay(Protocol):
 class EmergencyStops:
     """The stop in force, if one is, and what the robots say to it.
 
-    Every operator hears of it through ``listeners``. What is not stored
-    yet is noted in ``journal``, where there is one.
+    Every operator hears of it through ``listeners``. The one in force, and what is not stored yet, are noted
+    in ``journal``, where there is one.
     """
 
     def __init__(
@@ -248,7 +248,7 @@ class EmergencyStops:
                 log.warning("emergency stop by %s%s, from before the restart", stop.by, _because(stop.reason))
                 self._put_in_force(stop)
         await self._store_and_log()
-        if noted:
+        if noted or self.in_force:
             self._note()
 
     def check(self, message: object) -> None:
@@ -450,10 +450,15 @@ class EmergencyStops:
             self.announce()
 
     def _note(self) -> futures.Future[None] | None:
-        """Have what is not stored noted on the disk."""
+        """Have the stop in force noted on the disk, and those that are not stored.
+
+        The one in force is noted for as long as it is: the database may be set back to before it.
+        """
         if self._journal is None:
             return None
-        return self._journal.write([*self._unlisted, *self._unstored])
+        current = [self._stop] if self._stop is not None and self.in_force else []
+        noted = {stop.id: stop for stop in (*self._unlisted, *self._unstored, *current)}
+        return self._journal.write([*noted.values()])
 
     async def _store_and_log(self) -> None:
         try:

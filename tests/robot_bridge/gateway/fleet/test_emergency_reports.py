@@ -227,7 +227,7 @@ async def gateway(two, tmp_path):
     await gateway.end()
 
 
-async def test_a_stop_is_noted_until_it_is_stored(two, gateway, caplog):
+async def test_a_stop_is_noted_until_it_is_stored_and_over(two, gateway, caplog):
     two.client.break_table("emergency_stops")
     emergency = gateway.fleet.emergency
     report = await emergency.stop(EmergencyStop("stop-0001", "smoke"), "Ada")
@@ -240,8 +240,34 @@ async def test_a_stop_is_noted_until_it_is_stored(two, gateway, caplog):
     assert "emergency_stops" in second or "database" in second
     two.client.mend_table("emergency_stops")
     await emergency.store()
-    await gateway.until([])
     assert emergency.report().stored
+    await gateway.until(["stop-0001"])
+    await emergency.clear(ClearEmergencyStop("free"), "Eve")
+    await gateway.until([])
+
+
+async def test_a_stop_is_in_force_still_where_an_older_state_of_the_database_was_put_back(
+    two, gateway, caplog
+):
+    await gateway.fleet.emergency.stop(EmergencyStop("stop-0001", "smoke"), "Ada")
+    await gateway.until(["stop-0001"])
+    await gateway.end()
+    # Twice: the gateway between them has the stop from the database.
+    await gateway.start()
+    await gateway.end()
+    for table in ("emergency_stops", "commands", "sa"):
+        two.sql(f"delete from {table}")
+    caplog.clear()
+    await gateway.start()
+    report = gateway.fleet.emergency.report()
+    assert (report.in_force, report.stored, report.stop, report.waiting) == (
+        True,
+        True,
+        "stop-0001",
+        ["r1", "r2"],
+    )
+    assert logged(caplog) == ["emergency stop by Ada (smoke), from before the restart"]
+    assert [two.waiting(robot) for robot in ("r1", "r2")] == [["Abort"]] * 2
 
 
 async def test_a_stop_is_in_force_whatever_goes_wrong_as_it_is_stored(two, gateway, caplog, monkeypatch):
@@ -274,15 +300,15 @@ async def test_a_noted_stop_is_in_force_at_the_next_gateway_which_stores_it(two,
         "emergency stop by Bob, from before the restart",
     ]
     assert two.sql("select id from emergency_stops order by id") == [("stop-0001",), ("stop-0002",)]
-    await gateway.until([])
+    await gateway.until(["stop-0002"])
     assert two.waiting("r1") == ["Abort"]
 
 
 async def test_a_noted_stop_that_was_stored_and_cleared_is_not_made_again(two, gateway, caplog):
     emergency = gateway.fleet.emergency
     await emergency.stop(EmergencyStop("stop-0001"), "Ada")
-    await gateway.until([])
     await emergency.clear(ClearEmergencyStop("free"), "Eve")
+    await gateway.until([])
     await gateway.end()
     # As after a power cut that undid only the file's end.
     gateway.file.write_text('[{"id": "stop-0001", "at": 1000.0, "by": "Ada", "reason": null}]')
