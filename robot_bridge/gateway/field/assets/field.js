@@ -1,29 +1,27 @@
 /** The field page: wires the connection, the map, the emergency stop and what is said of robots. */
 
+import { Alarms } from "/field/alarms.js";
+import { Banners, element } from "/field/banners.js";
 import { PositionBudget } from "/field/budget.js";
 import { AnswerError, Connection, fetchSite, newId, otherPages, SILENT_AFTER_MS, steadyNow } from "/field/connection.js";
 import { SiteMap } from "/field/map.js";
+import { RobotList, stateOf } from "/field/robot-list.js";
 import { EmergencyStop } from "/field/stop.js";
+import { TargetPanel } from "/field/target.js";
 import { firstLanguage, LANGUAGES, setLanguage, tr, translatePage } from "/field/texts.js";
 import { ViewChoice } from "/field/view.js";
 
 const TOKEN = "fleet-field-token", LANGUAGE = "fleet-field-language";
-const LISTED = 50;
-/** Milliseconds that the map has to be still before the gateway is asked for what it shows, and keys before a search. */
+/** Milliseconds that the map has to be still before the gateway is asked for what it shows. */
 const STILL_MS = 250;
-/** Milliseconds after which a list that stays open is asked for again. */
-const LISTED_FOR_MS = 5000;
 /** Milliseconds after which the site is asked for again where it did not come, or not the one that is served. */
 const SITE_AGAIN_MS = 2000;
-/** Milliseconds for which a list stays as it is after a finger left it: the click comes later. */
-const FINGER_MS = 300;
 const by = (id) => document.getElementById(id);
 
 class Field {
   constructor() {
     this.robots = new Map();
     this.tasks = new Map();
-    this._forgetAlarms();
     this.account = null;
     /** Whether a token is tried of which the gateway has not said yet that it does not hold. */
     this.isSigningIn = false;
@@ -32,30 +30,28 @@ class Field {
     this.frame = null;
     /** Whether the positions are of the link that there is. */
     this.isCurrent = false;
-    /** The target that is being made: its robot, and the id that it keeps however often it is sent. */
-    this.draft = null;
     /** How often something was pressed that holds robots. */
     this.holds = 0;
     this.resumes = 0;
-    this._isListHeld = false;
     this.others = [];
     this.selected = null;
-    this.place = null;
     this.site = null;
     this.traffic = [];
     this.budget = new PositionBudget();
     this.views = new ViewChoice();
     /** How the gateway counts the fleet, null where all robots are told. */
     this.fleet = null;
-    this.found = { robots: new Map(), count: 0, at: -Infinity };
     this.connection = new Connection();
+    this.list = new RobotList(this.connection, { search: by("search"), list: by("robots"), more: by("robots-more") });
+    this.alarms = new Alarms({ list: by("alarms"), menu: by("menu"), button: by("menu-button") });
     this.map = new SiteMap(by("map"));
+    this.target = new TargetPanel(this.map);
     this.stop = new EmergencyStop(
       this.connection,
       { button: by("stop"), state: by("stop-state"), clear: by("clear") },
       () => this.account?.role ?? (this.isSigningIn ? "" : null),
     );
-    this.banners = new Map();
+    this.banners = new Banners(by("banners"));
     this._listenToGateway();
     this._listenToPage();
     setInterval(() => this._tick(), 1000);
@@ -130,20 +126,20 @@ class Field {
 
   async _readSite(answer) {
     if (!answer.ok) {
-      this._banner("site", tr("The site is not drawn: {reason}", { reason: await answer.text() }));
+      this.banners.show("site", tr("The site is not drawn: {reason}", { reason: await answer.text() }));
       return;
     }
     const site = await answer.json(), before = this.site;
     // Asked for before the gateway was another one.
     if (this.frame !== null && !isSame(site.frame, this.frame)) return;
-    this._banner("site", "");
+    this.banners.show("site", "");
     if (["id", "version", "gateway"].every((fact) => site[fact] === before?.[fact])) return;
     this.site = site;
     by("site").textContent = document.title = site.name;
     this.map.showSite(site, site.id === before?.id);
     this.views.restart();
     this._renewView();
-    if (site.left_out.length) this._banner("left-out", tr("Too much to draw: {what} are not all shown.", { what: site.left_out.join(", ") }));
+    if (site.left_out.length) this.banners.show("left-out", tr("Too much to draw: {what} are not all shown.", { what: site.left_out.join(", ") }));
     const mine = document.querySelector('meta[name="gateway"]').content;
     if (site.gateway !== mine) this._offerReload(mine, site.gateway);
   }
@@ -152,7 +148,7 @@ class Field {
     const button = element("button", tr("Load the new page"));
     button.type = "button";
     button.onclick = () => location.reload();
-    this._banner("upgrade", tr("The gateway has been upgraded from {old} to {new}.", { old, new: fresh }), button);
+    this.banners.show("upgrade", tr("The gateway has been upgraded from {old} to {new}.", { old, new: fresh }), button);
   }
 
   // --- what the gateway tells
@@ -160,7 +156,7 @@ class Field {
   _listenToGateway() {
     const gateway = this.connection, on = (type, act) => gateway.addEventListener(type, ({ detail }) => act(detail));
     // What goes on is told again on a new link, and what is over is not.
-    on("open", () => this._forgetAlarms());
+    on("open", () => this.alarms.forget());
     on("up", (hello) => {
       this._greeted(hello);
       this._choosePositions();
@@ -177,7 +173,7 @@ class Field {
       this._tick();
     });
     on("ended", (reason) => this._signOut(reason));
-    on("refused", (reason) => this._banner("refused", reason));
+    on("refused", (reason) => this.banners.show("refused", reason));
     on("positions", (positions) => this._positions(positions));
     on("notice", (notice) => this._notice(notice));
   }
@@ -189,7 +185,7 @@ class Field {
     this.others = otherPages(hello.gateways);
     this.bounds = hello.site.bounds;
     this.views.count(hello.robots);
-    this._banner("refused", "");
+    this.banners.show("refused", "");
     this.stop.update(hello.emergency);
     by("account").textContent = tr("{name}, {role}", this.account);
     if (before !== hello.role) this._showRobot();
@@ -206,9 +202,9 @@ class Field {
       this.robots.clear();
       this.tasks.clear();
       this.fleet = null;
-      this.found = { robots: new Map(), count: 0, at: -Infinity };
+      this.list.forget();
       this._select(null);
-      this._remark("ground", tr("Another site, or another fleet, is served now than before. What was being made was not sent. Look at the map."));
+      this.banners.showUntilRead("ground", tr("Another site, or another fleet, is served now than before. What was being made was not sent. Look at the map."));
     }
     if (this.site && !isSame(this.site.frame, frame)) {
       this.site = null;
@@ -228,28 +224,18 @@ class Field {
     // One of that name that comes later is another one.
     const isGone = removed.includes(this.selected) || (everything && !view && !this.robots.has(this.selected));
     if (this.selected !== null && isGone) {
-      this._remark("gone", tr("{robot} was removed.", { robot: this.selected }));
+      this.banners.showUntilRead("gone", tr("{robot} was removed.", { robot: this.selected }));
       this._select(null);
     }
     this._draw();
   }
 
-  _forgetAlarms() {
-    this.alarms = { geofence: [], nearness: [], links: [], suspensions: [] };
-    this.unlisted = { geofence: 0, nearness: 0 };
-  }
-
   _notice({ method, params }) {
     if (method === "emergency") this.stop.update(params);
     else if (method === "command") this._task(params);
-    else if (method === "geofence") this.alarms.geofence = params.alarms.filter((one) => one.current);
-    else if (method === "nearness") this.alarms.nearness = params.alarms;
-    else if (method === "links") this.alarms.links = params.links.filter((one) => !one.up);
-    else if (method === "suspensions") this.alarms.suspensions = params.robots;
     else if (method === "site") this._newSite();
-    // The gateway lists the newest of a geofence, the soonest of nearness, and counts the others.
-    if (method in this.unlisted) this.unlisted[method] = params.more;
-    this._showAlarms();
+    this.alarms.update(method, params);
+    this.alarms.show(this.robots, this.fleet);
   }
 
   async _newSite() {
@@ -266,7 +252,7 @@ class Field {
   _task(report) {
     this.tasks.set(report.robot, report);
     // Of one that was not answered the gateway says so after all.
-    if (this.draft && report.command === this.draft.command) this._wasSent(this.draft);
+    if (this.target.draft && report.command === this.target.draft.command) this._wasSent(this.target.draft);
     if (report.robot === this.selected) this._showRobot();
   }
 
@@ -276,7 +262,7 @@ class Field {
     const silent = this.connection.silence(), isSilent = this.connection.isUp ? silent > SILENT_AFTER_MS / 1000 : true;
     if (this.account) this._setConnection(isSilent ? "silent" : "up");
     const seconds = Math.round(silent ?? 0);
-    this._banner(
+    this.banners.show(
       "network",
       !navigator.onLine
         ? tr("This phone has no network.")
@@ -304,7 +290,7 @@ class Field {
       link.href = address;
       links.append(" ", link);
     }
-    this._banner("others", wanted ? tr("Open this page at another gateway of the fleet:") : "", links);
+    this.banners.show("others", wanted ? tr("Open this page at another gateway of the fleet:") : "", links);
   }
 
   /** Keep to the budget of a phone's contract: fewer positions where there are many robots. */
@@ -361,8 +347,8 @@ class Field {
 
   _draw() {
     this.map.showRobots(this.robots.values(), this.fleet?.density, this.selected, !this.isCurrent);
-    if (!by("menu").hidden) this._list();
-    this._showAlarms();
+    if (!by("menu").hidden) this.list.show(this.robots, this.fleet, this.isCurrent);
+    this.alarms.show(this.robots, this.fleet);
   }
 
   /** Say how many robots of a large fleet are in view. */
@@ -376,74 +362,6 @@ class Field {
         : tr("Robots here: {n} of {all}.", values);
   }
 
-  /** Search at the gateway, which knows robots that the page is not told of. */
-  async _find() {
-    clearTimeout(this._typing);
-    const text = by("search").value.trim();
-    this.found.at = steadyNow();
-    const asked = (this._asked = { text, limit: LISTED });
-    const answer = await this.connection.ask("find_robots", asked).catch(() => null);
-    // Another text was typed meanwhile, or there was no answer: it is asked for again.
-    if (answer === null || asked !== this._asked) return;
-    const at = steadyNow(), robots = new Map(answer.robots.map((one) => [one.robot, { ...one, at }]));
-    this.found = { robots, count: answer.count, at };
-    this._list();
-  }
-
-  _list() {
-    const wanted = by("search").value.trim().toLowerCase();
-    if (this._isListHeld) return;
-    if (this.fleet && steadyNow() - this.found.at > LISTED_FOR_MS) this._find();
-    const known = this.fleet ? this.found.robots : this.robots, list = by("robots");
-    const names = [...known.keys()].filter((name) => name.toLowerCase().includes(wanted)).sort();
-    const shown = names.slice(0, LISTED);
-    while (list.children.length > shown.length) list.lastChild.remove();
-    shown.forEach((name, k) => {
-      const one = this.robots.get(name) ?? known.get(name);
-      let button = list.children[k]?.firstChild;
-      if (!button) {
-        button = element("button");
-        button.type = "button";
-        button.onclick = () => this._select(button.dataset.robot, { close: true });
-        const item = element("li");
-        item.append(button);
-        list.append(item);
-      }
-      button.dataset.robot = name;
-      const text = `${name}: ${this._stateOf(one)}`;
-      if (button.textContent !== text) button.textContent = text;
-    });
-    const more = (this.fleet ? this.found.count : names.length) - shown.length;
-    by("robots-more").textContent = more > 0 ? tr("{n} more: search for them", { n: more }) : names.length ? "" : tr("no robots");
-  }
-
-  /** Return the state of a robot as it is, or as it was where the gateway is not heard. */
-  _stateOf({ state }) {
-    return this.isCurrent ? tr(state) : tr("was {state}", { state: tr(state) });
-  }
-
-  _showAlarms() {
-    const { geofence, nearness, links, suspensions } = this.alarms;
-    const lost = [...this.robots.values()].filter((one) => one.state === "lost");
-    const texts = [
-      ...lost.map(({ robot }) => tr("{robot} is lost", { robot })),
-      ...geofence.map((one) => tr("{robot} is in {name}", one)),
-      ...nearness.map((one) => tr("{seen} is {m} m from {robot}", { ...one, m: one.metres.toFixed(1) })),
-      ...links.map((one) => tr("link {link}: {text}", one)),
-      ...suspensions.map((one) => tr("robot {robot} is kept out: {text}", { robot: one.robot, text: one.reason })),
-    ];
-    // Of a large fleet the first thousand that are lost are named.
-    const unnamed = Math.max((this.fleet?.lost ?? 0) - lost.length, 0) + this.unlisted.geofence + this.unlisted.nearness;
-    const alarms = texts.length + unnamed;
-    const text = alarms ? `${tr("Menu")} (${alarms} !)` : tr("Menu");
-    if (by("menu").hidden && by("menu-button").textContent !== text) by("menu-button").textContent = text;
-    const list = by("alarms"), said = alarms ? texts.slice(0, LISTED) : [tr("none")];
-    if (alarms > said.length) said.push(tr("{n} more alarms", { n: alarms - said.length }));
-    if (list.dataset.said === said.join("\n")) return;
-    list.dataset.said = said.join("\n");
-    list.replaceChildren(...said.map((one) => element("li", one)));
-  }
-
   // --- one robot
 
   _select(name, { close = false } = {}) {
@@ -452,7 +370,7 @@ class Field {
     this._endTarget();
     if (close) this._close("menu");
     by("robot").hidden = name === null;
-    const found = this.found.robots.get(name);
+    const found = this.list.found(name);
     if (found && !this.robots.has(name)) this.robots.set(name, found);
     this._draw();
     if (name !== null) {
@@ -465,12 +383,12 @@ class Field {
 
   _showRobot() {
     const name = this.selected;
-    if (name === null || !by("target-panel").hidden) return;
+    if (name === null || this.target.isOpen) return;
     const one = this.robots.get(name), task = this.tasks.get(name), role = this.account?.role ?? "viewer";
     by("robot-name").textContent = name;
     const since = one ? (steadyNow() - one.at) / 1000 : 0, facts = [];
     if (one) {
-      facts.push(this._stateOf(one));
+      facts.push(stateOf(one, this.isCurrent));
       // Of very many robots no more than state and place is told.
       if (one.age !== undefined) facts.push(tr("heard {s} s ago", { s: Math.round(one.age + since) }));
       if (one.x === undefined) facts.push(tr("has not said where it is"));
@@ -494,17 +412,17 @@ class Field {
    * something else was pressed or another target of it is made: then where it is read all the same.
    */
   async _do(what, ask, into = "robot-answer") {
-    const robot = this.selected, draft = this.draft, press = (this._press = {});
+    const robot = this.selected, draft = this.target.draft, press = (this._press = {});
     const say = (text, refused = false) => {
       if (draft?.wasSent) return;
-      if (this.selected === robot && this.draft === draft && this._press === press) this._answer(into, text, refused);
-      else this._remark(`answer ${robot} ${what}`, `${robot}, ${what}: ${text}`, refused);
+      if (this.selected === robot && this.target.draft === draft && this._press === press) this._answer(into, text, refused);
+      else this.banners.showUntilRead(`answer ${robot} ${what}`, `${robot}, ${what}: ${text}`, refused);
     };
     this._answer(into, "…");
     try {
       const result = await ask();
       // It may have been reported before it was answered.
-      if (draft && draft === this.draft) this._wasSent(draft);
+      if (draft && draft === this.target.draft) this._wasSent(draft);
       else say(tr("sent"));
       return result;
     } catch (error) {
@@ -551,72 +469,29 @@ class Field {
   // --- a target
 
   _beginTarget(byCoordinates) {
-    this.draft = { robot: this.selected, command: null, params: "" };
-    this.place = null;
-    this.map.markTarget(null);
-    this.map.isChoosing = !byCoordinates;
-    by("map").classList.toggle("choosing", !byCoordinates);
-    by("place-form").hidden = !byCoordinates;
-    by("cone").checked = false;
     by("robot").hidden = true;
-    by("target-panel").hidden = false;
-    by("target-title").textContent = tr("Target of {robot}", { robot: this.selected });
-    by("target-help").textContent = tr(byCoordinates ? "Enter the coordinates, then send." : "Tap the place on the map.");
-    by("send").disabled = !byCoordinates;
     this._answer("target-answer", "");
-    this._labelPlace();
-    this.map.lookAt(this.selected, by("target-panel").offsetHeight);
+    this.target.begin(this.selected, byCoordinates);
   }
 
   _endTarget() {
-    this.draft = null;
-    this.map.isChoosing = false;
-    by("map").classList.remove("choosing");
-    this.map.markTarget(null);
-    by("target-panel").hidden = true;
+    this.target.end();
     by("robot").hidden = this.selected === null;
   }
 
-  _choose(place) {
-    this.place = place;
-    this.map.markTarget(place);
-    by("target-help").textContent = tr("To {place}. Tap elsewhere to change it, then send.", {
-      place: `${place.lat.toFixed(6)}, ${place.lng.toFixed(6)}`,
-    });
-    by("send").disabled = false;
-  }
-
-  _labelPlace() {
-    const geographic = by("place-crs").value === "EPSG:4326";
-    by("place-x-label").textContent = tr(geographic ? "Longitude, degrees" : "x (easting), metres");
-    by("place-y-label").textContent = tr(geographic ? "Latitude, degrees" : "y (northing), metres");
-  }
-
-  _entered() {
-    const numbers = [by("place-x"), by("place-y")].map((input) => {
-      const text = input.value.trim().replace(",", ".");
-      if (text === "" || !Number.isFinite(Number(text))) throw new Error(tr("{text} is not a number", { text: text || "–" }));
-      return Number(text);
-    });
-    return { x: numbers[0], y: numbers[1], crs: by("place-crs").value };
-  }
-
   async _send() {
-    let where;
+    const { draft } = this.target;
+    let order;
     try {
-      where = by("place-form").hidden ? { x: this.place.lng, y: this.place.lat, crs: "EPSG:4326" } : this._entered();
+      order = this.target.order();
     } catch (error) {
       this._answer("target-answer", error.message, true);
       return;
     }
     by("send").disabled = true;
-    const draft = this.draft, params = { ...where, cone: by("cone").checked };
-    // Sent again after no answer it is the same, and done once; another place is another one.
-    if (draft.params !== JSON.stringify(params)) Object.assign(draft, { command: newId(), params: JSON.stringify(params) });
-    const order = { command: draft.command, robot: draft.robot, op: "SetPosEnd", params };
     const sent = await this._do(tr("Send"), () => this._move("send", order), "target-answer");
     if (sent) this._task(sent);
-    if (draft === this.draft) by("send").disabled = false;
+    if (draft === this.target.draft) by("send").disabled = false;
   }
 
   _wasSent(draft) {
@@ -631,15 +506,12 @@ class Field {
   _listenToPage() {
     const on = (id, type, act) => by(id).addEventListener(type, act);
     on("menu-button", "click", () => (by("menu").hidden ? this._openMenu() : this._close("menu")));
-    on("search", "input", () => this._typed());
     on("robot-close", "click", () => this._select(null));
     on("abort", "click", () => this._hold(tr("Abort"), "abort", { command: newId() }, () => true));
     on("pause", "click", () => this._pause());
     on("resume", "click", () => this._resume());
     on("target", "click", () => this._beginTarget(false));
     on("coordinates", "click", () => this._beginTarget(true));
-    on("place-crs", "change", () => this._labelPlace());
-    on("place-form", "submit", (event) => event.preventDefault());
     on("send", "click", () => this._send());
     on("cancel", "click", () => (this._endTarget(), this._showRobot()));
     on("whole", "click", () => this.map.showWhole());
@@ -652,24 +524,12 @@ class Field {
       this._signIn(by("token").value.trim(), { remember: by("remember").checked });
       by("token").value = "";
     });
-    // No other robot may come under a finger that is down on the list.
-    on("robots", "pointerdown", () => {
-      clearTimeout(this._lifting);
-      this._isListHeld = true;
-    });
-    // A long press is a pointercancel, and a click all the same.
-    for (const type of ["pointerup", "touchend", "touchcancel"]) {
-      window.addEventListener(type, () => {
-        clearTimeout(this._lifting);
-        this._lifting = setTimeout(() => (this._isListHeld = false), FINGER_MS);
-      });
-    }
+    this.list.addEventListener("robot", ({ detail }) => this._select(detail, { close: true }));
     this.map.addEventListener("robot", ({ detail }) => this._select(detail));
-    this.map.addEventListener("place", ({ detail }) => this._choose(detail));
     this.map.addEventListener("moved", () => this._moved());
     this.map.addEventListener("drawn", ({ detail }) => this._count(detail));
-    this.map.addEventListener("tiles-failed", () => this._banner("tiles", tr("The background map does not answer; everything else works.")));
-    this.map.addEventListener("tiles-came", () => this._banner("tiles", ""));
+    this.map.addEventListener("tiles-failed", () => this.banners.show("tiles", tr("The background map does not answer; everything else works.")));
+    this.map.addEventListener("tiles-came", () => this.banners.show("tiles", ""));
     new ResizeObserver(() => this.map.resized()).observe(by("map"));
     window.addEventListener("hashchange", () => location.hash.includes("token=") && this.begin());
     for (const [code, name] of Object.entries(LANGUAGES)) {
@@ -680,24 +540,18 @@ class Field {
     }
   }
 
-  _typed() {
-    this._list();
-    clearTimeout(this._typing);
-    if (this.fleet) this._typing = setTimeout(() => this._find(), STILL_MS);
-  }
-
   _openMenu() {
-    this.found.at = -Infinity;
+    this.list.renew();
     by("menu").hidden = false;
     by("menu-button").textContent = tr("Map");
     by("menu-button").setAttribute("aria-expanded", "true");
-    this._list();
+    this.list.show(this.robots, this.fleet, this.isCurrent);
   }
 
   _close(id) {
     by(id).hidden = true;
     by("menu-button").setAttribute("aria-expanded", "false");
-    this._showAlarms();
+    this.alarms.show(this.robots, this.fleet);
   }
 
   _chooseLanguage(language) {
@@ -705,16 +559,16 @@ class Field {
     keep(LANGUAGE, language, true);
     by("language").value = language;
     translatePage();
-    this._labelPlace();
+    this.target.label();
     by("alarms").dataset.said = "";
-    this._showAlarms();
+    this.alarms.show(this.robots, this.fleet);
     this._showRobot();
     this.stop.show();
   }
 
   _findMe() {
     if (!window.isSecureContext) {
-      this._banner("me", tr("The position of a phone is given to pages with https only."));
+      this.banners.show("me", tr("The position of a phone is given to pages with https only."));
       return;
     }
     let first = true;
@@ -723,39 +577,15 @@ class Field {
       ({ coords }) => {
         const place = [coords.latitude, coords.longitude];
         this.map.showMe(place, coords.accuracy);
-        this._banner("me", tr("You are here, within {m} m", { m: Math.round(coords.accuracy) }));
+        this.banners.show("me", tr("You are here, within {m} m", { m: Math.round(coords.accuracy) }));
         if (first) this.map.centreOn(place);
         first = false;
       },
-      (error) => this._banner("me", tr("This phone does not say where it is: {reason}", { reason: error.message })),
+      (error) => this.banners.show("me", tr("This phone does not say where it is: {reason}", { reason: error.message })),
       { enableHighAccuracy: true },
     );
   }
 
-  /** Say what is to be read, and stays until it was. */
-  _remark(id, text, isBad = true) {
-    const button = element("button", tr("Close"));
-    button.type = "button";
-    button.onclick = () => this._banner(id, "");
-    this._banner(id, text, button, isBad ? "bad" : "");
-  }
-
-  _banner(id, text, more = null, kind = "") {
-    let one = this.banners.get(id);
-    if (!text) {
-      one?.remove();
-      this.banners.delete(id);
-      return;
-    }
-    if (!one) {
-      one = element("p");
-      by("banners").append(one);
-      this.banners.set(id, one);
-    }
-    one.className = kind;
-    if (one.firstChild?.textContent === text && !more) return;
-    one.replaceChildren(text, ...(more ? [more] : []));
-  }
 }
 
 function isSame(one, other) {
@@ -767,12 +597,6 @@ function failure(error) {
   return error.sent
     ? tr("No answer: it is not known whether this was done. Look at the last task.")
     : tr("Not sent: the gateway does not answer.");
-}
-
-function element(name, text = "") {
-  const made = document.createElement(name);
-  made.textContent = text;
-  return made;
 }
 
 /** Return what is kept in this tab, or on this phone. */

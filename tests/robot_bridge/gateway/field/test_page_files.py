@@ -19,12 +19,16 @@ from tests.support.bridge.bridge_programs import wait_until
 FILES = (
     "",
     "/",
+    "/alarms.js",
+    "/banners.js",
     "/budget.js",
     "/field.js",
     "/field.css",
     "/leaflet.js",
     "/leaflet.css",
     "/leaflet-LICENSE.txt",
+    "/robot-list.js",
+    "/target.js",
     "/view.js",
     "/icon.svg",
 )

@@ -14,7 +14,7 @@ STRING = r'"((?:[^"\\]|\\.)*)"'
 ENTRY = re.compile(rf"^  {STRING}: \[\s*((?:{STRING},?\s*)+)\],$", re.M)
 TABLE = {found[1]: re.findall(STRING, found[2]) for found in ENTRY.finditer(TEXTS)}
 PAGE = (ASSETS / "index.html").read_text("utf-8")
-SCRIPTS = "".join((ASSETS / file).read_text("utf-8") for file in ("field.js", "stop.js"))
+SCRIPTS = "".join(file.read_text("utf-8") for file in ASSETS.glob("*.js") if file.name != "leaflet.js")
 USED = {*re.findall(rf"data-text={STRING}", PAGE), *re.findall(rf"tr\({STRING}", SCRIPTS)}
 
 
