@@ -275,7 +275,8 @@ def repair_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.
     geometry = _as_geometry(kept)
     if not kept or geometry.isGeosValid():
         return kept, notes
-    repaired = geometry.makeValid()
+    # Each by itself: together, what two parts have in common would become a hole of both.
+    repaired = QgsGeometry.unaryUnion([_as_geometry([polygon]).makeValid() for polygon in kept])
     parts = parts_of(repaired) if not repaired.isNull() else GeometryParts([], [], [])
     if not parts.polygons:
         return [], [*notes, tr("{fault}; it cannot be repaired and is left out", fault=_fault(geometry))]

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from fleet_supervisor.plugin.layers.geometry import NO_PLACE, SAGITTA_M, shapes_of
+from fleet_supervisor.plugin.layers.geometry import NO_PLACE, SAGITTA_M, polygons_of, shapes_of
 from fleet_supervisor.plugin.layers.roles import RAMP, STAIRS
 from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from qgis.core import QgsGeometry, QgsPointXY
@@ -44,6 +44,18 @@ def test_a_ring_that_crosses_itself_is_repaired_and_the_place_is_named(qgis_app)
     assert area(found) == pytest.approx(50)
     assert notes == ["the polygon is broken at (5.00 5.00): Self-intersection; it was repaired"]
     assert all(shapely.Polygon(shape.points).is_valid for shape in found)
+
+
+@pytest.mark.parametrize(
+    ("other", "whole"),
+    [("(5 5, 15 5, 15 15, 5 15, 5 5)", 175), ("(2 2, 4 2, 4 4, 2 4, 2 2)", 100), (SQUARE, 100)],
+    ids=["overlapping", "nested", "twice"],
+)
+def test_what_two_parts_have_in_common_is_of_both_and_no_hole(qgis_app, other, whole):
+    found, notes = shapes(f"MultiPolygon(({SQUARE}), ({other}))")
+    polygons = [shapely.Polygon(outer, holes) for outer, *holes in polygons_of(found)]
+    assert shapely.union_all(polygons).area == pytest.approx(whole)
+    assert len(notes) == 1 and notes[0].endswith("; it was repaired")
 
 
 def test_a_flat_courtyard_is_left_out_and_the_polygon_stays(qgis_app):
