@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from qgis.core import (
+    QgsFeatureRequest,
     QgsProcessing,
     QgsProcessingContext,
     QgsProcessingFeatureSource,
@@ -217,6 +218,8 @@ class ExportNavigationMap(FleetAlgorithm):
                     layer=parameters.get(name),
                 )
             )
+        # They are repaired here, with a warning each: QGIS would leave them out of the mask, or end there.
+        source.setInvalidGeometryCheck(QgsFeatureRequest.InvalidGeometryCheck.GeometryNoCheck)
         return source, filter_in(self, parameters, name, context)
 
     def _choice_problem(self, parameters: Parameters, context: QgsProcessingContext) -> str:
