@@ -164,6 +164,9 @@ _GRID = 0.01
 """metres; corners nearer than a map tells apart are the same when buildings are put together."""
 _ALONG = 0.05
 """metres; a line this near to a building's wall is that wall once more."""
+_BARRIER = 0.5
+"""metres above the ground: what ends lower, such as a kerb, or begins higher, such as a roof, hides nothing
+that stands on it or below it, for robots come there."""
 
 
 def without_shared_walls(
@@ -238,11 +241,13 @@ def shapely_module() -> Any:
 
 
 def _polygons(rows: Sequence[OutlineRow]) -> Iterator[tuple[list[int], Any]]:
-    """Yield the rows of each sound polygon, its shell first, and the polygon."""
+    """Yield the rows of each sound polygon that no robot comes into, its shell first, and the polygon."""
     shapely = shapely_module()
     group: list[int] = []
     for k, row in enumerate(rows):
         if row.shape_type not in (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE):
+            continue
+        if not row.base < _BARRIER <= row.base + row.height:
             continue
         if row.courtyard and group and rows[group[0]].source == row.source:
             group.append(k)

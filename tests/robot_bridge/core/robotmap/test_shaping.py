@@ -185,6 +185,20 @@ def test_lines_inside_and_along_a_building_go_and_the_rest_stays():
     assert sorted(kept[1].points[:, 1].tolist()) == pytest.approx([10.05, 20])
 
 
+@pytest.mark.parametrize("low", [{"height": 0.12}, {"height": 1.0, "base": 4.0}], ids=["kerb", "roof"])
+def test_what_robots_come_onto_or_under_hides_nothing(low):
+    rows = [
+        box(0, 0, 40, 40, source="low:1", **low),
+        box(10, 10, 20, 20, source="house:1", height=6.0),
+        box(20, 10, 30, 20, source="house:2", height=6.0),
+        row([(30, 30), (35, 35)], source="wall:1"),
+    ]
+    kept = after(Shaping(dissolve=True), *rows)
+    assert {r.source for r in kept} == {"low:1", "house:1", "house:2", "wall:1"}
+    houses = [r for r in kept if r.source.startswith("house")]
+    assert shapely.equals(lines(houses), shapely.box(10, 10, 30, 20).boundary)
+
+
 boxes = st.tuples(*[st.integers(0, 12)] * 2, *[st.integers(1, 6)] * 2)
 
 
