@@ -82,7 +82,8 @@ def solids_of(robot_map: RobotMap) -> tuple[list[Solid], list[str]]:
 
     A ring that the border cut is written as open chains, as a wall is, and marked by the extra ``cut``;
     chains of one source belong together. A map without extras cannot say it, for which there is a warning
-    where it matters. Ramps are driven on and enclose nothing.
+    where it matters. Of an obstacle that is all around the map there is nothing but its courtyards: the
+    border stands for its outer ring. Ramps are driven on and enclose nothing.
     """
     solids, warnings = [], []
     for obstacle in robot_map.obstacles:
@@ -105,7 +106,7 @@ def solids_of(robot_map: RobotMap) -> tuple[list[Solid], list[str]]:
         solids += rings
         if not rings:
             warnings.append(_unclosed(group))
-    return solids, warnings
+    return [*_around(robot_map.border, solids), *solids], warnings
 
 
 def edges_of(rings: Sequence[Points]) -> tuple[NDArray[Any], NDArray[Any]]:
@@ -175,6 +176,27 @@ def _closed_along(border: Border, chains: list[Chain]) -> list[Solid]:
         ring = np.concatenate([*points, chains[first][0][:1]])
         solids.append(Solid(ring, chains[first][1], cut=True))
     return solids
+
+
+def _around(border: Border, solids: Sequence[Solid]) -> list[Solid]:
+    """Return the border as a ring for each source of which there are courtyards and no ring around them."""
+    hosts: dict[tuple[str, str], list[Points]] = defaultdict(list)
+    for solid in solids:
+        if signed_area(solid.ring) > 0:
+            hosts[_identity(solid.obstacle)].append(solid.ring)
+    found = {}
+    for solid in solids:
+        key = _identity(solid.obstacle)
+        # Rings of other programs' maps have no source, and may run either way.
+        if (
+            key[1]
+            and signed_area(solid.ring) < 0
+            and not any(_holds(ring, solid.ring) for ring in hosts[key])
+        ):
+            x_min, y_min, x_max, y_max = border
+            corners = [(x_min, y_min), (x_max, y_min), (x_max, y_max), (x_min, y_max), (x_min, y_min)]
+            found[key] = Solid(np.array(corners, dtype=float), solid.obstacle, cut=True)
+    return list(found.values())
 
 
 def _on_border(border: Border, points: Points) -> NDArray[Any]:

@@ -58,6 +58,22 @@ def test_a_courtyard_is_free_and_what_is_round_it_unknown_or_occupied_on_request
     assert (filled.at(10, 10), filled.at(4, 10), filled.at(1, 1)) == (FREE, OCCUPIED, FREE)
 
 
+def test_of_what_is_all_around_a_map_its_courtyards_alone_are_free(make_map, read_grid):
+    def square(low, high):
+        return [(low, low), (high, low), (high, high), (low, high), (low, low)]
+
+    rows = [(square(-50, 70), {"source": "b:1"})]
+    rows += [(square(low, low + 4), {"source": "b:1", "courtyard": True}) for low in (2, 12)]
+    rows += [(square(13, 15), {"source": "b:2"})]
+    made = read_grid(make_map(rows, (0, 0, 20, 20)))
+    assert (made.at(4, 4), made.at(12.5, 12.5), made.at(4, 14), made.at(14, 14)) == (
+        FREE,
+        FREE,
+        UNKNOWN,
+        UNKNOWN,
+    )
+
+
 def test_unknown_stays_unknown_at_the_thresholds_in_the_file(make_map, house, read_grid):
     made = occupancy_of(make_map([(house, {})], (10, 20, 30, 40)), 0.1)
     files = trinary_files("map", made.grid, made.cells)
