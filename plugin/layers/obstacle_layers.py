@@ -491,7 +491,7 @@ class _LayerReader:
         """
         check_readable(self.source)
         name, role = self.source.name, self.source.role
-        for warning in self._rules.warnings:
+        for warning in (*self._placing.doubts(name), *self._rules.warnings):
             self._warnings.add_text(warning)
         if role and role not in OBSTACLE_ROLES:
             self._warnings.add_text(

@@ -511,6 +511,7 @@ class _GroundLayer:
         reading.complete = reading.complete and reader.complete
         if reader.complete:
             check_readable(source)
+            reading.note_layer(self.placing.doubts(source.name))
 
     def features(
         self, reading: GroundReading, feedback: QgsFeedback

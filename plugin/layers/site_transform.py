@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import struct
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -15,6 +16,7 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCoordinateTransformContext,
     QgsCsException,
+    QgsDatumTransform,
     QgsFeature,
     QgsGeometry,
     QgsPointXY,
@@ -44,6 +46,66 @@ def check_transform(way: QgsCoordinateTransform) -> None:
     """
     if way.sourceCrs().isValid() and way.destinationCrs().isValid() and not way.isValid():
         raise QgsCsException(tr("nothing is known of how the two lie to each other"))
+
+
+# --- By which operation coordinates come from one CRS to another, and how far off they may be by it ---
+
+
+@dataclass(frozen=True)
+class DatumTransform:
+    """The operation in words, its accuracy in metres if it is known, and what makes it worse than need be."""
+
+    name: str
+    accuracy: float | None = None
+    warning: str = ""
+
+    def in_words(self) -> str:
+        """Return one or two sentences."""
+        exact = tr("accuracy not known")
+        if self.accuracy is not None:
+            exact = tr("accurate to {accuracy:g} m", accuracy=self.accuracy) if self.accuracy else tr("exact")
+        return tr(
+            "By {name} ({exact}).{warning}",
+            name=self.name,
+            exact=exact,
+            warning=f" {self.warning}" if self.warning else "",
+        )
+
+
+def datum_transform(
+    source: QgsCoordinateReferenceSystem,
+    target: QgsCoordinateReferenceSystem,
+    context: QgsCoordinateTransformContext,
+) -> DatumTransform:
+    """Return the operation that QGIS uses, by the project's settings, from ``source`` to ``target``."""
+    if source == target:
+        return DatumTransform(tr("no change: it is the site's CRS"), 0.0)
+    way = QgsCoordinateTransform(source, target, context)
+    used = way.instantiatedCoordinateOperationDetails()
+    name = used.name or way.coordinateOperation() or tr("the default operation of PROJ")
+    accuracy = used.accuracy if used.accuracy >= 0 else None
+    if "ballpark" in name.lower():
+        return DatumTransform(
+            name, None, tr("PROJ knows no exact way between these two: the place may be off by metres.")
+        )
+    return DatumTransform(name, accuracy, _better(source, target, accuracy))
+
+
+def _better(
+    source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem, accuracy: float | None
+) -> str:
+    """Return what is missing for a more exact way; empty where this is the best."""
+    most = math.inf if accuracy is None else accuracy
+    for one in QgsDatumTransform.operations(source, target):
+        missing = [grid.shortName for grid in one.grids if not grid.isAvailable]
+        if missing and not one.isAvailable and 0 <= one.accuracy < most:
+            grids = ", ".join(missing)
+            return tr(
+                "A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.",
+                accuracy=one.accuracy,
+                grids=grids,
+            )
+    return ""
 
 
 # --- Many coordinates through one transform, together and not point by point ---
@@ -110,6 +172,10 @@ def _moved_alone(x: float, y: float, transform: QgsCoordinateTransform) -> tuple
 
 Bounds = tuple[float, float, float, float]
 """x_min, y_min, x_max, y_max."""
+
+
+EXACT_M = 1.0
+"""Metres of accuracy up to which nobody is warned; ETRS89 and WGS 84 are the same to 1 m."""
 
 
 class SiteTransformError(Exception):
@@ -196,6 +262,26 @@ class LayerToSiteTransform:
 
     transform: QgsCoordinateTransform | None
     frame: SiteFrame | None
+
+    def doubts(self, layer: str) -> list[str]:
+        """Return a warning that names the ``layer`` where what it holds may come to lie metres off."""
+        if self.transform is None:
+            return []
+        source, target = self.transform.sourceCrs(), self.transform.destinationCrs()
+        used = datum_transform(source, target, self.transform.context())
+        if not used.warning and (used.accuracy or 0.0) <= EXACT_M:
+            return []
+        return [
+            tr(
+                "Layer {layer}: its features may lie metres off on the site. They come from {crs} to "
+                "{site_crs}. {way} Choose another transformation in the project's properties, or save the "
+                "layer in the site's CRS by an exact one.",
+                layer=layer,
+                crs=crs_name(source),
+                site_crs=crs_name(target),
+                way=used.in_words(),
+            )
+        ]
 
     def area_of(self, window: Bounds) -> QgsRectangle | None:
         """Return the rectangle in the layer's CRS that holds ``window``; None when it cannot be told."""

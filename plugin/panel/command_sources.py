@@ -29,11 +29,11 @@ from qgis.PyQt.QtWidgets import (
 )
 
 from ...robot_bridge.core.messages.queues import LONGEST_PATH, LONGEST_QUEUE
-from ..control.coordinates import datum_transform, read_site_place
+from ..control.coordinates import read_site_place
 from ..control.fleet_controller import FleetController
 from ..control.pending_command import CONE, ROUTE, TARGETS, PendingCommand, Point
 from ..layers.geometry import SAGITTA_M
-from ..layers.site_transform import check_transform
+from ..layers.site_transform import check_transform, datum_transform
 from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import tr

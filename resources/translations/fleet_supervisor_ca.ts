@@ -1148,36 +1148,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
-            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
-            <translation>Una via amb exactitud de {accuracy:g} m necessita la malla {grids}, que no està instal·lada.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>By {name} ({exact}).{warning}</source>
-            <translation>Per {name} ({exact}).{warning}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
-            <translation>PROJ no coneix cap via exacta entre aquests dos: el lloc pot fallar per metres.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accuracy not known</source>
-            <translation>exactitud desconeguda</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accurate to {accuracy:g} m</source>
-            <translation>exactitud de {accuracy:g} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>exact</source>
-            <translation>exacte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude</source>
             <translation>latitud, longitud</translation>
         </message>
@@ -1185,16 +1155,6 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude, as in 48.2083, 16.3725</source>
             <translation>latitud, longitud, com ara 48.2083, 16.3725</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>no change: it is the site's CRS</source>
-            <translation>cap canvi: és el SRC del recinte</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>the default operation of PROJ</source>
-            <translation>l'operació per defecte de PROJ</translation>
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
@@ -3124,6 +3084,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Una via amb exactitud de {accuracy:g} m necessita la malla {grids}, que no està instal·lada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Per {name} ({exact}).{warning}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>Layer {layer}: its features may lie metres off on the site. They come from {crs} to {site_crs}. {way} Choose another transformation in the project's properties, or save the layer in the site's CRS by an exact one.</source>
+            <translation>Capa {layer}: les seves entitats poden quedar a metres del seu lloc en el recinte. Passen de {crs} a {site_crs}. {way} Trieu una altra transformació a les propietats del projecte, o deseu la capa en el SRC del recinte amb una d'exacta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>PROJ no coneix cap via exacta entre aquests dos: el lloc pot fallar per metres.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
             <translation>La capa {name} no té SRC, per això no se'n coneix el lloc: definiu el SRC de la capa (Capa &gt; Defineix el SRC de la capa).</translation>
         </message>
@@ -3159,6 +3139,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>accuracy not known</source>
+            <translation>exactitud desconeguda</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>exact</source>
+            <translation>exacte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>cap canvi: és el SRC del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>no és un lloc finit</translation>
         </message>
@@ -3171,6 +3171,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>site frame</source>
             <translation>marc del recinte</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>the default operation of PROJ</source>
+            <translation>l'operació per defecte de PROJ</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -8226,6 +8231,11 @@
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
             <translation>0: desactivat. Mig metre fa encara més petit un mapa compacte, i cap obstacle més baix del que és.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>A whole map lies inside of {sources} and has no wall of it: maps hold walls alone, and do not say that a robot is in there. Choose a larger window or larger tiles.</source>
+            <translation>Un mapa sencer és dins de {sources} i no en té cap paret: els mapes només contenen parets i no diuen que un robot és a dins. Trieu una finestra més gran o tessel·les més grans.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />

@@ -1148,36 +1148,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
-            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
-            <translation>Una vía con exactitud de {accuracy:g} m necesita la malla {grids}, que no está instalada.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>By {name} ({exact}).{warning}</source>
-            <translation>Por {name} ({exact}).{warning}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
-            <translation>PROJ no conoce ninguna vía exacta entre estos dos: el lugar puede fallar por metros.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accuracy not known</source>
-            <translation>exactitud desconocida</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accurate to {accuracy:g} m</source>
-            <translation>exactitud de {accuracy:g} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>exact</source>
-            <translation>exacto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude</source>
             <translation>latitud, longitud</translation>
         </message>
@@ -1185,16 +1155,6 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude, as in 48.2083, 16.3725</source>
             <translation>latitud, longitud, como 48.2083, 16.3725</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>no change: it is the site's CRS</source>
-            <translation>ningún cambio: es el SRC del recinto</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>the default operation of PROJ</source>
-            <translation>la operación por defecto de PROJ</translation>
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
@@ -3124,6 +3084,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Una vía con exactitud de {accuracy:g} m necesita la malla {grids}, que no está instalada.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Por {name} ({exact}).{warning}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>Layer {layer}: its features may lie metres off on the site. They come from {crs} to {site_crs}. {way} Choose another transformation in the project's properties, or save the layer in the site's CRS by an exact one.</source>
+            <translation>Capa {layer}: sus objetos espaciales pueden quedar a metros de su lugar en el recinto. Pasan de {crs} a {site_crs}. {way} Elija otra transformación en las propiedades del proyecto, o guarde la capa en el SRC del recinto con una exacta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>PROJ no conoce ninguna vía exacta entre estos dos: el lugar puede fallar por metros.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
             <translation>La capa {name} no tiene SRC, por eso no se conoce su lugar: defina el SRC de la capa (Capa &gt; Establecer SRC de la capa).</translation>
         </message>
@@ -3159,6 +3139,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>accuracy not known</source>
+            <translation>exactitud desconocida</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>exactitud de {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>exact</source>
+            <translation>exacto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>ningún cambio: es el SRC del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>no es un lugar finito</translation>
         </message>
@@ -3171,6 +3171,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>site frame</source>
             <translation>marco del recinto</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>the default operation of PROJ</source>
+            <translation>la operación por defecto de PROJ</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -8226,6 +8231,11 @@
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
             <translation>0: desactivado. Medio metro hace aún más pequeño un mapa compacto, y ningún obstáculo más bajo de lo que es.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>A whole map lies inside of {sources} and has no wall of it: maps hold walls alone, and do not say that a robot is in there. Choose a larger window or larger tiles.</source>
+            <translation>Un mapa entero está dentro de {sources} y no tiene ninguna pared suya: los mapas solo contienen paredes y no dicen que un robot está dentro. Elija una ventana mayor o teselas mayores.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />

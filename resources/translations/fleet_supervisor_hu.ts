@@ -1142,36 +1142,6 @@
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
-            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
-            <translation>Egy {accuracy:g} m pontosságú úthoz a(z) {grids} rács kell, amely nincs telepítve.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>By {name} ({exact}).{warning}</source>
-            <translation>Művelet: {name} ({exact}).{warning}</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
-            <translation>A PROJ nem ismer pontos utat e kettő között: a hely méterekkel eltérhet.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accuracy not known</source>
-            <translation>pontossága nem ismert</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>accurate to {accuracy:g} m</source>
-            <translation>pontossága {accuracy:g} m</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>exact</source>
-            <translation>pontos</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude</source>
             <translation>szélesség, hosszúság</translation>
         </message>
@@ -1179,16 +1149,6 @@
             <location filename="../../plugin/control/coordinates.py" />
             <source>latitude, longitude, as in 48.2083, 16.3725</source>
             <translation>szélesség, hosszúság, mint 48.2083, 16.3725</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>no change: it is the site's CRS</source>
-            <translation>nincs változás: ez a telephely vetülete</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/control/coordinates.py" />
-            <source>the default operation of PROJ</source>
-            <translation>a PROJ alapértelmezett művelete</translation>
         </message>
         <message>
             <location filename="../../plugin/control/coordinates.py" />
@@ -3104,6 +3064,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>A way accurate to {accuracy:g} m needs the grid {grids}, which is not installed.</source>
+            <translation>Egy {accuracy:g} m pontosságú úthoz a(z) {grids} rács kell, amely nincs telepítve.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>By {name} ({exact}).{warning}</source>
+            <translation>Művelet: {name} ({exact}).{warning}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>Layer {layer}: its features may lie metres off on the site. They come from {crs} to {site_crs}. {way} Choose another transformation in the project's properties, or save the layer in the site's CRS by an exact one.</source>
+            <translation>{layer} réteg: elemei méterekkel arrébb lehetnek a telephelyen. {crs} vetületből {site_crs} vetületbe kerülnek. {way} Válasszon másik transzformációt a projekt tulajdonságaiban, vagy mentse a réteget egy pontos transzformációval a telephely vetületében.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>PROJ knows no exact way between these two: the place may be off by metres.</source>
+            <translation>A PROJ nem ismer pontos utat e kettő között: a hely méterekkel eltérhet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>The layer {name} has no CRS, so its place is not known: set the layer's CRS (Layer &gt; Set CRS of Layer).</source>
             <translation>A(z) {name} rétegnek nincs vetülete, ezért a helye nem ismert: állítsa be a réteg vetületét (Réteg &gt; Réteg vetületének beállítása).</translation>
         </message>
@@ -3139,6 +3119,26 @@
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
+            <source>accuracy not known</source>
+            <translation>pontossága nem ismert</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>accurate to {accuracy:g} m</source>
+            <translation>pontossága {accuracy:g} m</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>exact</source>
+            <translation>pontos</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>no change: it is the site's CRS</source>
+            <translation>nincs változás: ez a telephely vetülete</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
             <source>not a finite place</source>
             <translation>nem véges hely</translation>
         </message>
@@ -3151,6 +3151,11 @@
             <location filename="../../plugin/layers/site_transform.py" />
             <source>site frame</source>
             <translation>telephelyi keret</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/site_transform.py" />
+            <source>the default operation of PROJ</source>
+            <translation>a PROJ alapértelmezett művelete</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/site_transform.py" />
@@ -8168,6 +8173,11 @@
             <location filename="../../plugin/processing/common/export_parameters.py" />
             <source>0 is off. Half a metre makes a compact map smaller still, and no obstacle lower than it is.</source>
             <translation>0: kikapcsolva. A fél méter tovább csökkenti a tömör térképet, és egyetlen akadályt sem tesz alacsonyabbá.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/processing/common/export_parameters.py" />
+            <source>A whole map lies inside of {sources} and has no wall of it: maps hold walls alone, and do not say that a robot is in there. Choose a larger window or larger tiles.</source>
+            <translation>Egy teljes térkép ezen belül van, és egyetlen falát sem tartalmazza: {sources}. A térképeken csak falak vannak, és nem mondják meg, hogy a robot odabent van. Válasszon nagyobb ablakot vagy nagyobb csempéket.</translation>
         </message>
         <message>
             <location filename="../../plugin/processing/common/export_parameters.py" />

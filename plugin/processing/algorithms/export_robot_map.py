@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from qgis.core import (
@@ -15,7 +16,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RobotMapError
-from ....robot_bridge.core.robotmap.builder import build_map
+from ....robot_bridge.core.robotmap.builder import SurroundingOutlines, build_map
 from ....robot_bridge.core.robotmap.model import RobotMap, Window
 from ...layers.obstacle_layers import ObstacleReading
 from ...ui.errors import FleetError
@@ -140,7 +141,8 @@ class ExportRobotMap(FleetAlgorithm):
             if feedback.isCanceled():
                 return {}
             write_whole(plan.target, content)
-            warnings = _reported(reading, robot_map, feedback)
+            around = SurroundingOutlines(outlines).around(border)
+            warnings = _reported(reading, robot_map, around, feedback)
             _report_size(plan.window, robot_map, text, content, feedback)
         feedback.setProgress(100)
         counts = (len(robot_map.obstacles), robot_map.segment_count, len(content))
@@ -195,12 +197,14 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
     ]
 
 
-def _reported(reading: ObstacleReading, robot_map: RobotMap, feedback: QgsProcessingFeedback) -> int:
-    """Push every warning and return how many there are."""
-    warnings = [*reading.warnings, *robot_map.warnings]
+def _reported(
+    reading: ObstacleReading, robot_map: RobotMap, around: Sequence[str], feedback: QgsProcessingFeedback
+) -> int:
+    """Push every warning and return how many there are; ``around`` are what the whole window lies in."""
+    warnings = [*reading.warnings, *robot_map.warnings, *export_parameters.surrounding_note(around)]
     for warning in warnings:
         feedback.pushWarning(warning)
-    if not robot_map.obstacles:
+    if not robot_map.obstacles and not around:
         feedback.pushWarning(tr("There is no obstacle in the window: check its place and the site CRS."))
         return len(warnings) + 1
     return len(warnings)

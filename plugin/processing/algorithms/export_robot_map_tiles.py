@@ -30,6 +30,7 @@ from qgis.core import (
 )
 
 from ....robot_bridge.core.errors import RobotMapError
+from ....robot_bridge.core.robotmap.builder import SurroundingOutlines
 from ....robot_bridge.core.robotmap.model import Border, Window
 from ....robot_bridge.core.robotmap.window_index import OutlineIndex
 from ...layers.geometry import shapes_of
@@ -434,24 +435,28 @@ class _TileMaker:
         self._counts = np.zeros(3, dtype=np.int64)
         # A note about an outline comes with every tile that it touches: said once.
         self._notes: dict[str, None] = dict.fromkeys(warnings)
+        self._around: dict[str, None] = {}
         self.rows: list = []
 
     def make_all(self, index: OutlineIndex, folder: WholeFolder, feedback: QgsProcessingFeedback) -> bool:
         """Add every tile to ``folder``; return False when cancelled on the way."""
+        surrounding = SurroundingOutlines(index.outlines)
         for number, tile in enumerate(self._plan.tiles, 1):
             if feedback.isCanceled():
                 return False
             self._make(tile, index, folder)
+            self._around.update(dict.fromkeys(surrounding.around(tile.window.border)))
             feedback.setProgress(100 * number / len(self._plan.tiles))
         return not feedback.isCanceled()
 
     def reported(self, feedback: QgsProcessingFeedback) -> dict[str, int]:
         """Push the warnings and the sums, and return the figures of the outputs."""
-        for note in self._notes:
+        notes = [*self._notes, *export_parameters.surrounding_note(list(self._around))]
+        for note in notes:
             feedback.pushWarning(note)
-        warnings = len(self._notes)
+        warnings = len(notes)
         obstacles, segments, size = (int(count) for count in self._counts)
-        if not obstacles:
+        if not obstacles and not self._around:
             feedback.pushWarning(tr("There is no obstacle in any tile: check their place and the site CRS."))
             warnings += 1
         feedback.pushInfo(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -32,7 +33,7 @@ from ...layers.obstacle_layers import ObstacleReading, check_sources, read_outli
 from ...layers.roles import OBSTACLE_ROLES, LayerExpressions
 from ...layers.site_transform import SiteGeoreference
 from ...ui.errors import LayerTypeError
-from ...ui.language import tr
+from ...ui.language import first_of, tr
 from .algorithm import ParameterError, Parameters, advanced, enum_parameter
 from .map_files import obstacles_in_words
 from .outputs import OutputError, check_target
@@ -465,3 +466,16 @@ def _reduced(
         )
     )
     return made, after
+
+
+def surrounding_note(sources: Sequence[str]) -> list[str]:
+    """Return a warning where there are ``sources`` of obstacles that a whole map lies in."""
+    if not sources:
+        return []
+    return [
+        tr(
+            "A whole map lies inside of {sources} and has no wall of it: maps hold walls alone, and do not "
+            "say that a robot is in there. Choose a larger window or larger tiles.",
+            sources=", ".join(first_of(sources)),
+        )
+    ]

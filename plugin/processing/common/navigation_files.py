@@ -61,7 +61,7 @@ def areas_of(
     """
     placing = site.of_layer(source.sourceName(), source.sourceCrs())
     areas: list[nav2.MaskArea] = []
-    warnings: list[str] = []
+    warnings = placing.doubts(source.sourceName())
     for feature, counts, geometry, notes in FeatureReader(
         source.sourceName(), source, placing, counted, feedback
     ):

@@ -167,6 +167,43 @@ def build_map(
     return map_of(found.outlines, segments, border, meta, found.notes_on(near))
 
 
+class SurroundingOutlines:
+    """Finds what a window lies in as a whole: a map is of walls, and there is nothing in it of such a thing.
+
+    Courtyards come after the ring that they are in.
+    """
+
+    def __init__(self, outlines: Outlines) -> None:
+        found = validate_outlines(outlines)
+        self._outlines = found.outlines
+        kinds = np.isin(outlines.shape_type, [int(one) for one in _WHEN_CUT])
+        self._rings = np.flatnonzero(found.usable & kinds & ~outlines.courtyard)
+        self._low, self._high = found.low[self._rings], found.high[self._rings]
+
+    def around(self, border: Border) -> list[str]:
+        """Return the sources of the obstacles that all of ``border`` is in."""
+        low, high = (border.x_min, border.y_min), (border.x_max, border.y_max)
+        near = (self._low < low).all(axis=1) & (self._high > high).all(axis=1)
+        return [self._outlines.source[k] for k in self._rings[near].tolist() if self._is_around(k, border)]
+
+    def _is_around(self, shell: int, border: Border) -> bool:
+        rows, outlines = [shell], self._outlines
+        for k in range(shell + 1, len(outlines)):
+            if not outlines.courtyard[k] or outlines.source[k] != outlines.source[shell]:
+                break
+            rows.append(k)
+        own = outlines.chosen(np.array(rows))
+        segments = oriented_segments(own, np.ones(len(own), dtype=bool))
+        if len(clip(segments, border).a):
+            return False
+        # No wall is inside: what holds its middle holds all of it.
+        x, y = (border.x_min + border.x_max) / 2, (border.y_min + border.y_max) / 2
+        across = (segments.a[:, 1] > y) != (segments.b[:, 1] > y)
+        a, b = segments.a[across], segments.b[across]
+        at = a[:, 0] + (y - a[:, 1]) * (b[:, 0] - a[:, 0]) / (b[:, 1] - a[:, 1])
+        return int((at > x).sum()) % 2 == 1
+
+
 def map_of(
     outlines: Outlines,
     segments: Segments,

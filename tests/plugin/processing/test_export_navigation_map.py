@@ -19,6 +19,7 @@ from fleet_supervisor.robot_bridge.core.sites.frame import frame_of_map
 from PIL import Image
 from pyproj import Transformer
 from qgis.core import (
+    QgsFeatureRequest,
     QgsProcessingContext,
     QgsProcessingException,
     QgsProcessingFeatureSourceDefinition,
@@ -118,6 +119,34 @@ def test_a_mask_by_a_filter_that_fails_names_the_feature(masked):
     assert warnings[0].startswith("Layer zones, feature 1: the filter expression fails: Cannot convert")
 
 
+BOW_TIE = "Polygon((640440 5193490, 640450 5193495, 640450 5193490, 640440 5193495, 640440 5193490))"
+
+
+@pytest.mark.parametrize("setting", ["GeometrySkipInvalid", "GeometryAbortOnInvalid"])
+def test_an_area_that_crosses_itself_is_in_the_mask_whatever_processing_is_set_to(
+    export, robot_map, make_layer, setting
+):
+    area = make_layer("ponds", "Polygon", features=[(BOW_TIE, 1.0)])
+    check = getattr(QgsFeatureRequest.InvalidGeometryCheck, setting)
+    results, _, warnings = export(robot_map, FORMATS=["keepout"], KEEPOUTS=area, check=check)
+    assert value_at(results["KEEPOUT"], 21, 12.5) != value_at(results["KEEPOUT"], 35, 17)
+    assert len(warnings) == 1 and warnings[0].endswith("Self-intersection; it was repaired")
+
+
+def test_a_mask_of_a_layer_that_no_exact_transformation_brings_to_the_map_says_so(
+    export, robot_map, make_layer
+):
+    old = make_layer("old", "Polygon", crs="EPSG:4277", features=[(f"Polygon({CORNERS})", 1.0)])
+    place = {"SITE_CRS": "EPSG:5514", "ORIGIN": "0,0"}
+    _, _, warnings = export(robot_map, FORMATS=["keepout"], KEEPOUTS=old, **place)
+    assert any(
+        text.startswith("Layer old: its features may lie metres off on the site.") for text in warnings
+    )
+
+
+CORNERS = "(15 50, 15.1 50, 15.1 50.1, 15 50)"
+
+
 def test_a_mask_by_a_filter_that_is_none_is_refused_and_nothing_is_written(masked, tmp_path):
     with pytest.raises(QgsProcessingException, match=r"The filter expression '1 \+' for the layer zones"):
         masked("1 +")
@@ -131,10 +160,12 @@ def export(provider, tmp_path):
 
     from tests.plugin.processing.conftest import Listener
 
-    def run(source, feedback=None, project=None, **parameters):
+    def run(source, feedback=None, project=None, check=None, **parameters):
         listener = feedback or Listener()
         context = QgsProcessingContext()
         context.setProject(project or QgsProject())
+        if check is not None:
+            context.setInvalidGeometryCheck(check)
         everything = {"MAP": str(source), "OUTPUT": str(tmp_path / "out"), **parameters}
         results = processing.run(
             "fleet:exportnavigationmap",

@@ -220,3 +220,49 @@ def test_without_layers_those_of_the_project_with_a_role_of_obstacles_are_export
     empty.setCrs(layer.crs())
     with pytest.raises(QgsProcessingException, match="no layer of the project has a role of obstacles"):
         export(project=empty, OBSTACLES=None, CENTER="0,0", WIDTH=100, HEIGHT=100)
+
+
+AROUND = "A whole map lies inside of {} and has no wall of it: maps hold walls alone"
+PARK = "Polygon((-90 -90, 90 -90, 90 90, -90 90, -90 -90)"
+
+
+@pytest.mark.parametrize("with_another", [False, True], ids=["alone", "with_another"])
+def test_what_the_whole_window_lies_in_is_named(export, make_layer, house, with_another):
+    park = make_layer("park", "Polygon", features=[(f"{PARK})", 4.0)])
+    done = export(park, *([house] if with_another else []), EXTENT="-20,50,-20,50 [EPSG:32633]")
+    assert len(done.map.obstacles) == with_another
+    assert len(done.warnings) == done.results["WARNING_COUNT"] == 1
+    assert done.warnings[0].startswith(AROUND.format("park:1"))
+
+
+@pytest.mark.parametrize(
+    "hole",
+    ["(-50 -50, 60 -50, 60 60, -50 60, -50 -50)", "(0 0, 9 0, 9 9, 0 9, 0 0)"],
+    ids=["window_in_a_courtyard", "courtyard_in_the_window"],
+)
+def test_nothing_is_said_where_a_courtyard_is_around_the_window_or_in_it(export, make_layer, house, hole):
+    park = make_layer("park", "Polygon", features=[(f"{PARK}, {hole})", 4.0)])
+    done = export(park, house, EXTENT="-20,50,-20,50 [EPSG:32633]")
+    assert done.warnings == []
+
+
+OFF = "Layer old: its features may lie metres off on the site. They come from EPSG:4237 (HD72) to EPSG:27700"
+
+
+def test_a_layer_that_no_exact_transformation_brings_to_the_site_is_named(export, make_layer):
+    old = make_layer("old", crs="EPSG:4237", features=[("LineString(-1 52, -1.0001 52)", 2.0)])
+    exact = make_layer(
+        "exact", crs="EPSG:27700", features=[("LineString(468000 230000, 468010 230000)", 2.0)]
+    )
+    done = export(old, exact, SITE_CRS="EPSG:27700", CENTER="-1,52 [EPSG:4237]", WIDTH=90, HEIGHT=90)
+    (warning,) = done.warnings
+    assert warning.startswith(OFF) and "Ballpark" in warning and "Choose another transformation" in warning
+
+
+def test_nothing_is_said_of_a_transformation_that_is_exact(export, make_layer):
+    layers = [make_layer(crs, crs=crs, features=[("LineString(15 46, 15.0001 46)", 1.0)]) for crs in EXACT]
+    done = export(*layers, CENTER="15,46 [EPSG:4326]", SITE_CRS="EPSG:32633", WIDTH=20, HEIGHT=20)
+    assert (len(done.map.obstacles), done.warnings) == (2, [])
+
+
+EXACT = ("EPSG:4326", "EPSG:4258")

@@ -461,3 +461,18 @@ def test_an_origin_of_nought_far_from_the_site_is_warned_of(publish, make_layer,
         one for one in done.warnings if "The origin of the site frame is 0,0 of EPSG:32633, 5229 km" in one
     ]
     assert bool(told) is warned
+
+
+def test_a_keepout_of_parts_that_overlap_has_no_hole_where_they_do(publish, yard, make_layer):
+    parts = "((10 10, 20 10, 20 20, 10 20, 10 10)), ((15 15, 25 15, 25 25, 15 25, 15 15))"
+    ponds = make_layer("ponds", "MultiPolygon", features=[(f"MultiPolygon({parts})", 1.0)])
+    done = publish(**{**yard, "KEEPOUTS": [ponds]})
+    keepouts = read_site(done.folder).fences.keepouts
+    assert keepouts.near(np.array([(17.0, 17.0), (12.0, 22.0)]), 0.0).tolist() == [[0], [0]]
+
+
+def test_a_keepout_that_no_exact_transformation_brings_to_the_site_is_named(publish, make_layer):
+    area = "Polygon((-1 52, -1.001 52, -1.001 52.001, -1 52))"
+    old = make_layer("old", "Polygon", crs="EPSG:4237", features=[(area, 1.0)])
+    done = publish(KEEPOUTS=[old], SITE_CRS="EPSG:27700")
+    assert any("Layer old: its features may lie metres off on the site." in text for text in done.warnings)

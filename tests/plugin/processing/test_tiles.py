@@ -366,3 +366,11 @@ def test_helsinki_in_tiles_by_a_script_is_helsinki_in_one_window(by_words, data,
 
 def length_of(robot_map) -> float:
     return float(sum(np.hypot(*(o.b - o.a).T).sum() for o in robot_map.obstacles))
+
+
+def test_what_whole_tiles_lie_in_is_named_once(tiles, make_layer, wall, listener):
+    square = "600010 5099900, 600300 5099900, 600300 5100300, 600010 5100300, 600010 5099900"
+    park = make_layer("park", "Polygon", features=[(f"Polygon(({square}))", 4.0)])
+    tiles(park, wall, EXTENT=EXTENT, TILE_WIDTH=20, TILE_HEIGHT=20)
+    (warning,) = listener.warnings
+    assert warning.startswith("A whole map lies inside of park:1 and has no wall of it")
