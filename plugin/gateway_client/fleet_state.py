@@ -121,9 +121,12 @@ class StateUpdate:
     links: Links | None = None
     gateways: FleetGateways | None = None
     answers: list[RequestResult] = field(default_factory=list)
+    is_heard: bool = False
+    """Whether the gateway said any of this: that the link is down it did not."""
 
     def add(self, **reports: Any) -> None:
         """Take in reports by their topics."""
+        self.is_heard |= bool(reports.keys() - {"link"})
         if reports.pop("are_all_queues", False):
             self.queues.clear()
             self.are_all_queues = True
@@ -266,6 +269,8 @@ class FleetState(QObject):
         self.suspensions = Suspensions()
         self.links = Links()
         self.emergency: EmergencyReport | None = None
+        self.heard_at = self.clock.steady()
+        """when the gateway said anything last, by the steady clock."""
         self._conflicts_at = -CONFLICTS_SILENT_AFTER
         self._url, self._is_other_gateway = "", False
         self._database = ""
@@ -339,6 +344,8 @@ class FleetState(QObject):
 
     def merge(self, update: StateUpdate) -> None:
         """Take in an update, and emit the signal of each topic that it tells something new of."""
+        if update.is_heard:
+            self.heard_at = self.clock.steady()
         try:
             self._merge_reports(update)
         finally:

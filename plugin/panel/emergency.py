@@ -41,6 +41,8 @@ STYLE = (
 MOST_NAMES = 6
 LINES = 3
 """Lines that are seen at once."""
+SILENT_AFTER = 4.0
+"""Seconds after which what a gateway said of a stop is not what holds now: it repeats that every second."""
 
 
 class EmergencyBanner(QFrame):
@@ -51,6 +53,8 @@ class EmergencyBanner(QFrame):
 
     toggled = pyqtSignal()
     """It came or went."""
+    changed = pyqtSignal(str)
+    """What stands in it, whenever that may be another text."""
 
     def __init__(self, desk: FleetController, clear: QAction, parent: QWidget | None = None):
         super().__init__(parent)
@@ -58,6 +62,7 @@ class EmergencyBanner(QFrame):
         self.setStyleSheet(STYLE)
         self._desk = desk
         self._text = ScrollingText("fleet_emergency_text", LINES)
+        self._shown_silence: int | None = None
         self._clear = QToolButton()
         self._clear.setObjectName("fleet_clear_emergency_button")
         self._clear.setText(tr("Clear…"))
@@ -71,6 +76,7 @@ class EmergencyBanner(QFrame):
         self.hide()
         desk.emergency_changed.connect(self.refresh)
         desk.state.link_changed.connect(self.refresh)
+        desk.state.updated.connect(self._age)
         self.refresh()
 
     def text(self) -> str:
@@ -83,16 +89,31 @@ class EmergencyBanner(QFrame):
         in_force = report is not None and report.in_force
         pending = self._desk.orders.awaits_stop
         self._clear.setEnabled(in_force)
-        connected = self._desk.state.link.phase is ConnectionPhase.CONNECTED
-        text = in_words(report, pending, connected)
+        self._shown_silence = self._silence()
+        text = in_words(report, pending, self._shown_silence)
         self._text.setText(text)
+        self.changed.emit(text)
         if self.isHidden() is (in_force or pending):
             self.setVisible(in_force or pending)
             self.toggled.emit()
 
+    def _silence(self) -> int | None:
+        """Return for how many seconds the gateway has said nothing, None while it speaks."""
+        state = self._desk.state
+        silence = state.clock.steady() - state.heard_at
+        is_silent = silence > SILENT_AFTER or state.link.phase is not ConnectionPhase.CONNECTED
+        return int(silence) if is_silent else None
 
-def in_words(report: EmergencyReport | None, pending: bool, connected: bool) -> str:
-    """Return the state of a stop: asked for and not confirmed, or in force, and by whom."""
+    def _age(self) -> None:
+        if not self.isHidden() and self._silence() != self._shown_silence:
+            self.refresh()
+
+
+def in_words(report: EmergencyReport | None, pending: bool, silence: int | None) -> str:
+    """Return the state of a stop: asked for and not confirmed, or in force, and by whom.
+
+    ``silence`` is for how many seconds the gateway has said nothing, None while it speaks.
+    """
     lines = []
     if pending:
         lines.append(
@@ -119,9 +140,15 @@ def in_words(report: EmergencyReport | None, pending: bool, connected: bool) -> 
                 reason=reason,
             )
         )
+        if silence is not None:
+            # Above the counts, which are what is read first.
+            lines.append(
+                tr(
+                    "The gateway has said nothing for {seconds} s: robots may move. It said last:",
+                    seconds=silence,
+                )
+            )
         lines += _counts(report)
-        if not connected:
-            lines.append(tr("The link to the gateway is down: this is what it said last."))
     return "\n".join(lines)
 
 
@@ -135,6 +162,14 @@ def _counts(report: EmergencyReport) -> list[str]:
             standing=report.standing,
         )
     ]
+    if report.moving:
+        moving = len(report.moving) + report.moving_more
+        names = ", ".join(first_of(report.moving, MOST_NAMES, moving))
+        lines.append(tr("MOVING: {names}", names=names))
+    if report.unheard:
+        unheard = len(report.unheard) + report.unheard_more
+        names = ", ".join(first_of(report.unheard, MOST_NAMES, unheard))
+        lines.append(tr("Not heard now, may move: {names}", names=names))
     if report.gateways is not None:
         at = report.gateways
         lines.append(tr("In force at {reached} of {of} gateways", reached=at.reached, of=at.of))
@@ -161,7 +196,10 @@ LONGEST_REASON = 500
 
 
 class ClearDialog(QuestionDialog):
-    """Shows how the stop stands and asks for a reason; ``confirmed`` tells the stop's id and the reason."""
+    """Shows how the stop stands and asks for a reason; ``confirmed`` tells the stop's id and the reason.
+
+    It goes on showing that while it is open: robots may begin to move meanwhile.
+    """
 
     confirmed = pyqtSignal(str, str)
 
@@ -174,7 +212,7 @@ class ClearDialog(QuestionDialog):
             is_safe=True,
             parent=parent,
         )
-        self.add_text(in_words(report, pending=False, connected=True))
+        self._state = self.add_text(in_words(report, pending=False, silence=None))
         self.add_text(
             tr(
                 "Cleared, robots can be sent again. None sets off by itself: what they were doing was "
@@ -187,3 +225,8 @@ class ClearDialog(QuestionDialog):
         self.lay_out()
         stop = report.stop or ""
         self.accepted.connect(lambda: self.confirmed.emit(stop, reason.text().strip()))
+
+    def show_state(self, text: str) -> None:
+        """Show how the stop stands by now; what was shown last stays where it is in force no more."""
+        if text:
+            self._state.setText(text)

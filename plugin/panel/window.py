@@ -244,6 +244,8 @@ class FleetWindow(QObject):
         else:
             dialog = ClearDialog(report, self._iface.mainWindow())
             dialog.confirmed.connect(self.desk.clear_emergency)
+            self.dock.banner.changed.connect(dialog.show_state)
+            dialog.show_state(self.dock.banner.text())
             dialog.open()
 
 

@@ -4819,6 +4819,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>MOVING: {names}</source>
+            <translation>ES MOUEN: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>NOT REACHED: gateways {names}. Watch their robots</source>
             <translation>NO S'HA ARRIBAT a les passarel·les {names}. Vigileu els seus robots</translation>
         </message>
@@ -4826,6 +4831,11 @@
             <location filename="../../plugin/panel/emergency.py" />
             <source>No answer from {names}</source>
             <translation>Sense resposta de {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>Not heard now, may move: {names}</source>
+            <translation>Ara no se'n sap res, es poden moure: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
@@ -4839,8 +4849,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
-            <source>The link to the gateway is down: this is what it said last.</source>
-            <translation>L'enllaç amb la passarel·la està tallat: això és l'últim que va dir.</translation>
+            <source>The gateway has said nothing for {seconds} s: robots may move. It said last:</source>
+            <translation>Fa {seconds} s que la passarel·la no diu res: els robots es poden moure. L'últim que ha dit:</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

@@ -4819,6 +4819,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>MOVING: {names}</source>
+            <translation>SE MUEVEN: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>NOT REACHED: gateways {names}. Watch their robots</source>
             <translation>NO SE HA LLEGADO a las pasarelas {names}. Vigile sus robots</translation>
         </message>
@@ -4826,6 +4831,11 @@
             <location filename="../../plugin/panel/emergency.py" />
             <source>No answer from {names}</source>
             <translation>Sin respuesta de {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>Not heard now, may move: {names}</source>
+            <translation>Ahora no se sabe nada de ellos, pueden moverse: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
@@ -4839,8 +4849,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
-            <source>The link to the gateway is down: this is what it said last.</source>
-            <translation>El enlace con la pasarela está caído: esto es lo último que dijo.</translation>
+            <source>The gateway has said nothing for {seconds} s: robots may move. It said last:</source>
+            <translation>Hace {seconds} s que la pasarela no dice nada: los robots pueden moverse. Lo último que dijo:</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

@@ -4792,6 +4792,11 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
+            <source>MOVING: {names}</source>
+            <translation>MOZOG: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
             <source>NOT REACHED: gateways {names}. Watch their robots</source>
             <translation>NEM ELÉRHETŐ átjárók: {names}. Figyelje a robotjaikat</translation>
         </message>
@@ -4799,6 +4804,11 @@
             <location filename="../../plugin/panel/emergency.py" />
             <source>No answer from {names}</source>
             <translation>Nem válaszol: {names}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/emergency.py" />
+            <source>Not heard now, may move: {names}</source>
+            <translation>Most nem hallható, mozoghat: {names}</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
@@ -4812,8 +4822,8 @@
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />
-            <source>The link to the gateway is down: this is what it said last.</source>
-            <translation>Nincs kapcsolat az átjáróval: ez az, amit utoljára mondott.</translation>
+            <source>The gateway has said nothing for {seconds} s: robots may move. It said last:</source>
+            <translation>Az átjáró {seconds} másodperce hallgat: a robotok mozoghatnak. Utoljára ezt közölte:</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/emergency.py" />

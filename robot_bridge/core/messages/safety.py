@@ -74,7 +74,10 @@ class EmergencyReport:
 
     Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
     since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
-    (some fifty at most of either); ``gateways`` is None where one gateway serves the fleet. ``stored`` is
+    (some fifty at most of either). Those of ``standing`` are heard now, and their positions say that they
+    stand: ``moving`` names robots that move now, whatever they answered, and ``unheard`` those that
+    acknowledged and are not heard now, so that nobody knows whether they stand; ``moving_more`` and
+    ``unheard_more`` count others. ``gateways`` is None where one gateway serves the fleet. ``stored`` is
     false while the database could not be written: the stop holds, and the next gateway on this computer
     learns of it from a file.
     """
@@ -90,6 +93,10 @@ class EmergencyReport:
     standing: int = 0
     waiting: list[str] = field(default_factory=list)
     refused: list[str] = field(default_factory=list)
+    moving: list[str] = field(default_factory=list)
+    moving_more: int = 0
+    unheard: list[str] = field(default_factory=list)
+    unheard_more: int = 0
     cleared_at: float | None = None
     cleared_by: str | None = None
     clear_reason: str | None = None

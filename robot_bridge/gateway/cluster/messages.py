@@ -143,6 +143,10 @@ class StopSeen(BusMessage, frozen=True, tag="stopped"):
     waiting: Names = []
     refused: Names = []
     number: Number = 0
+    moving: Names = []
+    moving_more: Count = 0
+    unheard: Names = []
+    unheard_more: Count = 0
 
 
 class AbortCall(BusMessage, frozen=True, tag="abort"):
@@ -427,10 +431,10 @@ class Exchange:
         """Return whether each bus is connected, by its name; the first one is that of all messages."""
         return {bus.name: bus.connected for bus in self._buses if not isinstance(bus, NoBus)}
 
-    def heard(self) -> list[str]:
-        """Return the other gateways that said something of late."""
+    def heard(self, within: float = HEARD_S) -> list[str]:
+        """Return the other gateways that said something ``within`` so many seconds."""
         now = time.monotonic()
-        return sorted(name for name, at in self._heard.items() if now - at < HEARD_S)
+        return sorted(name for name, at in self._heard.items() if now - at < within)
 
     async def run(self) -> None:
         """Keep all buses connected until cancelled."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import uuid
+from collections.abc import Sequence
 from typing import Any, Protocol
 
 from ...core.clock import SYSTEM_CLOCK, Clock
@@ -26,7 +27,14 @@ TELL_S = 0.1
 """seconds for which changes of what robots answered wait for one another before others are told."""
 CUT_OFF_S = 5.0
 """seconds without the database and without any other gateway after which a gateway counts as cut off."""
+COUNTS_HOLD_S = 3.0
+"""seconds of silence after which what a gateway said of its robots is not counted any more; it beats each."""
 MOST_NAMES = 50
+LONGEST_NAMES = 1200
+"""bytes of the names of each kind that another gateway is told: a notification of PostgreSQL has few."""
+_NAMED_ONE_BY_ONE = ("waiting", "refused", "moving", "unheard")
+_COUNTED_BEYOND = ("moving", "unheard")
+"""kinds of robots of which an EmergencyReport says how many it does not name."""
 
 
 class LocalStops(Protocol):
@@ -109,14 +117,15 @@ class EmergencyStopRelay:
         seen = {name: one for name, one in self._seen.items() if one.id == stop and name in others}
         sums = {
             name: counts[name] + sum(getattr(one, name) for one in seen.values())
-            for name in ("robots", "acknowledged", "standing")
+            for name in ("robots", "acknowledged", "standing", *(f"{name}_more" for name in _COUNTED_BEYOND))
         }
         names = {
-            name: sorted({*counts[name], *(robot for one in seen.values() for robot in getattr(one, name))})[
-                :MOST_NAMES
-            ]
-            for name in ("waiting", "refused")
+            name: sorted({*counts[name], *(robot for one in seen.values() for robot in getattr(one, name))})
+            for name in _NAMED_ONE_BY_ONE
         }
+        for name in _COUNTED_BEYOND:
+            sums[f"{name}_more"] += max(0, len(names[name]) - MOST_NAMES)
+        names = {name: robots[:MOST_NAMES] for name, robots in names.items()}
         missing = [name for name in others if name not in seen]
         return {**sums, **names, "gateways": StoppedGateways(1 + len(seen), 1 + len(others), missing)}
 
@@ -183,7 +192,11 @@ class EmergencyStopRelay:
             if stop is None or not self._stops.in_force:
                 continue
             others = self._others()
-            if others != self._named:
+            silent = self._seen.keys() - self._exchange.heard(COUNTS_HOLD_S)
+            for name in silent:
+                # What its robots did when it was heard last is not what they do now: it is called again.
+                del self._seen[name]
+            if silent or others != self._named:
                 # Nobody is to watch for one that is gone.
                 self._named = others
                 self._stops.announce()
@@ -199,15 +212,11 @@ class EmergencyStopRelay:
             self._exchange.wake("stops")
             return
         counts = self._stops.local_counts()
-        self._exchange.send(
-            STOP,
-            StopSeen(
-                self._exchange.gateway,
-                stop.id,
-                *(counts[name] for name in ("robots", "acknowledged", "standing")),
-                *(counts[name][:MOST_NAMES] for name in ("waiting", "refused")),
-            ),
-        )
+        named = {name: _fitting(counts[name]) for name in _NAMED_ONE_BY_ONE}
+        said = {**counts, **named}
+        for name in _COUNTED_BEYOND:
+            said[f"{name}_more"] += len(counts[name]) - len(named[name])
+        self._exchange.send(STOP, StopSeen(self._exchange.gateway, stop.id, **said))
 
     def _others(self) -> list[str]:
         """Return the other gateways that are to answer: those that live, and those that are heard.
@@ -235,3 +244,14 @@ class EmergencyStopRelay:
     def _woken(self, wake: Wake) -> None:
         if wake.what == "stops":
             self._look_now.set()
+
+
+def _fitting(names: Sequence[str]) -> list[str]:
+    """Return as many of ``names`` as another gateway can be told, the first of them."""
+    found, left = [], LONGEST_NAMES
+    for name in names[:MOST_NAMES]:
+        left -= len(name.encode()) + 2
+        if left < 0:
+            break
+        found.append(name)
+    return found

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import asyncio
 import logging
+import math
 import time
 import uuid
 from collections.abc import Callable, Iterable, Sequence
 from concurrent import futures
-from enum import IntEnum
 from typing import Any, Protocol
 
 from sqlalchemy import Connection
@@ -17,87 +17,18 @@ from ...core.clock import Clock
 from ...core.errors import RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import LONGEST_OPERATOR, one_line, to_json
-from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort
 from ...core.messages.safety import ClearEmergencyStop, EmergencyReport, EmergencyStop
 from ..commands.active_command import CommandOrder
 from ..commands.service import CommandService
+from ..model.arrival import StopAnswers
 from ..model.events import EventBus, Listeners, StopBegun, handles
 from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.repositories import commands, emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
 from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter, orders_of
-
-# --- What the robots said to an emergency stop; no I/O ---
-
-MOST_NAMES = 50
-
-
-class StopAnswer(IntEnum):
-    """How far a robot has come; a later one says more."""
-
-    NONE = 0
-    REFUSED = 1
-    ACKNOWLEDGED = 2
-    STANDING = 3
-
-
-_BY_STATE = {
-    CommandState.FAILED: StopAnswer.REFUSED,
-    CommandState.ACKNOWLEDGED: StopAnswer.ACKNOWLEDGED,
-    CommandState.REACHED: StopAnswer.STANDING,
-}
-
-
-class StopAnswers:
-    """The answer of each robot. Every method that takes one in tells whether it changed anything."""
-
-    def __init__(self) -> None:
-        self._answers: dict[str, StopAnswer] = {}
-
-    def begin(self, robots: Iterable[str]) -> None:
-        """Count from nought: these robots are told."""
-        self._answers = dict.fromkeys(robots, StopAnswer.NONE)
-
-    def note_sent(self, robot: str) -> None:
-        """Count one robot from nought: it is new, or started again."""
-        self._answers[robot] = StopAnswer.NONE
-
-    def forget(self, robot: str) -> bool:
-        """Count a robot no more; tell whether it was counted."""
-        return self._answers.pop(robot, None) is not None
-
-    def answer(self, robot: str, *, refused: bool) -> bool:
-        """Take in what a robot said."""
-        return self._raise(robot, StopAnswer.REFUSED if refused else StopAnswer.ACKNOWLEDGED)
-
-    def note_step(self, report: CommandReport) -> bool:
-        """Take in what became of a command, if it is the Abort of an emergency stop."""
-        if report.op != Abort.__name__ or not report.params.get("emergency"):
-            return False
-        return self._raise(report.robot, _BY_STATE.get(report.state, StopAnswer.NONE))
-
-    def counts(self) -> dict[str, Any]:
-        """Return robots, acknowledged, standing, waiting and refused as an EmergencyReport has them."""
-        answers = self._answers
-        return {
-            "robots": len(answers),
-            "acknowledged": sum(answer >= StopAnswer.ACKNOWLEDGED for answer in answers.values()),
-            "standing": sum(answer is StopAnswer.STANDING for answer in answers.values()),
-            "waiting": self._names(StopAnswer.NONE),
-            "refused": self._names(StopAnswer.REFUSED),
-        }
-
-    def _names(self, kind: StopAnswer) -> list[str]:
-        return sorted(robot for robot, answer in self._answers.items() if answer is kind)[:MOST_NAMES]
-
-    def _raise(self, robot: str, answer: StopAnswer) -> bool:
-        if answer <= self._answers.get(robot, StopAnswer.NONE):
-            return False
-        self._answers[robot] = answer
-        return True
-
 
 # --- The emergency stop: every robot is told to stop before anything else is done, and none is sent anywhere
 # until a supervisor clears it.
@@ -123,6 +54,8 @@ MOST_FIRST = 20
 ANSWERS_TOGETHER = 0.05
 """seconds for which answers of robots wait for one another before operators are told: to count thousands at
 each answer of one of them would take all the time in which the robots are to be heard."""
+REPEATED_S = 1.0
+"""seconds after which operators are told of a stop in force again: who hears nothing knows nothing."""
 NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
 
@@ -176,6 +109,9 @@ class EmergencyStops:
         self._writing = asyncio.Lock()
         self._storing: asyncio.Future[None] | None = None
         self._answers_due: asyncio.TimerHandle | None = None
+        self._announced_at = -math.inf
+        self._observed = -1
+        """the revision of the robots up to which it was looked whether they stand."""
 
     def reach(self, link: Callable[[str], None]) -> None:
         """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
@@ -203,6 +139,8 @@ class EmergencyStops:
         counts = self.local_counts()
         for relay in self._relays:
             counts = relay.add_counts(counts, stop.id)
+        # Robots of a gateway that has not answered are counted all the same: they may drive.
+        counts["robots"] = max(counts["robots"], self._robots.count_commanded())
         return EmergencyReport(
             in_force=self.in_force,
             stop=stop.id,
@@ -225,13 +163,28 @@ class EmergencyStops:
         """Return what the robots of this gateway said, as an EmergencyReport has it."""
         return self._tally.counts()
 
+    def watch(self) -> None:
+        """Look whether robots stand that were stopped: to be called several times a second.
+
+        Only those are looked at that have changed since, and none while no stop is in force.
+        """
+        if not self.in_force:
+            return
+        since, self._observed = self._observed, self._robots.revision
+        if self._tally.observe(self._robots.own_places(since), self._clock.steady()):
+            if disobeying := self._tally.disobeying():
+                log.error("%s: moves although it was seen to stand after a stop", listed_names(disobeying))
+            self._announce_answers()
+        elif self._clock.steady() - self._announced_at >= REPEATED_S:
+            self.announce()
+
     async def restore(self) -> None:
         """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
 
         Raises StoreError when it cannot be known whether there is one.
         """
         self._stop, self._seen, aborts = await self._database.run(_load)
-        self._tally.begin(self._robots.commanded())
+        self._count_again()
         for report in aborts:
             self._tally.note_step(report)
         if self._stop is not None and self.in_force:
@@ -405,7 +358,11 @@ class EmergencyStops:
         self._stop = stop
         self._unstored.append(stop)
         with log_and_continue(log, "counting who is told of an emergency stop"):
-            self._tally.begin(self._robots.commanded())
+            self._count_again()
+
+    def _count_again(self) -> None:
+        self._observed = -1
+        self._tally.begin(self._robots.commanded())
 
     def _abort_overdue(self, stop: StopRow | None, robots: Iterable[str]) -> None:
         """Have robots aborted that drive since before a stop that is over: its Abort was stored for none.
@@ -446,6 +403,8 @@ class EmergencyStops:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
         log.warning("emergency stop by %s%s", stop.by, _because(stop.reason))
+        with log_and_continue(log, "looking which robots move"):
+            self.watch()
         if not operators_first:
             self.announce()
 
@@ -487,6 +446,7 @@ class EmergencyStops:
 
     def announce(self) -> None:
         """Tell every operator, and other gateways, how things stand."""
+        self._announced_at = self._clock.steady()
         if self._answers_due is not None:
             self._answers_due.cancel()
             self._answers_due = None

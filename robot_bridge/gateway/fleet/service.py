@@ -417,8 +417,9 @@ class Fleet:
         self.roads.waiting.clock_was_set(step)
 
     def age(self) -> None:
-        """Bring the liveness of every robot up to now."""
+        """Bring the liveness of every robot up to now, and see whether those stand that were stopped."""
         self.robots.age(self._clock.time())
+        self.emergency.watch()
 
     async def save(self) -> None:
         """Store what is not stored yet, an emergency stop first; see to who was removed and what is too old.

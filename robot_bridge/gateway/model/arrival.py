@@ -1,17 +1,20 @@
-"""Arrival of robots, judged from their poses and not from their word; and the way that is left to drive."""
+"""Arrival, and standing after a stop, judged from robots' poses and not their word; the way left to drive."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.geometry import Polyline
-from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd, SetPosIni, path_to_end
+from ...core.messages.commands import CommandReport, CommandState
+from ...core.messages.robots import Abort, Command, SendPos, SetPath, SetPosEnd, SetPosIni, path_to_end
+from .robot_columns import ACCURACY, RobotPlaces, V, X, Y
 
 STANDING_SPEED = 0.05
 """m/s below which a robot counts as standing."""
@@ -218,6 +221,160 @@ def _apart(a: SendPos, b: SendPos) -> float:
 
 def _turn(a: float, b: float) -> float:
     return abs(math.remainder(a - b, math.tau))
+
+
+# --- What the robots said to an emergency stop; no I/O ---
+
+MOST_NAMES = 50
+
+
+class StopAnswer(IntEnum):
+    """How far a robot has come; a later one says more."""
+
+    NONE = 0
+    REFUSED = 1
+    ACKNOWLEDGED = 2
+    STANDING = 3
+
+
+_BY_STATE = {
+    CommandState.FAILED: StopAnswer.REFUSED,
+    CommandState.ACKNOWLEDGED: StopAnswer.ACKNOWLEDGED,
+    CommandState.REACHED: StopAnswer.STANDING,
+}
+
+
+STILL_WITHIN, STILL_AT_MOST = 0.3, 1.0
+"""metres by which positions of a robot that stands may differ, in x and y together: three standard deviations
+where it says how accurate they are, within these."""
+STILL_FOR = 5.0
+"""seconds until a robot that has moved further than that, and says no speed, counts as standing again."""
+
+
+class _Answer:
+    """What a robot has answered, and what its positions say since."""
+
+    __slots__ = ("answer", "heard", "is_reported", "moved_at", "moves", "place")
+
+    def __init__(self, answer: StopAnswer = StopAnswer.NONE) -> None:
+        self.answer = answer
+        self.heard = False
+        """whether it is heard, and has said where it is since its Ready."""
+        self.moves = False
+        self.moved_at = -math.inf
+        self.place: tuple[float, float] | None = None
+        """where it stood first since it said that it has no speed."""
+        self.is_reported = False
+
+    def observe(self, now: float, x: float, y: float, within: float, drives: bool) -> bool:
+        """Take in where it is now; tell whether it begins, or ends, to move."""
+        before = self.moves
+        if drives:
+            self.place = None
+        elif self.place is None:
+            self.place = x, y
+        elif abs(x - self.place[0]) + abs(y - self.place[1]) > within:
+            self.place, self.moved_at = (x, y), now
+        self.moves = drives or now - self.moved_at < STILL_FOR
+        return self.moves is not before
+
+    @property
+    def stands(self) -> bool:
+        """Whether it was seen to stand since it said that it stops, and nothing has said otherwise since."""
+        return self.answer is StopAnswer.STANDING and self.heard and not self.moves
+
+    @property
+    def is_out_of_sight(self) -> bool:
+        """Whether it said that it stops, and nobody knows where it is now: it may have driven on."""
+        return self.answer >= StopAnswer.ACKNOWLEDGED and not self.heard
+
+
+class StopAnswers:
+    """The answer of each robot. Every method that takes one in tells whether it changed anything.
+
+    What a robot has answered is compared with its positions: one that moves does not stand, whatever it said,
+    and of one that is not heard nobody knows.
+    """
+
+    def __init__(self) -> None:
+        self._answers: dict[str, _Answer] = {}
+
+    def begin(self, robots: Iterable[str]) -> None:
+        """Count from nought: these robots are told."""
+        self._answers = {robot: _Answer() for robot in robots}
+
+    def note_sent(self, robot: str) -> None:
+        """Count one robot from nought: it is new, or started again."""
+        self._answers[robot] = _Answer()
+
+    def forget(self, robot: str) -> bool:
+        """Count a robot no more; tell whether it was counted."""
+        return self._answers.pop(robot, None) is not None
+
+    def answer(self, robot: str, *, refused: bool) -> bool:
+        """Take in what a robot said."""
+        return self._raise(robot, StopAnswer.REFUSED if refused else StopAnswer.ACKNOWLEDGED)
+
+    def note_step(self, report: CommandReport) -> bool:
+        """Take in what became of a command, if it is the Abort of an emergency stop."""
+        if report.op != Abort.__name__ or not report.params.get("emergency"):
+            return False
+        return self._raise(report.robot, _BY_STATE.get(report.state, StopAnswer.NONE))
+
+    def observe(self, robots: RobotPlaces, now: float) -> bool:
+        """Take in where robots are that have changed, at ``now`` of the steady clock."""
+        drives = np.abs(robots.table[V]) > STANDING_SPEED
+        within = np.fmin(STILL_AT_MOST, np.fmax(STILL_WITHIN, 3 * robots.table[ACCURACY]))
+        columns = robots.table[X], robots.table[Y], within, drives, robots.are_placed()
+        changed = False
+        for name, *place, is_heard in zip(robots.names, *(one.tolist() for one in columns), strict=True):
+            known = self._answers.get(name)
+            if known is None:
+                continue
+            changed |= known.heard is not is_heard
+            known.heard = is_heard
+            if is_heard:
+                changed |= known.observe(now, *place)
+        return changed
+
+    def disobeying(self) -> list[str]:
+        """Return the robots that were seen to stand and move now, each of them once."""
+        found = [
+            (robot, one)
+            for robot, one in self._answers.items()
+            if one.moves and one.answer is StopAnswer.STANDING and not one.is_reported
+        ]
+        for _, one in found:
+            one.is_reported = True
+        return sorted(robot for robot, _ in found)
+
+    def counts(self) -> dict[str, Any]:
+        """Return what an EmergencyReport has of robots, under the names that it has there."""
+        each = self._answers
+        values = each.values()
+        moving = sorted(robot for robot, one in each.items() if one.moves and one.heard)
+        unheard = sorted(robot for robot, one in each.items() if one.is_out_of_sight)
+        return {
+            "robots": len(each),
+            "acknowledged": sum(one.answer >= StopAnswer.ACKNOWLEDGED for one in values),
+            "standing": sum(one.stands for one in values),
+            "waiting": self._names(StopAnswer.NONE),
+            "refused": self._names(StopAnswer.REFUSED),
+            "moving": moving[:MOST_NAMES],
+            "moving_more": max(0, len(moving) - MOST_NAMES),
+            "unheard": unheard[:MOST_NAMES],
+            "unheard_more": max(0, len(unheard) - MOST_NAMES),
+        }
+
+    def _names(self, kind: StopAnswer) -> list[str]:
+        return sorted(robot for robot, one in self._answers.items() if one.answer is kind)[:MOST_NAMES]
+
+    def _raise(self, robot: str, answer: StopAnswer) -> bool:
+        known = self._answers.setdefault(robot, _Answer())
+        if answer <= known.answer:
+            return False
+        known.answer = answer
+        return True
 
 
 # --- The remaining way: from where a robot is to the end of its task ---

@@ -23,7 +23,7 @@ ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
 seen, the place that it said last is not believed, and it has said more since it said Stopped. Whether its
 place is believed comes with its details."""
 REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN | HEARD_SINCE
-X, Y, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 4, 5, 6, 7
+X, Y, V, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 3, 4, 5, 6, 7
 """Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, 0 to 1,
 and m, which other gateways do not tell."""
 NUMBERS = 8
@@ -111,6 +111,12 @@ class RobotPlaces(NamedTuple):
     table: Numbers
     states: Flags
     flags: Flags
+
+    def are_placed(self) -> npt.NDArray[np.bool_]:
+        """Tell of each whether it is known where it is now: see :attr:`.Robot.is_placed`."""
+        placed: npt.NDArray[np.bool_] = (self.flags & (LOCATED | DOUBTED)) == LOCATED
+        placed &= self.states == FRESH
+        return placed
 
     def join(self, other: RobotPlaces) -> RobotPlaces:
         """Return these robots, and the others behind them."""
@@ -391,7 +397,14 @@ class RobotColumns:
 
     def only_seen(self) -> list[str]:
         """Return the names of those that are only seen."""
-        return self._named(np.flatnonzero(((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)))
+        return self._named(np.flatnonzero(self._are_only_seen()))
+
+    def count_only_seen(self) -> int:
+        """Return how many are only seen."""
+        return int(np.count_nonzero(self._are_only_seen()))
+
+    def _are_only_seen(self) -> npt.NDArray[np.bool_]:
+        return ((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)
 
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
         """Return where those are that changed after revision ``since``, but for robots of some gateways."""

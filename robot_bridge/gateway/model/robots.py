@@ -196,6 +196,10 @@ class Robots:
         """Return the names of those that other gateways have and that are not only seen, sorted."""
         return sorted(set(self._other_columns.names()).difference(self._other_columns.only_seen()))
 
+    def count_commanded(self) -> int:
+        """Return how many there are, at any gateway, that are not only seen."""
+        return self.count() - self._own_columns.count_only_seen() - self._other_columns.count_only_seen()
+
     def doing(self, command: str) -> str | None:
         """Return the robot that is busy with a command, None where none is known to be."""
         everybody = chain(self._robots.items(), self._elsewhere.items())

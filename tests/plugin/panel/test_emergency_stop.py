@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 
 import pytest
+from fleet_supervisor.plugin.panel import emergency
 from fleet_supervisor.plugin.panel.emergency import ClearDialog, in_words
 from fleet_supervisor.plugin.ui.dialogs import ShrinkableScrollArea
 from fleet_supervisor.robot_bridge.core.messages.robots import SetPosEnd
@@ -216,7 +217,7 @@ def test_a_stop_of_another_operator_is_shown_also_to_who_connects_later(plugin, 
     gateway.stand(in_force=True, stop="stop-of-bob", by="bob", at=1.7e9, reason="smoke")
     wait(lambda: "by bob (smoke)" in banner(at_desk))
     at_desk.actions.connect.trigger()
-    wait(lambda: "The link to the gateway is down: this is what it said last" in banner(at_desk))
+    wait(lambda: "s: robots may move. It said last:" in banner(at_desk))
     at_desk.actions.connect.trigger()
     wait(lambda: "link to the gateway" not in banner(at_desk))
     assert "by bob (smoke)" in banner(at_desk)
@@ -328,18 +329,40 @@ def test_what_the_gateway_refuses_while_it_is_in_force_comes_back_as_a_draft(sto
     assert stopped.desk.drafts.draft.message()[0] == SetPosEnd.__name__
 
 
+def test_a_gateway_that_falls_silent_is_not_taken_at_its_last_word(stopped, gateway, wait, monkeypatch):
+    """A link may be dead for half a minute before anybody notices."""
+    monkeypatch.setattr(emergency, "SILENT_AFTER", 0.3)
+    gateway.stand(robots=2, acknowledged=2, standing=2)
+    wait(lambda: "2 seen to stand" in banner(stopped))
+    wait(lambda: "The gateway has said nothing for 0 s: robots may move. It said last:" in banner(stopped))
+    wait(lambda: "said nothing for 1 s" in banner(stopped))
+    monkeypatch.setattr(emergency, "SILENT_AFTER", 60.0)
+    gateway.stand(standing=1)
+    wait(lambda: "1 seen to stand" in banner(stopped) and "said nothing" not in banner(stopped))
+
+
+def test_who_is_about_to_clear_a_stop_sees_that_a_robot_moves(stopped, gateway, iface, wait):
+    gateway.stand(robots=2, acknowledged=2, standing=2)
+    wait(lambda: "2 seen to stand" in banner(stopped))
+    stopped.actions.clear_emergency.trigger()
+    wait(lambda: dialog(iface) is not None)
+    gateway.stand(standing=1, moving=["r2"])
+    wait(lambda: any("MOVING: r2" in label.text() for label in dialog(iface).findChildren(QLabel)))
+    dialog(iface).reject()
+
+
 def test_what_is_not_stored_and_who_is_missing_is_said_in_words():
     report = EmergencyReport(
         True, "stop", None, "eve", robots=9, stored=False, waiting=[f"r{k}" for k in range(9)]
     )
-    assert in_words(report, pending=True, connected=False).splitlines() == [
+    assert in_words(report, pending=True, silence=7).splitlines() == [
         "EMERGENCY STOP asked for. The gateway has not confirmed it yet: watch the robots, and use their own "
         "emergency stops.",
         "EMERGENCY STOP in force, by eve",
+        "The gateway has said nothing for 7 s: robots may move. It said last:",
         "0 of 9 robots acknowledged, 0 seen to stand",
         "No answer from r0, r1, r2, r3, r4, r5, and 3 more",
         "Not stored yet: the gateway cannot write its database, so robots on SQL are not told.",
-        "The link to the gateway is down: this is what it said last.",
     ]
 
 
@@ -362,13 +385,35 @@ def test_of_many_robots_it_counts_all_that_have_not_answered(robots, acknowledge
         waiting=[f"r{k}" for k in range(waiting)],
         refused=[f"x{k}" for k in range(refused)],
     )
-    assert in_words(report, pending=False, connected=True).splitlines()[2:] == lines
+    assert in_words(report, pending=False, silence=None).splitlines()[2:] == lines
+
+
+def test_robots_that_move_or_are_not_heard_stand_above_all_but_the_counts():
+    report = EmergencyReport(
+        True,
+        "stop",
+        by="eve",
+        robots=99,
+        acknowledged=99,
+        standing=3,
+        moving=[f"m{k}" for k in range(50)],
+        moving_more=40,
+        unheard=["u0", "u1"],
+        gateways=StoppedGateways(2, 3, ["east"]),
+    )
+    assert in_words(report, pending=False, silence=None).splitlines()[1:] == [
+        "99 of 99 robots acknowledged, 3 seen to stand",
+        "MOVING: m0, m1, m2, m3, m4, m5, and 84 more",
+        "Not heard now, may move: u0, u1",
+        "In force at 2 of 3 gateways",
+        "NOT REACHED: gateways east. Watch their robots",
+    ]
 
 
 def test_of_several_gateways_it_says_at_how_many_it_is_in_force():
     at = StoppedGateways(2, 4, ["east", "west"])
     report = EmergencyReport(True, "stop", by="eve", robots=3, acknowledged=3, gateways=at)
-    assert in_words(report, pending=False, connected=True).splitlines()[2:] == [
+    assert in_words(report, pending=False, silence=None).splitlines()[2:] == [
         "In force at 2 of 4 gateways",
         "NOT REACHED: gateways east, west. Watch their robots",
     ]

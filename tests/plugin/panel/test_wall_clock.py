@@ -36,4 +36,4 @@ def test_no_time_is_no_text():
 
 def test_an_emergency_stop_of_another_day_says_since_when():
     report = EmergencyReport(in_force=True, stop="s1", at=1_600_000_000.0, by="anna", robots=1, waiting=[])
-    assert " since 2020-09-1" in in_words(report, pending=False, connected=True)
+    assert " since 2020-09-1" in in_words(report, pending=False, silence=None)

@@ -177,3 +177,83 @@ def test_the_latency_of_each_link_is_measured_and_told(bridge):
     for robot in ("ws", "sql"):
         desk.until(lambda robot=robot: desk.robots[robot].get("latency") is not None, 20)
         assert 0 < desk.robots[robot]["latency"] < 2
+
+
+# --- what robots said, and what they do ---------------------------------------------------------------------
+
+
+def where(robot, x, v=0.0):
+    robot.tell("SendPos", {"x": x, "y": 1.0, "theta": 0.0, "v": v})
+
+
+def stood(bridge, desk):
+    """Return a robot that drove, was stopped, said so, and was seen to stand at x = 1."""
+    robot = bridge.robot("r1")
+    robot.plug_in(1)
+    where(robot, 1.0, 2.0)
+    desk.ask("emergency_stop", {"command": "stop-0001"})
+    # Told over its connection, and by the command that is stored.
+    for _ in range(2):
+        robot.say(robot.wait_for("Abort")["id"])
+    desk.until(lambda: desk.emergency["acknowledged"] == 1)
+    where(robot, 1.0)
+    desk.until(lambda: desk.emergency["standing"] == 1)
+    assert (desk.emergency["moving"], desk.emergency["unheard"]) == ([], [])
+    return robot
+
+
+def test_a_robot_that_drives_on_after_it_stood_does_not_count_as_standing(bridge):
+    desk = watch(bridge)
+    robot = stood(bridge, desk)
+    where(robot, 1.5, 2.0)
+    desk.until(lambda: desk.emergency["moving"] == ["r1"])
+    assert (desk.emergency["acknowledged"], desk.emergency["standing"]) == (1, 0)
+    assert "r1: moves although it was seen to stand after a stop" in bridge.output()
+    where(robot, 2.0)
+    desk.until(lambda: desk.emergency["moving"] == [] and desk.emergency["standing"] == 1)
+
+
+def test_a_robot_that_says_no_speed_while_its_positions_change_moves(bridge):
+    """Pushed, rolling down a slope, or wrong about itself."""
+    desk = watch(bridge)
+    robot = stood(bridge, desk)
+    for centimetres in range(110, 160, 10):
+        where(robot, centimetres / 100)
+        desk.listen(0.05)
+    desk.until(lambda: desk.emergency["moving"] == ["r1"])
+    assert desk.emergency["standing"] == 0
+
+    def rests():
+        where(robot, 1.5)
+        return desk.emergency["standing"] == 1
+
+    desk.until(rests)
+    assert desk.emergency["moving"] == []
+
+
+def test_a_robot_that_stood_and_is_not_heard_any_more_is_not_said_to_stand(bridge):
+    desk = watch(bridge)
+    robot = stood(bridge, desk)
+    robot.hang_up()
+    desk.until(lambda: desk.emergency["unheard"] == ["r1"])
+    assert (desk.emergency["acknowledged"], desk.emergency["standing"]) == (1, 0)
+
+
+def test_after_a_restart_only_robots_that_are_heard_are_said_to_stand(bridge):
+    desk = watch(bridge)
+    stood(bridge, desk).hang_up()
+    bridge.kill_gateway()
+    bridge.start_gateway()
+    desk = watch(bridge)
+    desk.until(lambda: desk.emergency["in_force"])
+    assert (desk.emergency["standing"], desk.emergency["unheard"]) == (0, ["r1"])
+
+
+def test_operators_hear_of_a_stop_in_force_again_and_again(bridge):
+    """Who hears nothing for some seconds is not to take what was said last for what is so now."""
+    desk = watch(bridge)
+    desk.ask("emergency_stop", {"command": "stop-0001"})
+    desk.listen(0.2)
+    for _ in range(2):
+        desk.emergency = {}
+        desk.until(lambda: desk.emergency.get("in_force"))

@@ -95,7 +95,10 @@ export class EmergencyStop {
       lines.push(
         tr("STOP IN FORCE, by {who}: {acknowledged} of {robots} robots have answered, {standing} stand.", { ...stop, who: stop.by }),
       );
+      if (stop.moving.length) lines.push(tr("MOVING: {robots}", { robots: named(stop.moving, stop.moving_more) }));
+      if (stop.unheard.length) lines.push(tr("Not heard now, may move: {robots}", { robots: named(stop.unheard, stop.unheard_more) }));
       if (stop.gateways) lines.push(tr("At {reached} of {of} gateways.", stop.gateways));
+      if (stop.gateways?.missing.length) lines.push(tr("NOT REACHED: gateways {names}. Watch their robots.", { names: named(stop.gateways.missing) }));
       if (stop.waiting.length) lines.push(tr("Not answered: {robots}", { robots: named(stop.waiting) }));
       if (stop.refused.length) lines.push(tr("Refused: {robots}", { robots: named(stop.refused) }));
       if (!stop.stored) lines.push(tr("It is not in the database yet; it holds all the same."));
@@ -164,6 +167,7 @@ export class EmergencyStop {
   }
 }
 
-function named(robots) {
-  return robots.slice(0, NAMES).join(", ") + (robots.length > NAMES ? ` +${robots.length - NAMES}` : "");
+function named(robots, more = 0) {
+  const beyond = Math.max(0, robots.length - NAMES) + more;
+  return robots.slice(0, NAMES).join(", ") + (beyond ? ` +${beyond}` : "");
 }

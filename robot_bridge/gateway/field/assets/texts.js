@@ -78,6 +78,17 @@ const TEXTS = {
     "ATURADA EN VIGOR, per {who}: han respost {acknowledged} de {robots} robots, {standing} estan aturats.",
     "PARADA EN VIGOR, por {who}: han respondido {acknowledged} de {robots} robots, {standing} están parados.",
   ],
+  "MOVING: {robots}": ["MOZOG: {robots}", "ES MOUEN: {robots}", "SE MUEVEN: {robots}"],
+  "Not heard now, may move: {robots}": [
+    "Most nem hallható, mozoghat: {robots}",
+    "Ara no se'n sap res, es poden moure: {robots}",
+    "Ahora no se sabe nada de ellos, pueden moverse: {robots}",
+  ],
+  "NOT REACHED: gateways {names}. Watch their robots.": [
+    "NEM ÉRHETŐ EL: {names} átjáró. Figyelje a robotjaikat.",
+    "NO S'HA ARRIBAT a les passarel·les {names}. Vigileu-ne els robots.",
+    "NO SE HA LLEGADO a las pasarelas {names}. Vigile sus robots.",
+  ],
   "Not answered: {robots}": ["Nem válaszolt: {robots}", "No han respost: {robots}", "No han respondido: {robots}"],
   "Refused: {robots}": ["Megtagadta: {robots}", "Han refusat: {robots}", "Han rechazado: {robots}"],
   "It is not in the database yet; it holds all the same.": [

@@ -288,7 +288,8 @@ async def test_what_is_too_long_for_a_stop_is_not_handed_over(nats):
 def test_no_message_of_a_stop_is_too_long():
     names, most = MOST_NAMED * [63 * "r"], 10_000_000
     call = StopCall(32 * "g", 64 * "i", 1e9 + 0.1, 200 * "\U0001f6d1", 600 * "\U0001f6d1", (1 << 63) - 1)
-    seen = StopSeen(32 * "g", 64 * "i", most, most, most, names, names, (1 << 63) - 1)
+    numbers = 64 * "i", most, most, most
+    seen = StopSeen(32 * "g", *numbers, names, names, (1 << 63) - 1, names, most, names, most)
     for message in (call, seen):
         content = Codec(b"k").encode(message)
         assert Codec(b"k").decode(content) == message and len(content) <= LARGEST_STOP

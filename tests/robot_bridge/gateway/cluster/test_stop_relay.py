@@ -143,6 +143,34 @@ async def test_one_whose_lease_has_just_run_out_counts_until_its_robots_are_anot
     assert place.stops.report().gateways == StoppedGateways(1, 1, [])
 
 
+async def test_robots_that_move_or_are_not_heard_elsewhere_are_named_and_counted(place):
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    many = [f"x{k:02}" for k in range(50)]
+    for gateway in ("a", "c"):
+        names = [f"{gateway}-{name}" for name in many]
+        moves = {"moving": names, "moving_more": 3, "unheard": names[:1], "unheard_more": 1}
+        place.say(StopSeen(gateway, "stop-number-b", 60, 60, 6, **moves))
+    report = place.stops.report()
+    assert (report.standing, report.unheard, report.unheard_more) == (12, ["a-x00", "c-x00"], 2)
+    assert (len(report.moving), report.moving_more) == (50, 56)
+
+
+async def test_what_a_silent_gateway_said_is_not_counted_and_it_is_called_again(place, monkeypatch):
+    """It may have been frozen, and its robots drive on."""
+    monkeypatch.setattr(stop_relay, "LOOK_S", 0.01)
+    monkeypatch.setattr(stop_relay, "COUNTS_HOLD_S", 0.2)
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    place.say(StopSeen("a", "stop-number-b", 3, 3, 3))
+    assert (place.stops.report().standing, place.stops.report().gateways.missing) == (3, [])
+    task = asyncio.create_task(place.relay.run())
+    await place.until(lambda: place.stops.report().gateways.missing == ["a"])
+    assert place.stops.report().standing == 0
+    calls = len(place.bus.of(StopCall))
+    await place.until(lambda: len(place.bus.of(StopCall)) > calls)
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
+
+
 async def test_who_has_not_answered_is_called_again(place, monkeypatch):
     monkeypatch.setattr(stop_relay, "LOOK_S", 0.01)
     task = asyncio.create_task(place.relay.run())

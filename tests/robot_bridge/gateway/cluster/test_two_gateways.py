@@ -347,6 +347,27 @@ def test_a_gateway_that_stands_still_is_named_and_stops_its_robots_when_it_wakes
     clear(desk, pair.a)
 
 
+def test_robots_of_a_gateway_that_stands_still_do_not_count_as_standing(pair, name):
+    """What it said of them last is not what they do now: they may drive on."""
+    robot, desk = pair.robot(pair.a, name), desk_at(pair.b)
+    desk.wait_for_robots(name)
+    stop(desk, name)
+    robot.say(robot.wait_for("Abort")["id"])
+    robot.say(robot.wait_for("Abort")["id"])
+
+    def keep_standing():
+        robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.0, "v": 0.0})
+        return desk.emergency["standing"] == 1 and name not in desk.emergency["unheard"]
+
+    desk.until(keep_standing)
+    robots = desk.emergency["robots"]
+    with standing_still(pair.a):
+        desk.until(lambda: desk.emergency["gateways"]["missing"] == ["a"])
+        assert (desk.emergency["standing"], desk.emergency["robots"]) == (0, robots)
+    desk.until(keep_standing)
+    clear(desk, pair.a)
+
+
 def test_a_stop_ends_the_tasks_of_a_gateway_that_dies_over_it(pair, name):
     """The stop is stored and over before anybody has stored the Abort of its robot."""
     old, desk = pair.robot(pair.a, name), desk_at(pair.b)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import signal
 
 import pytest
 
@@ -35,15 +36,16 @@ def tokens(accounts):
 @pytest.fixture(scope="module")
 def robots(bridge, tokens, accounts, tmp_path_factory):
     """Three robots at known places."""
-    folder = tmp_path_factory.mktemp("robots")
+    folder, processes = tmp_path_factory.mktemp("robots"), {}
     for name, pose in {"r1": (20.0, 8.0, 0.0), "r2": (100.0, 60.0, 1.5), "r3": (150.0, 120.0, 3.0)}.items():
         file = folder / name
         file.write_text(accounts.do("robots", "token", name), encoding="utf-8")
         file.chmod(0o600)
-        bridge.start_robot(name, pose, options=["--token-file", file])
+        processes[name] = bridge.start_robot(name, pose, options=["--token-file", file])
     desk = bridge.desk(additional_headers={"Authorization": f"Bearer {tokens['supervisor']}"})
     desk.ask("subscribe", {"rate": 10})
     desk.wait_for_robots("r1", "r2", "r3")
+    desk.processes = processes
     return desk
 
 
@@ -277,6 +279,41 @@ def test_the_stop_reaches_every_robot_and_a_supervisor_clears_it_by_two_presses(
     desk.until(lambda: not desk.emergency["in_force"])
     text_is(page, "#connection", "^connected$")
     page.locator("#clear").wait_for(state="hidden", timeout=SLOW)
+
+
+def test_a_robot_that_stood_and_is_not_heard_any_more_is_named(phone, desk):
+    page = phone("operator")
+    page.locator("#stop").tap()
+    text_is(page, "#stop-state", r"3 of 3 robots have answered, 3 stand\.$")
+    desk.processes["r3"].send_signal(signal.SIGSTOP)
+    try:
+        text_is(page, "#stop-state", r"3 robots have answered, 2 stand\. Not heard now, may move: r3$")
+    finally:
+        desk.processes["r3"].send_signal(signal.SIGCONT)
+    text_is(page, "#stop-state", r"3 stand\.$")
+
+
+def test_what_moves_and_which_gateways_were_not_reached_is_said(phone):
+    report = {
+        **{"in_force": True, "stop": "s", "by": "Ada", "stored": True, "waiting": [], "refused": []},
+        **{"robots": 60, "acknowledged": 60, "standing": 3, "unheard": [], "unheard_more": 0},
+        **{"moving": [f"m{k}" for k in range(50)], "moving_more": 7},
+        "gateways": {"reached": 1, "of": 2, "missing": ["east"]},
+    }
+    said = phone("operator").evaluate(
+        """async (report) => {
+          const { EmergencyStop } = await import("/field/stop.js");
+          const parts = { button: document.createElement("button"), state: document.createElement("p"),
+                          clear: document.createElement("button") };
+          new EmergencyStop({ isUp: true }, parts, () => "operator").update(report);
+          return parts.state.textContent;
+        }""",
+        report,
+    )
+    assert said.endswith(
+        "3 stand. MOVING: m0, m1, m2, m3, m4 +52 At 1 of 2 gateways. "
+        "NOT REACHED: gateways east. Watch their robots."
+    )
 
 
 def test_an_operator_stops_and_is_not_offered_to_clear(phone, desk):

@@ -2,10 +2,26 @@
 
 from __future__ import annotations
 
+import math
+
+import numpy as np
 import pytest
 
 from robot_bridge.core.messages.commands import CommandReport, CommandState
-from robot_bridge.gateway.fleet.emergency_stop import MOST_NAMES, StopAnswers
+from robot_bridge.gateway.model.arrival import MOST_NAMES, STILL_FOR, StopAnswers
+from robot_bridge.gateway.model.robot_columns import (
+    ACCURACY,
+    DOUBTED,
+    FRESH,
+    LOCATED,
+    LOST,
+    NUMBERS,
+    STALE,
+    RobotPlaces,
+    V,
+    X,
+    Y,
+)
 
 
 def report(state, robot="r1", op="Abort", params=None):
@@ -22,7 +38,19 @@ def tally():
 
 
 def counts(tally):
-    return tuple(tally.counts().values())
+    return tuple(tally.counts().values())[:5]
+
+
+def see(tally, now, robot="r1", x=0.0, v=0.0, state=FRESH, flags=LOCATED, accuracy=math.nan):
+    """Have the tally take in where a robot is at ``now``."""
+    table = np.full((NUMBERS, 1), math.nan)
+    table[[X, Y, V, ACCURACY], 0] = x, 0.0, v, accuracy
+    return tally.observe(RobotPlaces([robot], table, np.array([state]), np.array([flags])), now)
+
+
+def seen(tally):
+    counts = tally.counts()
+    return counts["standing"], counts["moving"], counts["unheard"]
 
 
 def test_it_is_counted_under_the_names_of_the_report(tally):
@@ -32,10 +60,15 @@ def test_it_is_counted_under_the_names_of_the_report(tally):
         "standing": 0,
         "waiting": ["r1", "r2"],
         "refused": [],
+        "moving": [],
+        "moving_more": 0,
+        "unheard": [],
+        "unheard_more": 0,
     }
 
 
 def test_a_robot_comes_from_refusing_to_acknowledging_to_standing_and_never_back(tally):
+    see(tally, 0.0)
     steps = [CommandState.FAILED, CommandState.ACKNOWLEDGED, CommandState.REACHED]
     assert [tally.note_step(report(state)) for state in steps] == [True, True, True]
     assert counts(tally) == (2, 1, 1, ["r2"], [])
@@ -49,6 +82,7 @@ def test_the_answer_to_the_direct_call_counts_like_that_to_the_command(tally):
     assert counts(tally) == (2, 0, 0, ["r2"], ["r1"])
     assert tally.answer("r1", refused=False)
     assert counts(tally) == (2, 1, 0, ["r2"], [])
+    see(tally, 0.0, "r2")
     assert tally.note_step(report(CommandState.REACHED, "r2"))
     assert counts(tally) == (2, 2, 1, [], [])
 
@@ -98,3 +132,64 @@ def test_so_many_robots_are_named_and_all_are_counted():
     tally.begin(reversed(names))
     assert tally.counts()["waiting"] == names[:MOST_NAMES]
     assert tally.counts()["robots"] == MOST_NAMES + 1
+    for robot in names:
+        see(tally, 0.0, robot, v=1.0)
+    assert (tally.counts()["moving"], tally.counts()["moving_more"]) == (names[:MOST_NAMES], 1)
+
+
+# --- what robots said, against where they are ---------------------------------------------------------------
+
+
+@pytest.fixture
+def standing(tally):
+    tally.note_step(report(CommandState.REACHED))
+    assert seen(tally) == (0, [], ["r1"])
+    assert see(tally, 100.0)
+    assert seen(tally) == (1, [], [])
+    return tally
+
+
+def test_a_robot_that_drives_does_not_stand_whatever_it_said(standing):
+    assert see(standing, 101.0, x=0.1, v=-0.2)
+    assert seen(standing) == (0, ["r1"], [])
+    assert (standing.disobeying(), standing.disobeying()) == (["r1"], [])
+    # Once it says that it has no speed it stands where it is then.
+    assert see(standing, 102.0, x=5.0)
+    assert seen(standing) == (1, [], [])
+
+
+def test_a_robot_without_speed_that_comes_further_moves_until_it_has_rested(standing):
+    for second in range(20):
+        see(standing, 101.0 + second, x=0.1 * second)
+        assert (second < 4) or seen(standing) == (0, ["r1"], []), second
+    assert not see(standing, 120.0 + STILL_FOR - 2.0, x=1.9)
+    assert see(standing, 120.0 + STILL_FOR, x=1.9)
+    assert seen(standing) == (1, [], [])
+
+
+@pytest.mark.parametrize(("accuracy", "x"), [(math.nan, 0.29), (0.2, 0.55)])
+def test_positions_that_are_not_exact_are_no_movement(standing, accuracy, x):
+    see(standing, 101.0, x=x, accuracy=accuracy)
+    assert seen(standing) == (1, [], [])
+
+
+def test_positions_of_no_accuracy_at_all_hide_no_movement(standing):
+    see(standing, 101.0, x=1.5, accuracy=30.0)
+    assert seen(standing) == (0, ["r1"], [])
+
+
+@pytest.mark.parametrize(
+    "how", [{"state": STALE}, {"state": LOST}, {"flags": 0}, {"flags": LOCATED | DOUBTED}]
+)
+def test_of_a_robot_that_is_not_heard_nobody_knows(standing, how):
+    assert see(standing, 101.0, **how)
+    assert seen(standing) == (0, [], ["r1"])
+    assert see(standing, 102.0)
+    assert seen(standing) == (1, [], [])
+
+
+def test_a_robot_that_has_not_answered_and_drives_is_named(tally):
+    see(tally, 100.0, "r2", v=1.0)
+    assert seen(tally) == (0, ["r2"], [])
+    assert counts(tally)[3] == ["r1", "r2"]
+    assert not see(tally, 101.0, "nobody", v=1.0)
