@@ -278,15 +278,19 @@ class _Answer:
         self.moves = drives or now - self.moved_at < STILL_FOR
         return self.moves is not before
 
+    def rests_at(self, x: float, y: float, within: float, drives: bool) -> bool:
+        """Tell whether it stands there as it did: nearly always, once robots were stopped."""
+        place = self.place
+        return (
+            place is not None
+            and not (drives or self.moves)
+            and abs(x - place[0]) + abs(y - place[1]) <= within
+        )
+
     @property
     def stands(self) -> bool:
         """Whether it was seen to stand since it said that it stops, and nothing has said otherwise since."""
         return self.answer is StopAnswer.STANDING and self.heard and not self.moves
-
-    @property
-    def is_out_of_sight(self) -> bool:
-        """Whether it said that it stops, and nobody knows where it is now: it may have driven on."""
-        return self.answer >= StopAnswer.ACKNOWLEDGED and not self.heard
 
 
 class StopAnswers:
@@ -329,7 +333,7 @@ class StopAnswers:
         changed = False
         for name, *place, is_heard in zip(robots.names, *(one.tolist() for one in columns), strict=True):
             known = self._answers.get(name)
-            if known is None:
+            if known is None or (is_heard and known.heard and known.rests_at(*place)):
                 continue
             changed |= known.heard is not is_heard
             known.heard = is_heard
@@ -350,14 +354,22 @@ class StopAnswers:
 
     def counts(self) -> dict[str, Any]:
         """Return what an EmergencyReport has of robots, under the names that it has there."""
-        each = self._answers
-        values = each.values()
-        moving = sorted(robot for robot, one in each.items() if one.moves and one.heard)
-        unheard = sorted(robot for robot, one in each.items() if one.is_out_of_sight)
+        acknowledged, standing = 0, 0
+        moving, unheard = [], []
+        for robot, one in self._answers.items():
+            if one.moves and one.heard:
+                moving.append(robot)
+            if one.answer >= StopAnswer.ACKNOWLEDGED:
+                acknowledged += 1
+                standing += one.stands
+                if not one.heard:
+                    unheard.append(robot)
+        moving.sort()
+        unheard.sort()
         return {
-            "robots": len(each),
-            "acknowledged": sum(one.answer >= StopAnswer.ACKNOWLEDGED for one in values),
-            "standing": sum(one.stands for one in values),
+            "robots": len(self._answers),
+            "acknowledged": acknowledged,
+            "standing": standing,
             "waiting": self._names(StopAnswer.NONE),
             "refused": self._names(StopAnswer.REFUSED),
             "moving": moving[:MOST_NAMES],
