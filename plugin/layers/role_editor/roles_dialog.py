@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -69,6 +70,9 @@ class LivePreview(QObject):
         self._known: dict[object, LayerMeasure] = {}
         self._size, self._ratio = QSize(400, 300), 1.0
         self._task: PreviewTask | None = None
+        self._left = threading.Event()
+        """Set where no thread is in a task that was ended."""
+        self._left.set()
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(DELAY_MS)
@@ -94,15 +98,20 @@ class LivePreview(QObject):
         self._timer.start()
 
     def stop(self) -> None:
-        """End what is under way, for good, and wait until no thread touches it."""
+        """End what is under way, for good; its thread may stay in a layer that hangs."""
         self._timer.stop()
         task, self._task = self._task, None
         if task is None:
             return
-        running = task.status() == QgsTask.TaskStatus.Running
+        task.measured.disconnect(self._keep)
+        task.drawn.disconnect(self.drawn)
+        if task.status() == QgsTask.TaskStatus.Running:
+            self._left = task.left
         task.cancel()
-        if running:
-            task.left.wait(GIVE_UP_S)
+
+    def wait_for_end(self) -> None:
+        """Wait, though not for ever, until no thread is in what :meth:`stop` has ended."""
+        self._left.wait(GIVE_UP_S)
 
     def _start(self) -> None:
         if self._task is not None:
@@ -412,9 +421,11 @@ class RolesAction:
 
     def remove(self) -> None:
         """Close the dialog without keeping anything, and take the entry out of the menu."""
-        if self._dialog is not None and not sip.isdeleted(self._dialog):
-            self._dialog.reject()
-            self._dialog.deleteLater()
+        if self._dialog is not None:
+            if not sip.isdeleted(self._dialog):
+                self._dialog.reject()
+                self._dialog.deleteLater()
+            self._dialog.preview.wait_for_end()
         self._dialog = None
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()

@@ -6,6 +6,7 @@ import threading
 import time
 
 import pytest
+from fleet_supervisor.plugin.layers.role_editor import roles_dialog
 from fleet_supervisor.plugin.layers.role_editor.preview import COLOURS, GROUND, PreviewView
 from fleet_supervisor.plugin.layers.role_editor.role_table import (
     BASE,
@@ -29,7 +30,7 @@ from fleet_supervisor.plugin.layers.roles import (
     find_profile,
     setup_of,
 )
-from qgis.core import QgsApplication, QgsCoordinateReferenceSystem
+from qgis.core import QgsApplication, QgsCoordinateReferenceSystem, QgsTask, QgsVectorLayer
 from qgis.gui import QgsFieldExpressionWidget, QgsMessageBar
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
@@ -43,6 +44,8 @@ from qgis.PyQt.QtWidgets import (
     QPushButton,
     QTableView,
 )
+
+from tests.support.databases.frozen_layer import frozen_for_layers, layer_in_database
 
 LEFT = Qt.MouseButton.LeftButton
 BUTTONS = QDialogButtonBox.StandardButton
@@ -354,3 +357,24 @@ def test_the_menu_entry_opens_one_dialog_and_goes_without_a_trace(qgis_app):
     assert window.menu == []
     assert window.main.findChildren(RolesDialog) == []
     assert sip.isdeleted(entry.action)
+
+
+def test_a_layer_that_hangs_keeps_nobody_from_opening_and_closing_the_dialog(
+    project, wait, postgis_server, monkeypatch
+):
+    monkeypatch.setattr(roles_dialog, "GIVE_UP_S", 600.0)
+    uri = layer_in_database(postgis_server, "POLYGON((0 0,9 0,9 9,0 0))")
+    layer = QgsVectorLayer(uri, "bays", "postgres")
+    assert layer.isValid()
+    layer.setCustomProperty("fleet/role", "keepout")
+    project.addMapLayer(layer)
+    with frozen_for_layers(postgis_server) as server:
+        dialog = RolesDialog(project)
+        dialog.open()
+        # Its task is in the layer by then.
+        wait(lambda: dialog.preview._task is not None)
+        wait(lambda: dialog.preview._task.status() == QgsTask.TaskStatus.Running)
+        dialog.reject()
+        assert server.is_frozen
+    dialog.preview.wait_for_end()
+    dialog.deleteLater()
