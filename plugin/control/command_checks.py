@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple, TypeVar
 
@@ -22,12 +22,21 @@ from ..gateway_client.fleet_state import FleetState
 from ..gateway_client.report_caches import QueueCache
 from ..gateway_client.robot_states import RobotView
 from ..gateway_client.state_words import ROBOT_STATES
-from ..layers.layer_source import LayerWatch, is_readable
+from ..layers.layer_source import LayerWatch
 from ..layers.roles import layers_with_role
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.language import age_in_words, tr
-from ..ui.scheduling import Steps, scaled_progress
-from .layer_checks import CheckedPath, KeepoutCheck, ObstacleCheck, SurfaceCheck, is_looked_at
+from ..ui.scheduling import STALLED_AFTER, Steps, scaled_progress
+from .layer_checks import (
+    CheckedPath,
+    KeepoutCheck,
+    LayerReadings,
+    ObstacleCheck,
+    SurfaceCheck,
+    Unread,
+    UnreadError,
+    is_looked_at,
+)
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand, Point
 
 AT_ONCE = 500
@@ -88,15 +97,14 @@ class LayerCheck(QObject):
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._project = project
+        self._readings = readings = LayerReadings()
         self._checks: tuple[Check, ...] = (
-            KeepoutCheck(project),
-            ObstacleCheck(project),
-            SurfaceCheck(project),
+            KeepoutCheck(project, readings),
+            ObstacleCheck(project, readings),
+            SurfaceCheck(project, readings),
         )
         self._kept: dict[Check, Found] = {}
         self._kept_for: tuple[Any, ...] = ()
-        self._unreadable: set[str] = set()
-        """Layers, by their ids, that are valid and cannot be read."""
         self._watch = LayerWatch(self)
         self._watch.changed.connect(self._forget)
 
@@ -124,10 +132,12 @@ class LayerCheck(QObject):
         for of_one in layers.values():
             self._watch.watch(of_one)
         findings = Findings()
+        # By themselves for each draft: another one is checked beside it, and may find the layer read.
+        unread: dict[str, Unread] = {}
         for number, check in enumerate(self._checks):
-            work = self._look_by(check, layers[check], draft, placement)
+            work = self._look_by(check, layers[check], draft, placement, unread)
             findings += yield from scaled_progress(work, number, len(self._checks))
-        return self._unseen() + findings
+        return self._unseen(unread) + findings
 
     def _look_by(
         self,
@@ -135,6 +145,7 @@ class LayerCheck(QObject):
         layers: Sequence[QgsVectorLayer],
         draft: PendingCommand,
         placement: SiteToMapTransform,
+        unread: dict[str, Unread],
     ) -> Steps[Findings]:
         kept = self._kept.get(check, {})
         tracks = yield from _listed(check.tracks(draft))
@@ -145,15 +156,16 @@ class LayerCheck(QObject):
             if number % AT_ONCE == 0:
                 yield 0.0
         missing = list(new)
+        ids = [layer.id() for layer in layers]
         for number, layer in enumerate(layers if missing else ()):
-            hits = yield from scaled_progress(
-                check.check_paths(layer, missing, placement), number, len(layers)
-            )
+            work = check.check_paths(layer, missing, placement)
+            try:
+                hits = yield from scaled_progress(work, number, len(layers))
+            except UnreadError as error:
+                unread[ids[number]] = error.why
+                continue
             for place, found in hits.items():
                 new[missing[place]] += found
-            self._unreadable.discard(layer.id())
-            if not hits and not is_readable(layer, layer.featureCount(), *_origin(layer)):
-                self._unreadable.add(layer.id())
             yield 0.0
         found_for: list[tuple[CheckedPath, list[Any]]] = []
         still_needed: Found = {}
@@ -163,12 +175,13 @@ class LayerCheck(QObject):
             still_needed[track] = found
             if number % AT_ONCE == 0:
                 yield 0.0
-        self._kept[check] = still_needed
+        # Of a layer that was not read nobody knows anything, the next time neither.
+        self._kept[check] = {} if unread.keys() & set(ids) else still_needed
         # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
-        is_watched = any(layer.featureCount() != 0 for layer in layers)
+        is_watched = not self._readings.empty.issuperset(ids)
         return (yield from _checked(check, draft, _without_repetition(draft, found_for), is_watched))
 
-    def _unseen(self) -> Findings:
+    def _unseen(self, unread: Mapping[str, Unread]) -> Findings:
         """Return findings on the layers that a draft should be checked against and cannot be."""
         layers = layers_with_role(self._project, *(role for check in self._checks for role in check.roles))
         if not layers:
@@ -180,24 +193,11 @@ class LayerCheck(QObject):
                     ),
                 )
             )
-        return Findings(overridable=tuple(text for layer in layers if (text := self._why_unseen(layer))))
-
-    def _why_unseen(self, layer: QgsMapLayer) -> str:
-        """Return why nobody can tell what of a layer is in a draft's way; empty where it can be told."""
-        if not layer.isValid() or layer.id() in self._unreadable:
-            return tr(
-                "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
-                "source, or take its role away.",
-                layer=layer.name(),
+        return Findings(
+            overridable=tuple(
+                text for layer in layers if (text := _why_unseen(layer, unread.get(layer.id())))
             )
-        if layer.isSpatial() and not layer.crs().isValid():
-            # QGIS draws it by its numbers in whatever CRS the map has.
-            return tr(
-                "The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer > "
-                "Set CRS of Layer), or take its role away.",
-                layer=layer.name(),
-            )
-        return ""
+        )
 
     def _layers(self, check: Check) -> list[QgsVectorLayer]:
         return [
@@ -254,9 +254,29 @@ def _name(hit: Any) -> Any:
     return hit[0] if isinstance(hit[0], str) else object()
 
 
-def _origin(layer: QgsVectorLayer) -> tuple[str, str]:
-    """Return by what a layer is opened once more; by nothing where it has changes that are not saved."""
-    return layer.providerType(), "" if layer.isEditable() else layer.source()
+def _why_unseen(layer: QgsMapLayer, unread: Unread | None) -> str:
+    """Return why nobody can tell what of a layer is in a draft's way; empty where it can be told."""
+    if layer.isValid() and unread is Unread.SILENT:
+        return tr(
+            "The layer {layer} has not answered for {seconds:g} s, so what is in it was not looked at. "
+            "Bring its server or drive back and try again, or take the role of the layer away.",
+            layer=layer.name(),
+            seconds=STALLED_AFTER,
+        )
+    if not layer.isValid() or unread is not None:
+        return tr(
+            "The layer {layer} cannot be read, so what is in it was not looked at. Repair its "
+            "source, or take its role away.",
+            layer=layer.name(),
+        )
+    if layer.isSpatial() and not layer.crs().isValid():
+        # QGIS draws it by its numbers in whatever CRS the map has.
+        return tr(
+            "The layer {layer} has no CRS, so nobody knows where on the site it lies. Set it (Layer > "
+            "Set CRS of Layer), or take its role away.",
+            layer=layer.name(),
+        )
+    return ""
 
 
 def _has_areas(layer: QgsVectorLayer) -> bool:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from enum import Enum
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
 from qgis.core import (
@@ -18,14 +20,16 @@ from qgis.core import (
     QgsRectangle,
     QgsSpatialIndex,
     QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
 )
 
 from ..layers.layer_expressions import FeatureFilter
+from ..layers.layer_source import IN_MEMORY, begin_reading, deleted_in, error_of_gdal, has_features, is_empty
 from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
 from ..layers.site_transform import SiteToMapTransform, check_transform, line_of, transform_or_raise
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
-from ..ui.scheduling import Steps
+from ..ui.scheduling import ReadingThread, StalledError, Steps
 from .pending_command import ROUTE, START, ApproachKind, Findings, PendingCommand, Point
 
 # Each is looked at by itself, so that after a change only what has changed is looked at again.
@@ -153,54 +157,127 @@ Near = list[tuple[QgsFeature, list[int]]]
 """Features, each with the numbers of the places that it is near to."""
 
 
-class LayerFeatures:
-    """Those features of a layer that count.
+class Unread(Enum):
+    """Why nobody knows what a layer holds."""
+
+    GONE = "gone"
+    """Its file or database is gone or damaged."""
+    SILENT = "silent"
+    """Nothing has come from it for as long as anybody waits."""
+
+
+class UnreadError(Exception):
+    """A layer was not read, or not to its end."""
+
+    def __init__(self, why: Unread):
+        super().__init__(why.value)
+        self.why = why
+
+
+class LayerReading(NamedTuple):
+    """What was read of a layer; ``is_empty`` where it holds nothing at all."""
+
+    near: Near
+    is_empty: bool
+    is_complete: bool
+
+
+class LayerReader:
+    """Reads the features of a layer that count, in any thread; made in that of the layer.
 
     :raises ExpressionError: when the filter of the layer is no expression.
     """
 
-    def __init__(self, layer: QgsVectorLayer):
-        self._layer = layer
+    def __init__(self, layer: QgsVectorLayer, boxes: Sequence[QgsRectangle]):
+        self._boxes = boxes
+        self._features = QgsVectorLayerFeatureSource(layer)
         self._counted = FeatureFilter.of_layer(layer, layer.createExpressionContext())
+        self._provider = layer.providerType()
+        self._stored, self._deleted = layer.source(), deleted_in(layer)
+        self._has_features = False
 
-    def near(self, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
-        """Find the features whose boxes meet one of ``boxes``, which are in the layer's CRS."""
-        if len(boxes) <= FEW:
-            return (yield from self._near_few(boxes))
-        around = QgsRectangle(boxes[0])
+    def read(self, go_on: Callable[[], bool]) -> LayerReading:
+        """Return the features whose boxes meet those given, in the layer's CRS, while ``go_on`` says so."""
+        begin_reading()
+        near = self._near(go_on)
+        # Of a damaged file QGIS passes on what comes before the damage, and no error.
+        is_complete = not (self._provider == "ogr" and error_of_gdal())
+        if not self._has_features:
+            self._has_features = has_features(self._features)
+        if is_complete and not self._has_features and self._provider != IN_MEMORY:
+            is_complete = is_empty(self._provider, self._stored, self._deleted)
+        return LayerReading(near, is_complete and not self._has_features, is_complete)
+
+    def _near(self, go_on: Callable[[], bool]) -> Near:
+        if len(self._boxes) <= FEW:
+            return self._near_few(go_on)
+        around = QgsRectangle(self._boxes[0])
         index = QgsSpatialIndex()
-        for number, box in enumerate(boxes):
+        for number, box in enumerate(self._boxes):
             around.combineExtentWith(box)
             index.addFeature(number, box)
-            yield 0.0
         found = []
-        for feature in self._layer.getFeatures(QgsFeatureRequest().setFilterRect(around)):
+        for feature in self._in(around, go_on):
             numbers = index.intersects(feature.geometry().boundingBox())
             if numbers and self._counts(feature):
                 found.append((feature, sorted(numbers)))
-            yield 0.0
         return found
 
-    def _near_few(self, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
+    def _near_few(self, go_on: Callable[[], bool]) -> Near:
         features: dict[int, QgsFeature] = {}
         near: dict[int, list[int]] = {}
-        for number, box in enumerate(boxes):
-            for feature in self._read(box):
-                features[feature.id()] = feature
-                near.setdefault(feature.id(), []).append(number)
-                yield 0.0
-            yield 0.0
+        for number, box in enumerate(self._boxes):
+            for feature in self._in(box, go_on):
+                if self._counts(feature):
+                    features[feature.id()] = feature
+                    near.setdefault(feature.id(), []).append(number)
         return [(features[id], numbers) for id, numbers in near.items()]
 
-    def _read(self, box: QgsRectangle) -> Iterator[QgsFeature]:
-        for feature in self._layer.getFeatures(QgsFeatureRequest().setFilterRect(box)):
-            if self._counts(feature):
-                yield feature
+    def _in(self, box: QgsRectangle, go_on: Callable[[], bool]) -> Iterator[QgsFeature]:
+        if not go_on():
+            return
+        for feature in self._features.getFeatures(QgsFeatureRequest().setFilterRect(box)):
+            self._has_features = True
+            yield feature
+            if not go_on():
+                return
 
     def _counts(self, feature: QgsFeature) -> bool:
         doubts: list[str] = []
         # What the filter cannot tell of may be in the way.
         return self._counted.keeps(feature, doubts) or bool(doubts)
+
+
+class LayerReadings:
+    """Reads layers in threads, of each layer one at a time."""
+
+    def __init__(self) -> None:
+        self._threads: dict[str, ReadingThread[LayerReading]] = {}
+        self.empty: set[str] = set()
+        """Layers that held nothing the last time, by their ids."""
+
+    def near(self, layer: QgsVectorLayer, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
+        """Find the features of ``layer`` near ``boxes``.
+
+        :raises UnreadError: when it cannot be read, or not in time.
+        :raises ExpressionError: when the filter of the layer is no expression.
+        """
+        # Nothing is asked of the layer later: it may be gone when it has been read.
+        id, reader = layer.id(), LayerReader(layer, boxes)
+        try:
+            while (before := self._threads.get(id)) is not None and before.is_reading:
+                yield from before.wait_for_end()
+            self._threads[id] = thread = ReadingThread(reader.read)
+            thread.start()
+            reading = yield from thread.result()
+        except StalledError as error:
+            raise UnreadError(Unread.SILENT) from error
+        if not reading.is_complete:
+            raise UnreadError(Unread.GONE)
+        self.empty.discard(id)
+        if reading.is_empty:
+            self.empty.add(id)
+        return reading.near
 
 
 def engine_of(geometry: QgsGeometry, times: int) -> QgsGeometryEngine:
@@ -226,8 +303,9 @@ class KeepoutCheck:
     roles = (KEEPOUT,)
     only_polygons = True
 
-    def __init__(self, project: QgsProject):
+    def __init__(self, project: QgsProject, readings: LayerReadings):
         self._project = project
+        self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
         """Yield what of a draft is looked at: all of it."""
@@ -240,7 +318,7 @@ class KeepoutCheck:
         found: dict[int, list[str]] = {}
         lines = yield from lines_in(tracks, placement, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
-        near = yield from LayerFeatures(layer).near(boxes)
+        near = yield from self._readings.near(layer, boxes)
         for feature, numbers in near:
             area = feature.geometry()
             engine = engine_of(area, len(numbers))
@@ -285,8 +363,9 @@ class ObstacleCheck:
     roles = (OBSTACLE, STAIRS, FURNITURE)
     only_polygons = False
 
-    def __init__(self, project: QgsProject):
+    def __init__(self, project: QgsProject, readings: LayerReadings):
         self._project = project
+        self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
         """Yield what of a draft is looked at: what was drawn by hand."""
@@ -305,7 +384,7 @@ class ObstacleCheck:
         try:
             check_transform(way)
             boxes = yield from _boxes(lines, way)
-            for feature, numbers in (yield from LayerFeatures(layer).near(boxes)):
+            for feature, numbers in (yield from self._readings.near(layer, boxes)):
                 obstacle = QgsGeometry(feature.geometry())
                 if way.isValid():
                     obstacle.transform(way)
@@ -376,8 +455,9 @@ class SurfaceCheck:
     roles = (ROAD_SURFACE,)
     only_polygons = True
 
-    def __init__(self, project: QgsProject):
+    def __init__(self, project: QgsProject, readings: LayerReadings):
         self._project = project
+        self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
         """Yield what of a draft is looked at: where its legs end, and those that do not follow the roads."""
@@ -391,7 +471,7 @@ class SurfaceCheck:
         found: dict[int, list[Share]] = {}
         lines = yield from lines_in(tracks, placement, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
-        near = yield from LayerFeatures(layer).near(boxes)
+        near = yield from self._readings.near(layer, boxes)
         for feature, numbers in near:
             area = feature.geometry()
             engine = engine_of(area, len(numbers))

@@ -48,6 +48,8 @@ class ObstacleSource:
 
     ``name`` is unique among the layers read together, so that ``name:id`` names one feature. ``provider`` and
     ``uri`` say where its features are stored; there is no ``uri`` while it has changes that are not.
+    ``count`` is negative where only its server or file knows: to ask that may take for ever. ``stored`` is
+    how it is opened once more whatever its changes are, which delete ``deleted`` of its features.
     """
 
     name: str
@@ -60,8 +62,12 @@ class ObstacleSource:
     context: QgsExpressionContext
     provider: str = ""
     uri: str = ""
+    stored: str = ""
+    deleted: int = 0
 
 
+IN_MEMORY = "memory"
+"""The provider whose features are at hand at once."""
 LayerFeatureSource = QgsAbstractFeatureSource | QgsVectorLayer
 Setups = Callable[[QgsVectorLayer], LayerSetup]
 """Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
@@ -129,7 +135,7 @@ def _source(
         role=setup.role,
         crs=stated_crs(layer.crs()),
         fields=layer.fields(),
-        count=layer.featureCount(),
+        count=layer.featureCount() if layer.providerType() == IN_MEMORY else -1,
         features=QgsVectorLayerFeatureSource(layer),
         expressions=LayerExpressions(
             **{name: getattr(own, name) or getattr(general, name) for name in EXPRESSIONS}
@@ -137,7 +143,15 @@ def _source(
         context=scoped,
         provider=layer.providerType(),
         uri="" if layer.isEditable() else layer.source(),
+        stored=layer.source(),
+        deleted=deleted_in(layer),
     )
+
+
+def deleted_in(layer: QgsVectorLayer) -> int:
+    """Return how many of the stored features of ``layer`` are deleted by changes that are not saved."""
+    changes = layer.editBuffer()
+    return 0 if changes is None else len(changes.deletedFeatureIds())
 
 
 def _unique(names: Sequence[str]) -> list[str]:
@@ -157,23 +171,23 @@ def _unique(names: Sequence[str]) -> list[str]:
 # --- Whether a layer can still be read: QGIS keeps one as it was opened, and tells of no file that is gone
 
 
-def is_readable(features: LayerFeatureSource, count: int, provider: str, uri: str) -> bool:
-    """Tell whether ``features`` of a layer that counts so many can be read; from any thread.
-
-    A layer whose file or database is gone, or damaged, since it was opened is valid, has its count, and reads
-    as an empty one. Where it gives no feature it is opened once more by ``uri``, of which there is none for a
-    layer with changes that are not saved.
-    """
+def has_features(features: LayerFeatureSource) -> bool:
+    """Tell whether anything can be read; from any thread."""
     request = QgsFeatureRequest().setLimit(1).setFlags(QgsFeatureRequest.Flag.NoGeometry).setNoAttributes()
-    if count == 0 or any(True for _ in features.getFeatures(request)):
-        return True
-    if not uri:
-        return count < 0
+    return any(True for _ in features.getFeatures(request))
+
+
+def is_empty(provider: str, stored: str, deleted: int = 0) -> bool:
+    """Tell whether a layer of which nothing can be read has nothing but what was ``deleted``.
+
+    One whose file or database is gone, or damaged, since it was opened is valid, has its count, and reads as
+    an empty one. It is opened once more, from any thread: one that was emptied by another program since then
+    says so.
+    """
     options = QgsVectorLayer.LayerOptions()
     options.loadDefaultStyle = False
-    layer = QgsVectorLayer(uri, "", provider, options)
-    # One that was emptied by another program since then has nothing to be read, and says so.
-    return layer.isValid() and layer.featureCount() <= 0
+    layer = QgsVectorLayer(stored, "", provider, options)
+    return layer.isValid() and layer.featureCount() <= deleted
 
 
 def begin_reading() -> None:
@@ -187,19 +201,24 @@ def check_readable(source: ObstacleSource) -> None:
 
     Of a damaged file QGIS passes on what comes before the damage, and no error.
     """
-    error = _error_of_gdal() if source.provider == "ogr" else ""
-    if not is_readable(source.features, source.count, source.provider, source.uri):
+    error = error_of_gdal() if source.provider == "ogr" else ""
+    if not _is_there(source):
         raise LayerTypeError(
             tr(
-                "The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its "
-                "file or database was moved, damaged or cut off since the project was opened. Bring it back, "
-                "or repair the layer's data source, and open the project again.",
+                "The layer {name} cannot be read any more: QGIS gets none of its features. Its file or "
+                "database was moved, damaged or cut off since the project was opened. Bring it back, or "
+                "repair the layer's data source, and open the project again.",
                 name=source.name,
-                count=max(source.count, 0),
             )
         )
     if error:
         raise _half_read(source.name, error)
+
+
+def _is_there(source: ObstacleSource) -> bool:
+    if source.count == 0 or has_features(source.features):
+        return True
+    return source.provider == IN_MEMORY or is_empty(source.provider, source.stored, source.deleted)
 
 
 def _half_read(name: str, error: str) -> LayerTypeError:
@@ -213,7 +232,7 @@ def _half_read(name: str, error: str) -> LayerTypeError:
     )
 
 
-def _error_of_gdal() -> str:
+def error_of_gdal() -> str:
     """Return what went wrong last in this thread since :func:`begin_reading`, nothing where nothing did."""
     gdal = _gdal()
     failed = gdal is not None and gdal.GetLastErrorType() >= gdal.CE_Failure
@@ -481,7 +500,7 @@ class FeatureReader:
             yield FeatureRow(feature, counts, geometry, notes)
         self.complete = not self.feedback.isCanceled()
         # A layer in its role is asked whether it is there at all first, by check_readable.
-        error = _error_of_gdal() if isinstance(self.source, QgsFeatureSource) else ""
+        error = error_of_gdal() if isinstance(self.source, QgsFeatureSource) else ""
         if self.complete and error:
             raise _half_read(self.name, error)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,10 +13,10 @@ from qgis.core import (
     QgsCsException,
     QgsExpressionContext,
     QgsExpressionContextUtils,
+    QgsFeatureRequest,
     QgsFeedback,
     QgsPointXY,
     QgsProject,
-    QgsRectangle,
     QgsTask,
     QgsVectorLayer,
 )
@@ -41,10 +41,10 @@ WGS84 = "EPSG:4326"
 
 @dataclass(frozen=True)
 class SurfaceSources:
-    """Layers of surfaces as they are read, from any thread, and the CRS in metres that they are put into."""
+    """Layers of surfaces as they are read, from any thread, and the CRS of their project."""
 
     sources: Sequence[ObstacleSource]
-    crs: QgsCoordinateReferenceSystem
+    project_crs: QgsCoordinateReferenceSystem
     transforms: QgsCoordinateTransformContext
 
 
@@ -90,8 +90,7 @@ def surface_sources(
     :raises FleetError: naming a layer that holds no areas or cannot be opened.
     """
     sources = obstacle_sources(layers, LayerExpressions(), scope)
-    areas = [(layer.crs(), layer.extent()) for layer in layers]
-    return SurfaceSources(sources, _crs_in_metres(areas, project_crs, transforms), transforms)
+    return SurfaceSources(sources, project_crs, transforms)
 
 
 def read_surface_map(sources: SurfaceSources, feedback: QgsFeedback) -> SurfaceMap | None:
@@ -99,34 +98,40 @@ def read_surface_map(sources: SurfaceSources, feedback: QgsFeedback) -> SurfaceM
 
     :raises FleetError: when a layer has no known place or an expression is not one.
     """
-    site = SiteGeoreference.in_crs(sources.crs, sources.transforms)
+    crs = _crs_in_metres(sources)
+    site = SiteGeoreference.in_crs(crs, sources.transforms)
     reading = read_surfaces(sources.sources, site, feedback)
     if not reading.complete or feedback.isCanceled():
         return None
-    return SurfaceMap(SurfaceIndex(reading.items), sources.crs, sources.transforms, reading.warnings)
+    return SurfaceMap(SurfaceIndex(reading.items), crs, sources.transforms, reading.warnings)
 
 
-def _crs_in_metres(
-    areas: Sequence[tuple[QgsCoordinateReferenceSystem, QgsRectangle]],
-    project_crs: QgsCoordinateReferenceSystem,
-    transforms: QgsCoordinateTransformContext,
-) -> QgsCoordinateReferenceSystem:
+def _crs_in_metres(sources: SurfaceSources) -> QgsCoordinateReferenceSystem:
     """Return the first CRS of layers and project that is a plane in metres, else the UTM zone of a layer.
 
-    Edges are straight in it, and repairs and curves are told in metres.
+    Edges are straight in it, and repairs and curves are told in metres. Where a layer lies is read of one of
+    its areas: to ask its server for the extent may take for ever, so it is no question for the window.
     """
-    for crs in (*(crs for crs, _ in areas), project_crs):
+    for crs in (*(source.crs for source in sources.sources), sources.project_crs):
         if crs.isValid() and _carries(crs):
             return crs
-    for crs, extent in areas:
-        if crs.isValid() and not extent.isNull():
-            way = QgsCoordinateTransform(crs, QgsCoordinateReferenceSystem(WGS84), transforms)
+    for source in sources.sources:
+        place = next(_places(source), None) if source.crs.isValid() else None
+        if place is not None:
+            way = QgsCoordinateTransform(source.crs, QgsCoordinateReferenceSystem(WGS84), sources.transforms)
             try:
-                centre = way.transform(extent.center())
+                centre = way.transform(place)
             except QgsCsException:
                 continue
             return QgsCoordinateReferenceSystem(utm_zone_of(centre.x(), centre.y()))
     return QgsCoordinateReferenceSystem()
+
+
+def _places(source: ObstacleSource) -> Iterator[QgsPointXY]:
+    """Yield the middle of each area of a layer."""
+    for feature in source.features.getFeatures(QgsFeatureRequest().setNoAttributes()):
+        if not feature.geometry().isEmpty():
+            yield feature.geometry().boundingBox().center()
 
 
 def _carries(crs: QgsCoordinateReferenceSystem) -> bool:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from qgis.core import (
@@ -11,8 +12,10 @@ from qgis.core import (
     QgsCoordinateTransform,
     QgsCsException,
     QgsFeature,
+    QgsFeatureRequest,
     QgsGeometry,
     QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
     QgsWkbTypes,
 )
 from qgis.gui import QgsProjectionSelectionWidget
@@ -37,6 +40,7 @@ from ..layers.site_transform import check_transform, datum_transform
 from ..ui.errors import FleetError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import tr
+from ..ui.scheduling import STALLED_AFTER, ReadingThread, StalledError, Steps
 
 WGS84 = "EPSG:4326"
 
@@ -145,14 +149,15 @@ class LayerCommandError(FleetError):
     """A layer holds nothing that a draft could be made of."""
 
 
-def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> PendingCommand:
-    """Return an unchecked draft for the selected robot of what is selected in ``layer``, or of all of it.
+def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> Steps[PendingCommand]:
+    """Make an unchecked draft for the selected robot of what is selected in ``layer``, or of all of it.
 
     One point is a cone target, several points are several of them, one line is a route.
 
     :raises FleetError: naming what is wrong with the layer, the selection or the robot.
     """
-    if desk.selection.last is None:
+    robot = desk.selection.last
+    if robot is None:
         raise LayerCommandError(
             tr("No robot is selected. Select the one that the draft is for, then try again.")
         )
@@ -160,38 +165,72 @@ def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> P
         raise LayerCommandError(
             tr("No layer of points or lines is active. Click one in the Layers panel, then try again.")
         )
-    features = _features(layer)
     kind = layer.geometryType()
-    if kind == QgsWkbTypes.GeometryType.PointGeometry:
-        return _targets(layer, features, desk)
-    if kind == QgsWkbTypes.GeometryType.LineGeometry:
-        return _route(layer, features, desk)
-    raise LayerCommandError(
-        tr(
-            "The layer {layer} holds polygons: take a layer of points (targets) or lines (a route).",
-            layer=layer.name(),
+    if kind == QgsWkbTypes.GeometryType.PolygonGeometry:
+        raise LayerCommandError(
+            tr(
+                "The layer {layer} holds polygons: take a layer of points (targets) or lines (a route).",
+                layer=layer.name(),
+            )
         )
-    )
+    meant = LayerFacts(layer.name(), layer.crs())
+    features = yield from _features(layer, meant.name)
+    if kind == QgsWkbTypes.GeometryType.PointGeometry:
+        return _targets(meant, features, robot, desk)
+    return _route(meant, features, robot, desk)
 
 
-def _features(layer: QgsVectorLayer) -> list[QgsFeature]:
-    chosen = layer.selectedFeatureCount()
-    if not chosen and layer.featureCount() > LONGEST_QUEUE:
+class LayerFacts(NamedTuple):
+    """What is known of a layer that may be gone when its features have been read."""
+
+    name: str
+    crs: QgsCoordinateReferenceSystem
+
+
+def _features(layer: QgsVectorLayer, name: str) -> Steps[list[QgsFeature]]:
+    chosen = layer.selectedFeatureIds()
+    source = QgsVectorLayerFeatureSource(layer)
+    request = QgsFeatureRequest(chosen) if chosen else QgsFeatureRequest()
+
+    def read(go_on: Callable[[], bool]) -> tuple[list[QgsFeature], int]:
+        first: list[QgsFeature] = []
+        count = 0
+        for feature in source.getFeatures(request):
+            count += 1
+            if chosen or count <= LONGEST_QUEUE:
+                first.append(feature)
+            if not go_on():
+                break
+        return first, count
+
+    thread = ReadingThread(read)
+    thread.start()
+    try:
+        features, count = yield from thread.result()
+    except StalledError as error:
+        raise LayerCommandError(
+            tr(
+                "The layer {layer} has not answered for {seconds:g} s, so no draft was made of it. Bring its "
+                "server or drive back and try again.",
+                layer=name,
+                seconds=STALLED_AFTER,
+            )
+        ) from error
+    if not chosen and count > LONGEST_QUEUE:
         raise LayerCommandError(
             tr(
                 "The layer {layer} has {count} features and a queue takes {longest_queue}: select "
                 "those that are meant.",
-                layer=layer.name(),
-                count=layer.featureCount(),
+                layer=name,
+                count=count,
                 longest_queue=LONGEST_QUEUE,
             )
         )
-    features = sorted(layer.selectedFeatures(), key=_age) if chosen else list(layer.getFeatures())
+    if chosen:
+        features.sort(key=_age)
     found = [one for one in features if not one.geometry().isNull() and not one.geometry().isEmpty()]
     if not found:
-        raise LayerCommandError(
-            tr("The layer {layer} has no feature with a place to go to.", layer=layer.name())
-        )
+        raise LayerCommandError(tr("The layer {layer} has no feature with a place to go to.", layer=name))
     return found
 
 
@@ -203,7 +242,9 @@ def _age(feature: QgsFeature) -> tuple[bool, int]:
     return feature.id() < 0, abs(feature.id())
 
 
-def _targets(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetController) -> PendingCommand:
+def _targets(
+    layer: LayerFacts, features: Sequence[QgsFeature], robot: str, desk: FleetController
+) -> PendingCommand:
     places, names = [], []
     for feature in features:
         # Named, since its vertices do not keep it alive.
@@ -216,24 +257,26 @@ def _targets(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetC
             tr(
                 "The layer {layer} has {places} points selected and a queue takes {longest_queue}: select "
                 "fewer.",
-                layer=layer.name(),
+                layer=layer.name,
                 places=len(places),
                 longest_queue=LONGEST_QUEUE,
             )
         )
     points = _in_site(places, desk)
     if len(points) == 1:
-        return PendingCommand(desk.selection.last, CONE, points)
-    return PendingCommand(desk.selection.last, TARGETS, points, names=tuple(names))
+        return PendingCommand(robot, CONE, points)
+    return PendingCommand(robot, TARGETS, points, names=tuple(names))
 
 
-def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetController) -> PendingCommand:
+def _route(
+    layer: LayerFacts, features: Sequence[QgsFeature], robot: str, desk: FleetController
+) -> PendingCommand:
     if len(features) != 1:
         raise LayerCommandError(
             tr(
                 "A route is one line, and {features} of the layer {layer} are meant: select one.",
                 features=len(features),
-                layer=layer.name(),
+                layer=layer.name,
             )
         )
     maximum = QgsAbstractGeometry.SegmentationToleranceType.MaximumDifference
@@ -244,7 +287,7 @@ def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetCon
             tr(
                 "The line that is selected in {layer} has {parts} parts, and a robot cannot leap from "
                 "one to the next: make it one line.",
-                layer=layer.name(),
+                layer=layer.name,
                 parts=line.partCount(),
             )
         )
@@ -257,22 +300,22 @@ def _route(layer: QgsVectorLayer, features: Sequence[QgsFeature], desk: FleetCon
                 longest_path=LONGEST_PATH,
             )
         )
-    return PendingCommand(desk.selection.last, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
+    return PendingCommand(robot, ROUTE, _in_site(places, desk), legs=(1,) * len(places))
 
 
-def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) -> QgsGeometry:
+def _moved(feature: QgsFeature, layer: LayerFacts, desk: FleetController) -> QgsGeometry:
     """Return a feature's geometry in the site's CRS."""
-    if not layer.crs().isValid():
+    if not layer.crs.isValid():
         raise LayerCommandError(
             tr(
                 "The layer {layer} has no CRS, so nobody knows where its points are. Set it in the layer's "
                 "properties.",
-                layer=layer.name(),
+                layer=layer.name,
             )
         )
     geometry = QgsGeometry(feature.geometry())
     way = QgsCoordinateTransform(
-        layer.crs(), desk.site_to_canvas.transform().site_crs, desk.project.transformContext()
+        layer.crs, desk.site_to_canvas.transform().site_crs, desk.project.transformContext()
     )
     try:
         check_transform(way)
@@ -283,7 +326,7 @@ def _moved(feature: QgsFeature, layer: QgsVectorLayer, desk: FleetController) ->
                 "Feature {id} of {layer} has no place in the site's CRS ({error}). Leave it out, or correct "
                 "the layer's CRS.",
                 id=feature.id(),
-                layer=layer.name(),
+                layer=layer.name,
                 error=error,
             )
         ) from error

@@ -22,6 +22,7 @@ from ..ui.dialogs import QuestionDialog
 from ..ui.errors import FleetError, NotSentError
 from ..ui.glyphs import WRONG_STYLE
 from ..ui.language import tr
+from ..ui.scheduling import CooperativeTask
 from ..ui.steady_widgets import ScrollingText
 from .command_sources import CoordinatesDialog, command_from_layer
 from .queue import QueueEdits
@@ -240,6 +241,7 @@ class PendingCommandActions(QObject):
         self._actions = actions
         self._window = window
         self._coordinates: CoordinatesDialog | None = None
+        self._reading = CooperativeTask(self)
         actions.undo.triggered.connect(lambda: desk.drafts.undo())
         actions.redo.triggered.connect(lambda: desk.drafts.redo())
         actions.reverse.triggered.connect(lambda: self._try(self._reverse))
@@ -329,9 +331,21 @@ class PendingCommandActions(QObject):
 
     def _take_from_layer(self) -> None:
         self._check_free()
-        draft = command_from_layer(self._desk.canvas.currentLayer(), self._desk)
+        work = command_from_layer(self._desk.canvas.currentLayer(), self._desk)
+        draft = self._reading.begin(work, done=self._read, failed=self._failed)
+        if draft is not None:
+            self._taken(draft)
+
+    def _read(self, draft: PendingCommand) -> None:
+        self._try(lambda: self._taken(draft))
+
+    def _taken(self, draft: PendingCommand) -> None:
+        self._check_free()
         self._desk.target_ways.set_command(draft)
         self._show(draft.points)
+
+    def _failed(self, error: FleetError) -> None:
+        self._desk.failed.emit(str(error))
 
     def _ask_for_coordinates(self) -> None:
         if self._coordinates is None:

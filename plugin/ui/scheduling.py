@@ -1,9 +1,12 @@
-"""Scheduling: long work in slices of the window's thread or as a task of QGIS, and slots for updates."""
+"""Scheduling: long work in slices of the window's thread, in threads and tasks, and slots for updates."""
 
 from __future__ import annotations
 
+import math
+import threading
+import time
 from collections.abc import Callable, Generator
-from typing import Any, TypeVar
+from typing import Any, Generic, TypeVar
 
 from qgis.core import QgsTask
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
@@ -18,6 +21,9 @@ from .errors import FleetError
 T = TypeVar("T")
 Steps = Generator[float, None, T]
 """Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
+
+WAITING = math.nan
+"""Yielded in place of a share by work that waits for another thread: its slice ends, the window goes on."""
 
 SLICE_SECONDS = 0.008
 ONE_STEP = 0.0
@@ -53,6 +59,7 @@ class CooperativeTask(QObject):
         self._failed: Callable[[FleetError], None] = _raise
         self.share = 0.0
         """How much is done, 0 to 1."""
+        self._is_waiting = False
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(REST_MS)
@@ -129,7 +136,7 @@ class CooperativeTask(QObject):
             return
         if is_done:
             self._done(result)
-        elif self._work is not None:
+        elif self._work is not None and not self._is_waiting:
             self._goes_on()
 
     def _slice(self) -> tuple[bool, Any]:
@@ -138,9 +145,13 @@ class CooperativeTask(QObject):
         until = self._clock.steady() + (SLICE_SECONDS if self._seconds is None else self._seconds)
         try:
             while True:
-                self.share = next(work)
+                share = next(work)
                 if self._work is not work:
                     return False, None
+                self._is_waiting = math.isnan(share)
+                if self._is_waiting:
+                    break
+                self.share = share
                 if self._clock.steady() >= until:
                     break
         except StopIteration as end:
@@ -173,6 +184,78 @@ def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
         except StopIteration as end:
             return end.value
         yield (before + share) / parts
+
+
+STALLED_AFTER = 5.0
+"""Seconds without a sign of progress after which nobody waits for a thread any longer."""
+_AT_ONCE_SECONDS = 0.002
+"""Seconds that the window waits for a thread, so that what is small is done in the slice that began it."""
+
+
+class StalledError(Exception):
+    """A thread has made no progress for as long as anybody waits for it."""
+
+
+class ReadingThread(threading.Thread, Generic[T]):
+    """Reads what may hang for ever: a database, a share, a server.
+
+    ``read`` calls what it is called with for each thing that it has read, and ends when that returns false.
+    A thread of its own and no task of QGIS: those share their few threads with the drawing of the map, where
+    the layers of a server that hangs keep all of them.
+    """
+
+    def __init__(self, read: Callable[[Callable[[], bool]], T]):
+        # QGIS can be closed while it hangs.
+        super().__init__(name="fleet reading", daemon=True)
+        self._read = read
+        self._progress_at = time.monotonic()
+        self._ended = threading.Event()
+        self._is_cancelled = False
+        self._result: T | None = None
+        self._error: Exception | None = None
+
+    @property
+    def is_reading(self) -> bool:
+        """Whether it has not come to its end, whoever waits for it."""
+        return not self._ended.is_set()
+
+    def run(self) -> None:
+        try:
+            self._result = self._read(self._progressed)
+        except Exception as error:  # raised again by whoever waits
+            self._error = error
+        finally:
+            self._ended.set()
+
+    def wait_for_end(self) -> Steps[None]:
+        """Wait until it has ended.
+
+        :raises StalledError: when nothing has been read for :data:`STALLED_AFTER` seconds.
+        """
+        if self._ended.wait(_AT_ONCE_SECONDS):
+            return
+        while self.is_reading:
+            if time.monotonic() - self._progress_at > STALLED_AFTER:
+                raise StalledError
+            yield WAITING
+
+    def result(self) -> Steps[T]:
+        """Wait for what is read, and return it; who gives up the wait ends the reading.
+
+        :raises StalledError: as :meth:`wait_for_end`.
+        :raises Exception: what the reading raised.
+        """
+        try:
+            yield from self.wait_for_end()
+        finally:
+            self._is_cancelled = True
+        if self._error is not None:
+            raise self._error
+        return self._result  # type: ignore[return-value] # it has ended without an error
+
+    def _progressed(self) -> bool:
+        self._progress_at = time.monotonic()
+        return not self._is_cancelled
 
 
 PULL_EVERY_MS = 50

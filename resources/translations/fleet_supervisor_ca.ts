@@ -1083,6 +1083,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so what is in it was not looked at. Bring its server or drive back and try again, or take the role of the layer away.</source>
+            <translation>La capa {layer} no respon des de fa {seconds:g} s, així que no s'ha mirat què hi ha. Restabliu-ne el servidor o la unitat i torneu-ho a provar, o traieu el paper a la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El projecte no té SRC, de manera que es considera que el mapa és en el del recinte, {crs}; una capa en un altre SRC hi surt en un lloc equivocat. Trieu el SRC del projecte a baix a la dreta del QGIS.</translation>
         </message>
@@ -2394,8 +2399,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
-            <translation>La capa {name} ja no es pot llegir: dels seus elements ({count}) el QGIS no n'obté cap. El seu fitxer o la seva base de dades s'ha mogut, s'ha malmès o ha quedat inaccessible des que es va obrir el projecte. Recupereu-lo, o repareu l'origen de dades de la capa, i torneu a obrir el projecte.</translation>
+            <source>The layer {name} cannot be read any more: QGIS gets none of its features. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>La capa {name} ja no es pot llegir: el QGIS no n'obté cap entitat. El fitxer o la base de dades s'ha mogut, s'ha malmès o ha quedat sense connexió des que es va obrir el projecte. Restabliu-lo, o repareu l'origen de dades de la capa, i torneu a obrir el projecte.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -4517,6 +4522,11 @@
             <location filename="../../plugin/panel/command_sources.py" />
             <source>The layer {layer} has no feature with a place to go to.</source>
             <translation>La capa {layer} no té cap entitat amb un lloc on anar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_sources.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so no draft was made of it. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no respon des de fa {seconds:g} s, així que no se n'ha fet cap esborrany. Restabliu-ne el servidor o la unitat i torneu-ho a provar.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_sources.py" />

@@ -1083,6 +1083,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so what is in it was not looked at. Bring its server or drive back and try again, or take the role of the layer away.</source>
+            <translation>La capa {layer} no responde desde hace {seconds:g} s, así que no se ha mirado qué hay en ella. Restablezca su servidor o su unidad e inténtelo de nuevo, o quite el papel a la capa.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>El proyecto no tiene SRC, así que se considera que el mapa está en el del recinto, {crs}; una capa en otro SRC aparece en un lugar equivocado. Elija el SRC del proyecto abajo a la derecha en QGIS.</translation>
         </message>
@@ -2394,8 +2399,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
-            <translation>La capa {name} ya no se puede leer: de sus objetos ({count}) QGIS no obtiene ninguno. Su archivo o su base de datos se movió, se dañó o quedó inaccesible desde que se abrió el proyecto. Recupérelo, o repare el origen de datos de la capa, y vuelva a abrir el proyecto.</translation>
+            <source>The layer {name} cannot be read any more: QGIS gets none of its features. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>La capa {name} ya no se puede leer: QGIS no obtiene ninguno de sus objetos. Su archivo o base de datos se movió, se dañó o quedó sin conexión desde que se abrió el proyecto. Restablézcalo, o repare el origen de datos de la capa, y vuelva a abrir el proyecto.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -4517,6 +4522,11 @@
             <location filename="../../plugin/panel/command_sources.py" />
             <source>The layer {layer} has no feature with a place to go to.</source>
             <translation>La capa {layer} no tiene ningún objeto con un lugar adonde ir.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_sources.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so no draft was made of it. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no responde desde hace {seconds:g} s, así que no se ha hecho ningún borrador con ella. Restablezca su servidor o su unidad e inténtelo de nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_sources.py" />

@@ -1077,6 +1077,11 @@
         </message>
         <message>
             <location filename="../../plugin/control/command_checks.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so what is in it was not looked at. Bring its server or drive back and try again, or take the role of the layer away.</source>
+            <translation>A(z) {layer} réteg {seconds:g} másodperce nem válaszol, ezért a tartalmát senki sem nézte. Tegye újra elérhetővé a kiszolgálóját vagy a meghajtóját, és próbálja újra, vagy vegye el a réteg szerepét.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/control/command_checks.py" />
             <source>The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.</source>
             <translation>A projektnek nincs vetülete, ezért a térkép a telephelyében, {crs} vetületben értendő; más vetületű réteg rossz helyen látszik rajta. Válassza ki a projekt vetületét a QGIS jobb alsó sarkában.</translation>
         </message>
@@ -2384,8 +2389,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {name} cannot be read any more: of its features ({count}) QGIS gets none. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
-            <translation>A(z) {name} réteg már nem olvasható: az elemei ({count}) közül a QGIS egyet sem kap meg. A fájlját vagy adatbázisát a projekt megnyitása óta áthelyezték, megsérült, vagy nem érhető el. Hozza vissza, vagy javítsa ki a réteg adatforrását, és nyissa meg újra a projektet.</translation>
+            <source>The layer {name} cannot be read any more: QGIS gets none of its features. Its file or database was moved, damaged or cut off since the project was opened. Bring it back, or repair the layer's data source, and open the project again.</source>
+            <translation>A(z) {name} réteg már nem olvasható: a QGIS egyetlen elemét sem kapja meg. A fájlját vagy az adatbázisát a projekt megnyitása óta áthelyezték, megsérült vagy megszakadt a kapcsolata. Állítsa vissza, vagy javítsa ki a réteg adatforrását, és nyissa meg újra a projektet.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
@@ -4490,6 +4495,11 @@
             <location filename="../../plugin/panel/command_sources.py" />
             <source>The layer {layer} has no feature with a place to go to.</source>
             <translation>A(z) {layer} rétegben nincs olyan elem, amelyhez menni lehetne.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/command_sources.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s, so no draft was made of it. Bring its server or drive back and try again.</source>
+            <translation>A(z) {layer} réteg {seconds:g} másodperce nem válaszol, ezért nem készült belőle vázlat. Tegye újra elérhetővé a kiszolgálóját vagy a meghajtóját, és próbálja újra.</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/command_sources.py" />

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 from fleet_supervisor.plugin.control.layer_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import NotSentError
-from qgis.core import QgsFeature, QgsGeometry
+from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QToolButton
+
+from tests.support.databases.frozen_layer import frozen_for_layers, layer_in_database
 
 SQUARE = "Polygon ((60 50, 80 50, 80 60, 60 60, 60 50))"
 ENTER, ESCAPE = Qt.Key.Key_Return, Qt.Key.Key_Escape
@@ -269,8 +273,6 @@ def test_a_layer_that_changes_under_a_check_has_it_begin_anew(slow, layer_of):
 
 
 def test_a_layer_that_goes_under_a_check_does_no_harm(slow, layer_of):
-    from qgis.core import QgsProject
-
     layer = layer_of("Polygon", SQUARE, role="keepout", names=["Bay"])
     slow.take("cone").click((70, 55))
     QgsProject.instance().removeMapLayer(layer.id())
@@ -336,8 +338,127 @@ def test_a_thousand_targets_of_a_layer_are_checked_each(hand, layer_of):
     hand.window.desk.selection.select("r1")
     hand.iface.canvas.setCurrentLayer(points)
     hand.window.actions.from_layer.trigger()
-    hand.wait(hand.iface.is_settled, 60)
+    hand.wait(lambda: hand.points is not None and hand.iface.is_settled(), 60)
     found = hand.drafts.draft.findings.overridable
     assert len([text for text in found if "keepout" in text]) == 3 * 2
     assert len([text for text in found if "Fence" in text]) == 40
     assert len(found) == 46
+
+
+# --- Sources of layers that hang: nothing in the window may wait for them ---
+
+
+@pytest.fixture
+def bays(postgis_server, layer_of):
+    """The uri of keepouts in a PostGIS whose server can be frozen: nobody has read of them yet."""
+    return layer_in_database(
+        postgis_server,
+        "POLYGON((488060 5190050,488080 5190050,488080 5190060,488060 5190060,488060 5190050))",
+    )
+
+
+@pytest.fixture
+def layer_in_postgis(bays):
+    def make(role):
+        layer = QgsVectorLayer(bays, "Bays", "postgres")
+        assert layer.isValid()
+        layer.setCustomProperty("fleet/role", role)
+        QgsProject.instance().addMapLayer(layer)
+        return layer
+
+    return make
+
+
+@pytest.mark.parametrize("role", ["keepout", "obstacle", "road_surface"])
+@pytest.mark.parametrize("how", ["button", "keys"])
+def test_the_emergency_stop_goes_out_while_a_layer_of_a_draft_hangs(
+    hand, layer_in_postgis, postgis_server, role, how
+):
+    layer_in_postgis(role)
+    hand.iface.is_settled = lambda: True
+    with frozen_for_layers(postgis_server) as server:
+        hand.take("cone").click((70, 55))
+        hand.move(60, 55)
+        assert hand.window.desk.checks.is_under_way
+        if how == "button":
+            hand.window.actions.emergency.trigger()
+        else:
+            QTest.keyClick(hand.iface.canvas, Qt.Key.Key_F10)
+        hand.wait(lambda: hand.gateway.requests_of("emergency_stop"), what="the emergency stop")
+        assert server.is_frozen
+
+
+def test_a_draft_whose_layer_does_not_answer_is_not_sent_before_it_does(
+    hand, layer_in_postgis, postgis_server, monkeypatch
+):
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", 0.3)
+    layer_in_postgis("keepout")
+    with frozen_for_layers(postgis_server) as server:
+        hand.take("cone").click((20, 20))
+        assert hand.complained("The layer Bays has not answered for ")
+        # At once, and by the same thread: each that hangs holds a connection of the server.
+        hand.click((30, 20), (40, 20))
+        hand.key(ENTER)
+        assert server.is_frozen
+        readers = [one for one in threading.enumerate() if isinstance(one, scheduling.ReadingThread)]
+        assert len(readers) == 1
+        assert hand.nothing_sent()
+        assert hand.drafts.draft.can_be_overridden
+    readers[0].join()
+    hand.click((70, 55))
+    assert hand.complained("enters the keepout Bay.")
+    hand.click((20, 20))
+    hand.key(ENTER)
+    assert hand.sent()["params"]["x"] == pytest.approx(20, abs=0.3)
+
+
+def test_what_was_not_read_for_a_leg_is_read_with_the_next_one(
+    hand, layer_in_postgis, postgis_server, monkeypatch
+):
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", 0.3)
+    layer_in_postgis("keepout")
+    with frozen_for_layers(postgis_server):
+        hand.take("route").click((55, 55), (90, 55))
+        assert hand.complained("The layer Bays has not answered for ")
+        readers = [one for one in threading.enumerate() if isinstance(one, scheduling.ReadingThread)]
+    readers[0].join()
+    hand.click((95, 55))
+    assert "The route enters the keepout Bay" in hand.draft_text
+
+
+@pytest.mark.parametrize("role", ["keepout", "obstacle"])
+def test_a_layer_damaged_in_the_middle_keeps_the_draft_here(hand, layer_of, save_layer, tmp_path, role):
+    squares = [f"Polygon (({x} {y}, {x}.4 {y}, {x}.4 {y}.4, {x} {y}))" for x in range(100) for y in range(50)]
+    drawn = layer_of("Polygon", *squares, names=["x" * 200] * len(squares))
+    layer = save_layer(drawn, "bays.gpkg")
+    QgsProject.instance().removeMapLayer(drawn.id())
+    file = tmp_path / "bays.gpkg"
+    content = bytearray(file.read_bytes())
+    page = 4096
+    names = [at for at in range(0, len(content), page) if content[at : at + page].count(b"x" * 200) > 5]
+    for at in names[len(names) // 3 : 2 * len(names) // 3]:
+        content[at : at + page] = bytes(page)
+    file.write_bytes(content)
+    layer = QgsVectorLayer(str(file), "Bays", "ogr")
+    assert layer.isValid()
+    layer.setCustomProperty("fleet/role", role)
+    QgsProject.instance().addMapLayer(layer)
+    # A route over all of it: what of the layer can be read is read, and that some cannot.
+    hand.take("route").click((0.6, 0.6), (99.6, 49.6))
+    assert hand.complained("The layer Bays cannot be read, so what is in it was not looked at.")
+
+
+def test_a_draft_of_a_layer_that_hangs_is_not_made_and_nothing_waits_for_it(
+    hand, postgis_server, monkeypatch
+):
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", 0.3)
+    layer = QgsVectorLayer(
+        layer_in_database(postgis_server, "POINT(488070 5190055)", "Point"), "Stops", "postgres"
+    )
+    with frozen_for_layers(postgis_server) as server:
+        hand.window.desk.selection.select("r1")
+        hand.iface.canvas.setCurrentLayer(layer)
+        hand.window.actions.from_layer.trigger()
+        assert hand.complained("so no draft was made of it.")
+        assert server.is_frozen
+    assert hand.points is None

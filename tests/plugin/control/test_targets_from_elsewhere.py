@@ -209,7 +209,14 @@ def take_from(hand, layer, *chosen, robot="r1"):
     hand.iface.canvas.setCurrentLayer(layer)
     if chosen:
         layer.selectByIds([feature.id() for feature in layer.getFeatures()][slice(*chosen)])
+    read_layer(hand)
+
+
+def read_layer(hand):
+    before = len(hand.iface.texts())
     hand.window.actions.from_layer.trigger()
+    hand.wait(lambda: hand.points is not None or len(hand.iface.texts()) > before, what="what is read")
+    hand.wait(hand.iface.is_settled, what="the check of the draft")
 
 
 def test_the_selected_point_of_a_layer_is_a_cone_target(hand, layer_of):
@@ -257,7 +264,7 @@ def test_selected_points_come_in_the_order_of_their_table_and_unsaved_ones_last(
     hand.window.desk.selection.select("r1")
     hand.iface.canvas.setCurrentLayer(layer)
     layer.selectAll()
-    hand.window.actions.from_layer.trigger()
+    read_layer(hand)
     assert hand.drafts.draft.names == (*(f"P{k:02}" for k in range(40)), "new1", "new2")
     layer.rollBack()
 

@@ -64,7 +64,7 @@ def test_a_layer_of_points_goes_in_by_name_and_in_order(desk, iface, gateway, wa
     iface.canvas.setCurrentLayer(layer)
     desk.actions.from_layer.trigger()
     # What is pressed before is refused where the check finds what the operator has not seen.
-    wait(lambda: desk.desk.drafts.draft.is_checked)
+    wait(lambda: desk.desk.drafts.draft is not None and desk.desk.drafts.draft.is_checked)
     enqueue(desk)
     wait(lambda: len(tasks(gateway)) == 3)
     assert [task.cone for task in tasks(gateway)] == ["K0", "K1", "K2"]
