@@ -154,7 +154,7 @@ class LinkClient:
 
     def adrift(self, robot: str) -> None:
         """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all."""
-        self._memory.adrift.add(robot)
+        self._memory.set_adrift(robot)
         known = self._robots.get(robot)
         if known is not None and self._is_welcome:
             known.lose()
@@ -462,7 +462,7 @@ class LinkClient:
     def _say_ready(self, robot: LinkedRobot) -> None:
         if not self._is_welcome or self._robots.get(robot.name) is not robot or robot.admitted:
             return
-        if robot.name in self._memory.adrift and not robot.is_only_seen:
+        if self._memory.is_adrift(robot.name) and not robot.is_only_seen:
             if robot.name not in self._calming:
                 self._calming[robot.name] = asyncio.create_task(self._calm(robot))
             return
@@ -473,13 +473,14 @@ class LinkClient:
         """Stop a robot that is adrift before anything can be asked of it; what it was to do has failed."""
         log.warning("robot %s may do what it was asked before all changed: it is stopped", robot.name)
         try:
-            await self._commanding.calm(robot.name)
-            if robot.name in self._robots:
-                for id in self._memory.taken_on(robot.name):
-                    self.give_up(robot.name, id, "the link's settings or site have changed: it was stopped")
+            refusal = await self._commanding.calm(robot.name)
         finally:
-            self._memory.adrift.discard(robot.name)
             del self._calming[robot.name]
+        self._memory.clear_adrift(robot.name)
+        how = "it was stopped" if refusal is None else f"its stop was not confirmed, look after it: {refusal}"
+        if robot.name in self._robots:
+            for id in self._memory.taken_on(robot.name):
+                self.give_up(robot.name, id, f"the link's settings or site have changed: {how}")
         self._say_ready(robot)
 
     def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:

@@ -202,25 +202,28 @@ class Commanding:
         for robot in list(self._lines):
             self.drop(robot)
 
-    async def calm(self, robot: str) -> None:
-        """Stop a robot without being asked to; return once its side has confirmed it, or had its time."""
+    async def calm(self, robot: str) -> str | None:
+        """Stop a robot without being asked to; return None, or why its side has not confirmed that in time."""
         self.drop(robot)
-        await self._stop(robot, None, emergency=False)
+        return await self._stopped(robot, emergency=False)
 
     async def _stop(self, robot: str, call: CallId, *, emergency: bool) -> None:
+        self._answer(call, await self._stopped(robot, emergency=emergency), urgent=True)
+
+    async def _stopped(self, robot: str, *, emergency: bool) -> str | None:
         try:
             async with asyncio.timeout(self._answer_within):
                 await self._adapter.stop(robot, emergency=emergency)
-            self._answer(call, None, urgent=True)
         except CommandRefusedError as error:
             log.error("robot %s does not stop: %s", robot, error)
-            self._answer(call, str(error), urgent=True)
+            return str(error)
         except TimeoutError:
             log.error("robot %s did not answer to an Abort within %g s", robot, self._answer_within)
-            self._answer(call, f"no answer within {self._answer_within:g} s", urgent=True)
+            return f"no answer within {self._answer_within:g} s"
         except Exception:
             log.exception("robot %s: the Abort failed", robot)
-            self._answer(call, "the link failed; its log says more", urgent=True)
+            return "the link failed; its log says more"
+        return None
 
     async def _work(self, robot: str, line: _Line) -> None:
         while line.waiting:

@@ -56,8 +56,7 @@ class LinkMemory:
         self._file = file
         self._database: str | None = None
         self._frame: str | None = None
-        self.adrift: set[str] = set()
-        """Robots that may do what was asked of them with another database, or in another frame."""
+        self._adrift: set[str] = set()
         self._robots: dict[str, _Robot] = {}
         self._writing = asyncio.Lock()
         self._fault: OSError | None = None
@@ -97,7 +96,9 @@ class LinkMemory:
             return False
         is_other = before[0] not in (None, database) or before[1] not in (None, frame)
         if is_other:
-            self.adrift |= {name for name, robot in self._robots.items() if robot.begun}
+            # Before the rest: a process that is killed in between finds another database once more.
+            for name in [name for name, robot in self._robots.items() if robot.begun]:
+                self.set_adrift(name)
         self._serve(database, frame)
         self._append_if_possible({"database": database, "frame": frame})
         return is_other
@@ -107,6 +108,22 @@ class LinkMemory:
             for robot in self._robots.values():
                 robot.begun.clear()
         self._database, self._frame = database, frame
+
+    def is_adrift(self, robot: str) -> bool:
+        """Tell whether a robot may do what was asked of it with another database, or in another frame."""
+        return robot in self._adrift
+
+    def set_adrift(self, robot: str) -> None:
+        """Note that a robot is adrift, until :meth:`clear_adrift`, whatever becomes of this process."""
+        if robot not in self._adrift:
+            self._adrift.add(robot)
+            self._append_if_possible({"robot": robot, "adrift": True})
+
+    def clear_adrift(self, robot: str) -> None:
+        """Note that a robot was stopped."""
+        if robot in self._adrift:
+            self._adrift.discard(robot)
+            self._append_if_possible({"robot": robot, "adrift": False})
 
     def find(self, robot: str, id: int) -> CompletedCall | None:
         """Return what came of a message, None where it was never finished."""
@@ -223,6 +240,8 @@ class LinkMemory:
         if "database" in line:
             frame = line.get("frame")
             self._serve(str(line["database"]), None if frame is None else str(frame))
+        elif "adrift" in line:
+            (self._adrift.add if line["adrift"] else self._adrift.discard)(str(line["robot"]))
         elif "magic" in line:
             known = self._robots.get(line["robot"])
             self._robots[line["robot"]] = _Robot(int(line["magic"]), known.begun if known else OrderedDict())
@@ -247,6 +266,8 @@ class LinkMemory:
         if self._database is not None:
             frame = {} if self._frame is None else {"frame": self._frame}
             yield {"database": self._database, **frame}
+        for name in self._adrift:
+            yield {"robot": name, "adrift": True}
         for name, robot in self._robots.items():
             yield {"robot": name, "magic": robot.magic}
             for id, done in robot.begun.items():

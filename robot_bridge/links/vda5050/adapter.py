@@ -57,7 +57,7 @@ class Vehicle:
         self.controller = controller
         self.writer = MessageWriter(controller.vehicle)
         self.received_at = now
-        self.is_introduced = self.is_adrift = False
+        self.is_introduced = False
         self.untold: list[Settled] = []
         """What came of commands before the gateway knew of it: an order that ended while nobody led it."""
         self._commands: dict[int, asyncio.Future[str | None]] = {}
@@ -261,13 +261,10 @@ class Vda5050Adapter(Adapter):
             if kept is None or kept.basis in ("", self._basis(robot, kept)):
                 return made(kept)
             log.warning("vehicle %s: what it was to do is given up: its settings have changed", identity)
-            vehicle = made(kept.without_task())
-            vehicle.is_adrift = True
-            former = kept.basis.partition(" ")[0]
-            if former != robot and self._link is not None:
-                # What was asked of that name is done by nobody.
-                self._link.adrift(former)
-            return vehicle
+            # Before anything is kept of it by the settings of now. What was asked of a former name is done by nobody.
+            for name in {kept.basis.partition(" ")[0], robot} if self._link is not None else ():
+                self._link.adrift(name)
+            return made(kept.without_task())
         except Vda5050Error as error:
             log.error("vehicle %s begins without what was kept: %s", identity, error)
             return made(None)
@@ -317,8 +314,6 @@ class Vda5050Adapter(Adapter):
         abilities: list[Ability] = ["targets", "paths"]
         if controller.factsheet is None or controller.factsheet.supports("initPosition"):
             abilities.append("start")
-        if vehicle.is_adrift:
-            link.adrift(vehicle.robot)
         link.add(vehicle.robot, abilities)
         for settled in vehicle.untold:
             self._tell_effect(vehicle, settled)

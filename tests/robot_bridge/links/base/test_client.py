@@ -72,6 +72,7 @@ class ReplacedGateway:
     def __init__(self, *welcomes: dict) -> None:
         self._welcomes = list(welcomes)
         self.said: list[str] = []
+        self.frames: list[dict] = []
         self.connection = None
         self.let_in = asyncio.Event()
 
@@ -82,6 +83,7 @@ class ReplacedGateway:
         async for frame in connection:
             message = json.loads(frame)
             self.said.append(message.get("method"))
+            self.frames.append(message)
             if message.get("method") == "hello":
                 await connection.send(jsonrpc.result(message["id"], welcome))
             elif message.get("method") == "Ready":
@@ -308,3 +310,65 @@ async def test_a_command_is_waited_for_as_long_as_its_adapter_holds_one_and_done
     done, late = ("r1/7", None, False), ("r1/8", "the robot did not take it on within 0.05 s", False)
     assert desk.said == [done, done, late]
     assert [command.id for command in adapter.commands] == [7, 8]
+
+
+async def let_in(gateway, link):
+    gateway.let_in.clear()
+    await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+    await asyncio.wait_for(gateway.let_in.wait(), 20)
+
+
+@pytest.mark.parametrize("other", [{"database": "e"}, {"site": {**SITE, "rotation": 1.0}}])
+async def test_a_link_that_is_killed_before_its_robots_stand_stops_them_next_time(tmp_path, other):
+    gateway = ReplacedGateway({**WELCOME, "database": "d"}, {**WELCOME, **other})
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            await let_in(gateway, link)
+            call = jsonrpc.call("SetPosEnd", {"robot": "r1", "x": 1.0, "y": 2.0}, "r1/7")
+            await gateway.connection.send(call)
+            async with asyncio.timeout(20):
+                while 7 not in link.client._memory.taken_on("r1"):
+                    await asyncio.sleep(0.01)
+            await asyncio.to_thread(link.kill)
+            gateway.let_in.clear()
+            for ending in (3600.0, 0.0):
+                link.adapter = Stubborn(ending)
+                link.start()
+                await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+                async with asyncio.timeout(20):
+                    while not link.adapter.stops:
+                        await asyncio.sleep(0.01)
+                if ending:
+                    await asyncio.to_thread(link.kill)
+            await asyncio.wait_for(gateway.let_in.wait(), 20)
+            assert not link.client._memory.is_adrift("r1")
+        finally:
+            await asyncio.to_thread(link.end)
+
+
+async def test_of_a_stop_that_was_not_confirmed_it_is_not_said_that_the_robot_was_stopped(tmp_path):
+    gateway = ReplacedGateway(WELCOME, {**WELCOME, "site": {**SITE, "rotation": 1.0}})
+    async with serve(gateway.speak, "127.0.0.1", 0) as server:
+        port = server.sockets[0].getsockname()[1]
+        link = LinkOnTheLine(SimpleNamespace(address=f"ws://127.0.0.1:{port}"), tmp_path)
+        try:
+            await let_in(gateway, link)
+            call = jsonrpc.call("SetPosEnd", {"robot": "r1", "x": 1.0, "y": 2.0}, "r1/7")
+            await gateway.connection.send(call)
+            async with asyncio.timeout(20):
+                while 7 not in link.client._memory.taken_on("r1"):
+                    await asyncio.sleep(0.01)
+            await asyncio.to_thread(link.kill)
+            link.adapter = Stubborn(CommandRefusedError("its server does not answer"))
+            link.start()
+            await asyncio.to_thread(link.do, "add", "r1", ("targets",))
+            async with asyncio.timeout(20):
+                while "OpAck" not in gateway.said:
+                    await asyncio.sleep(0.01)
+        finally:
+            await asyncio.to_thread(link.end)
+    (ended,) = [frame["params"] for frame in gateway.frames if frame.get("method") == "OpAck"]
+    assert (ended["id"], ended["ok"]) == (7, False)
+    assert "not confirmed" in ended["reason"] and "its server does not answer" in ended["reason"]

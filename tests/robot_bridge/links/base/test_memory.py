@@ -102,6 +102,10 @@ async def test_a_disk_that_fills_up_under_way_is_noticed_by_the_next_message(fil
     assert await again.begin("agv-1", 8) is True
 
 
+def adrift(memory):
+    return [name for name in ("agv-1", "agv-2") if memory.is_adrift(name)]
+
+
 async def test_robots_are_adrift_with_another_database_or_in_another_frame(file):
     memory = LinkMemory(file)
     assert memory.use_database("one", "here") is False
@@ -111,13 +115,18 @@ async def test_robots_are_adrift_with_another_database_or_in_another_frame(file)
     await memory.finish("agv-1", 7, CompletedCall())
 
     memory = LinkMemory(file)
-    assert memory.use_database("one", "here") is False and not memory.adrift
+    assert memory.use_database("one", "here") is False and not memory.is_adrift("agv-1")
     # Messages of the same database keep their ids: none is done once more.
-    assert memory.use_database("one", "there") is True and memory.adrift == {"agv-1"}
+    assert memory.use_database("one", "there") is True and adrift(memory) == ["agv-1"]
     assert memory.find("agv-1", 7) == CompletedCall()
 
+    # Nobody has stopped it yet.
     memory = LinkMemory(file)
-    assert memory.use_database("two", "there") is True and memory.adrift == {"agv-1"}
+    assert adrift(memory) == ["agv-1"]
+    memory.clear_adrift("agv-1")
+    assert memory.use_database("two", "there") is True and adrift(memory) == ["agv-1"]
     assert memory.find("agv-1", 7) is None
+    assert adrift(LinkMemory(file)) == adrift(LinkMemory(file)) == ["agv-1"]
+    memory.clear_adrift("agv-1")
     memory = LinkMemory(file)
-    assert memory.use_database("two", "there") is False and not memory.adrift
+    assert memory.use_database("two", "there") is False and not memory.is_adrift("agv-1")
