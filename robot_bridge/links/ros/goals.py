@@ -29,6 +29,7 @@ class GoalStatus(IntEnum):
 
 
 ACTIVE = frozenset({GoalStatus.ACCEPTED, GoalStatus.EXECUTING, GoalStatus.CANCELING})
+ENDED = frozenset({GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED})
 
 Statuses = Mapping[bytes, GoalStatus]
 """By the goal's id."""

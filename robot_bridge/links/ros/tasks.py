@@ -24,7 +24,7 @@ from .effects import (
     StopEnded,
     ZeroTwist,
 )
-from .goals import ACTIVE, GoalStatus, Statuses, failure_of, goal_id, message_of, missed_text
+from .goals import ACTIVE, ENDED, GoalStatus, Statuses, failure_of, goal_id, message_of, missed_text
 
 # --- How a robot on ROS 2 is stopped: what is said, how often, and when it counts as heard; no I/O ---
 # A stop is three things at once, repeated until they are answered: all goals of its action servers are
@@ -131,6 +131,8 @@ REJECTED_FOR = 0.3
 """seconds after which a goal that was said to be rejected, and is on no status topic, is."""
 ENDED_WITHIN = 2.0
 """seconds for the goal before to end, when the next one goes to another action server."""
+FOUND_WITHIN = 2.0
+"""seconds for the other action servers of a robot to say which goals they have."""
 DETAILS_WITHIN = 2.0
 """seconds for the result of a goal that has failed, which says why."""
 CONE_WITHIN = 60.0
@@ -179,6 +181,15 @@ class _Held:
     until: float
 
 
+@dataclass(frozen=True)
+class _Former:
+    """The newest goal of an earlier process that has ended, told at ``at`` unless something is under way."""
+
+    message: int
+    status: GoalStatus
+    at: float
+
+
 class Tasks:
     """Decides what one robot is told.
 
@@ -203,6 +214,7 @@ class Tasks:
         """Goals that were sent and are not to be driven any more, and whether a stop is what ended them: a
         server may have the cancel before the goal."""
         self._cancel_late_at = 0.0
+        self._former: _Former | None = None
         self._unanswered: Counter[RosAction] = Counter()
         """Demands to cancel all goals: one that is answered late would cancel the next goal."""
         self._settled_at = 0.0
@@ -285,9 +297,12 @@ class Tasks:
 
     def statuses_came(self, action: RosAction, statuses: Statuses, now: float) -> list[Effect]:
         """Take in what the status topic of an action server says of its goals."""
+        is_first = action not in self._goals
         self._goals[action] = dict(statuses)
         if self._task is None and self._stop is None and self._waiting is None:
             self._adopt(action, statuses, now)
+        if is_first:
+            self._find_former(statuses, now)
         task = self._task
         status = statuses.get(task.goal) if task is not None else None
         if task is None or status is None or task.action != action:
@@ -351,7 +366,7 @@ class Tasks:
 
         What is held goes on, too: the robot never knew of it.
         """
-        self._task = self._waiting = None
+        self._task = self._waiting = self._former = None
         self._goals.clear()
         self._given_up.clear()
         self._unanswered.clear()
@@ -366,6 +381,8 @@ class Tasks:
                 return self.order(held.message, held.order, abilities, now, again=held.again)
             if now >= held.until:
                 return self._end_held(f"{refusal} It was held for {self._hold_s:g} s")
+        if self._former is not None and (self.is_busy or self._active()):
+            self._former = None
         late = self._cancel_late(now) if self._stop is None else []
         if self._stop is not None:
             effects = [*late, *self._stop.step(abilities, self._goals, now)]
@@ -378,6 +395,8 @@ class Tasks:
                     _refused(waiting, "the stop before it was not confirmed; stop the robot on site")
                 )
             return effects
+        if self._former is not None and now >= self._former.at:
+            late += self._end_former(self._former)
         return [*late, *(self._send(abilities, now) if self._waiting is not None else self._overdue(now))]
 
     def _give_up(self, task: RosTask | None, now: float, *, stopped: bool = False) -> None:
@@ -477,6 +496,25 @@ class Tasks:
             message = message_of(goal)
             if message is not None and status in ACTIVE and goal not in self._given_up:
                 self._task = RosTask(message, None, goal, action, sent_at=now, taken=True)
+
+    def _find_former(self, statuses: Statuses, now: float) -> None:
+        """Note a goal of ours that ended before this program came; another server may have a newer one."""
+        ours = [
+            (message, status)
+            for goal, status in statuses.items()
+            if (message := message_of(goal)) is not None
+        ]
+        message, status = max(ours, default=(-1, GoalStatus.UNKNOWN))
+        is_newer = self._former is None or message > self._former.message
+        if status in ENDED and is_newer:
+            self._former = _Former(message, status, now + FOUND_WITHIN)
+
+    def _end_former(self, former: _Former) -> list[Effect]:
+        self._former = None
+        if former.status == GoalStatus.SUCCEEDED:
+            return [Idle()]
+        reason = f"{failure_of(former.status, None, None)} while this link was away"
+        return [Answered(former.message, reason), Idle()]
 
     def _succeed(self, now: float) -> list[Effect]:
         task = self._task

@@ -34,6 +34,7 @@ ODD = (
     "rejects",
     "stubborn",
     "fails",
+    "gives-up",
     "old-clock",
     "other-frame",
     "no-actions",
@@ -49,6 +50,8 @@ ACTIONS: dict[str, tuple[Any, Any]] = {
     "follow_waypoints": (FollowWaypoints, lambda goal: goal.poses),
 }
 TICK = 0.1
+GIVES_UP_AT = 22.0
+"""metres."""
 LATE = 1.5
 """seconds in which a robot thinks about a goal, and a cancel that comes meanwhile finds none."""
 MASK_PLACES = {"road": (20.0, 8.0), "excavation": (95.0, 151.0)}
@@ -138,7 +141,7 @@ class Robot(Node):
         say("goal", kind=kind.__name__, id=bytes(goal.goal_id.uuid).hex(), points=self.points)
         result = kind.Result()
         while rclpy.ok():
-            if "fails" in self.options.odd:
+            if "fails" in self.options.odd or ("gives-up" in self.options.odd and self.x > GIVES_UP_AT):
                 result.error_code, result.error_msg = 9003, "a test asked for it"
                 goal.abort()
                 break

@@ -395,6 +395,20 @@ def test_only_the_newest_goals_that_were_given_up_are_remembered(tasks):
     assert len(tasks._given_up) == MOST_GIVEN_UP and goal_id(0) not in tasks._given_up
 
 
+def test_a_goal_of_an_earlier_process_that_has_ended_is_told_once(tasks):
+    former = {goal_id(6): GoalStatus.SUCCEEDED, goal_id(7): GoalStatus.ABORTED}
+    assert tasks.statuses_came(RosAction.TO_POSE, former, 0.0) == [] and tasks.step(NAV2, 1.0) == []
+    told, idle = tasks.step(NAV2, 2.0)
+    assert (told.message, idle) == (7, Idle()) and "the robot gave up" in told.refusal
+    assert tasks.statuses_came(RosAction.TO_POSE, former, 3.0) == [] and tasks.step(NAV2, 6.0) == []
+
+
+def test_of_an_ended_goal_nothing_is_told_while_another_server_drives_a_newer_one(tasks):
+    statuses(tasks, GoalStatus.CANCELED, message=7)
+    statuses(tasks, GoalStatus.EXECUTING, message=8, action=RosAction.FOLLOW_PATH, now=1.9)
+    assert tasks.step(NAV2, 2.0) == [] and tasks.goal == goal_id(8)
+
+
 @pytest.fixture
 def patient():
     """Tasks of a robot whose server was just lost from sight, with an order that waits for it."""

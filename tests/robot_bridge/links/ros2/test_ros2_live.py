@@ -340,6 +340,18 @@ def test_a_goal_that_ended_while_the_adapter_was_away_is_over(desk, robot, adapt
     desk.wait_for_step(f"go-{far}", "reached", 10)
 
 
+def test_a_goal_that_the_robot_gave_up_while_the_adapter_was_away_has_failed(desk, robot, adapter, nodes):
+    name = robot(*SLOW, "--odd", "gives-up")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=90.0, y=8.0)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
+    adapter.kill()
+    desk.until(lambda: desk.robots[name]["state"] == "lost", 20)
+    wait_until(lambda: events(nodes, name, "goal ended"), 20)
+    adapter.start()
+    desk.wait_for_step(f"go-{name}", "failed", 10)
+    assert "the robot gave up while this link was away" in steps(desk, f"go-{name}")[-1]["reason"]
+
+
 def test_a_node_that_started_anew_while_the_adapter_was_away_is_sent_again(desk, robot, adapter, nodes):
     name = robot(*SLOW)
     desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0)
