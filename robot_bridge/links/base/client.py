@@ -34,7 +34,7 @@ from ...core.messages.safety import Ability
 from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
-from .adapter import Adapter
+from .adapter import Adapter, summary
 from .errors import CommandRefusedError, FrameChangedError, LinkError
 from .frames import LinkFrame
 from .linked_robots import Commanding, Kept, LinkedRobot, frame_of, gps_call
@@ -79,6 +79,8 @@ class LinkClient:
         self._is_welcome = False
         self._status = LinkStatus(ok=True)
         self._reported_fault: str | None = None
+        self._refused: dict[str, str] = {}
+        """Why the gateway does not let robots in, such as one of a name that another link speaks for."""
         self._site: SiteReport | None = None
         self._frame: LinkFrame | None = None
         self._is_known = asyncio.Event()
@@ -138,6 +140,7 @@ class LinkClient:
     def remove(self, robot: str) -> None:
         """Speak for ``robot`` no more."""
         known = self._robots.pop(robot, None)
+        self._note_refusal(robot, None)
         if known is not None:
             self._commanding.drop(robot)
             for kept in known.kept:
@@ -177,6 +180,12 @@ class LinkClient:
 
     def give_up(self, robot: str, command: int, reason: str) -> None:
         """Tell that ``robot`` gave up a command that it had taken on."""
+        if not self._memory.has_begun(robot, command):
+            # Of another database, where this number is another command's.
+            log.warning(
+                "robot %s gave up message %d, which is none of this gateway: %s", robot, command, reason
+            )
+            return
         self._keep(robot, OpAck(id=command, ok=False, reason=reason))
 
     async def ask(self, robot: str, request: Request) -> OpAck:
@@ -260,6 +269,7 @@ class LinkClient:
 
     def _lose(self) -> None:
         self._is_welcome = False
+        self._refused.clear()
         for robot in self._robots.values():
             robot.lose()
 
@@ -450,6 +460,10 @@ class LinkClient:
         if self._reported_fault is not None:
             text = f"{self._reported_fault}; its robots take on nothing, and can be stopped"
             status = LinkStatus(False, "; ".join(filter(None, (text, status.text))), status.counts, True)
+        if self._refused:
+            text = f"not let in: {summary([f'{robot}: {why}' for robot, why in self._refused.items()])}"
+            reached = True if status.ok else status.reached
+            status = LinkStatus(False, "; ".join(filter(None, (status.text, text))), status.counts, reached)
         self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
 
     async def _watch_memory(self) -> None:
@@ -488,6 +502,7 @@ class LinkClient:
         if reply.error is None and ack.get("ok", True):
             self._addresses.learn(ack.get("gateways"))
             robot.admit()
+            self._note_refusal(robot.name, None)
             self._adapter.admitted(robot.name)
             self._wake_soon()
             for kept in robot.untold():
@@ -495,8 +510,19 @@ class LinkClient:
             return
         reason = reply.error or str(ack.get("reason"))
         log.warning("robot %s is not let in: %s", robot.name, reason)
+        self._note_refusal(robot.name, reason)
         self._adapter.refused(robot.name, reason)
         self._ready_later(robot)
+
+    def _note_refusal(self, robot: str, reason: str | None) -> None:
+        """Have operators see which robots are not let in, and why."""
+        known = robot in self._refused
+        if reason is None or robot not in self._robots:
+            self._refused.pop(robot, None)
+        else:
+            self._refused[robot] = reason
+        if self._is_welcome and known != (robot in self._refused):
+            self._say_status()
 
     def _ready_later(self, robot: LinkedRobot) -> None:
         asyncio.get_running_loop().call_later(robot.next_wait(), self._say_ready, robot)

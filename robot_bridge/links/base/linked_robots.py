@@ -203,7 +203,7 @@ class Commanding:
             self.drop(robot)
 
     async def calm(self, robot: str) -> str | None:
-        """Stop a robot without being asked to; return None, or why its side has not confirmed that in time."""
+        """Stop a robot without being asked to; return None, or why its side has not confirmed that."""
         self.drop(robot)
         return await self._stopped(robot, emergency=False)
 

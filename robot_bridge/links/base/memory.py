@@ -5,12 +5,14 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import errno
+import fcntl
 import json
 import logging
 import os
 import secrets
+import time
 from collections import OrderedDict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import AsyncIterator, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -27,6 +29,8 @@ MOST_DONE = 1000
 """messages of one robot that are remembered: many more than a gateway ever has on their way to it."""
 LONGEST_FILE = 256 << 20
 """bytes."""
+LOCKED_FOR = 5.0
+"""seconds for the link's process before to end."""
 PASSING = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO})
 """errors of a file that was set up well: its disk is full or broken. A link stops its robots all the same."""
 
@@ -129,6 +133,10 @@ class LinkMemory:
         """Return what came of a message, None where it was never finished."""
         known = self._robots.get(robot)
         return None if known is None else known.begun.get(id)
+
+    def has_begun(self, robot: str, id: int) -> bool:
+        """Tell whether a message of this database was ever begun."""
+        return robot in self._robots and id in self._robots[robot].begun
 
     def taken_on(self, robot: str) -> list[int]:
         """Return the newest messages that a robot took on: what it does is for one of them."""
@@ -276,6 +284,51 @@ class LinkMemory:
                 else:
                     refusal = {} if done.refusal is None else {"refusal": done.refusal}
                     yield {"robot": name, "done": id, **refusal}
+
+
+@contextlib.asynccontextmanager
+async def only_process(memory: Path, within: float = LOCKED_FOR) -> AsyncIterator[None]:
+    """Keep other processes from running the link of this memory: they would command the same robots.
+
+    The one before may still be ending, for ``within`` seconds.
+
+    :raises LinkError: where another one runs.
+    """
+    lock = memory.with_suffix(".lock")
+    try:
+        file = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+    except OSError as error:
+        # That of the memory says the same, and what to do; a full disk keeps no link from stopping robots.
+        log.warning("%s cannot be written, so a second process would not be noticed: %s", lock, error)
+        yield
+        return
+    try:
+        until = time.monotonic() + within
+        while not _locked(file):
+            if time.monotonic() >= until:
+                pid = os.pread(file, 20, 0).decode("ascii", "replace").strip() or "unknown"
+                raise LinkError(
+                    f"link {memory.stem} runs already on this computer, as process {pid}, and two would "
+                    f"command the same robots; end that one (it holds {lock})"
+                )
+            await asyncio.sleep(0.1)
+        with contextlib.suppress(OSError):
+            os.ftruncate(file, 0)
+            os.pwrite(file, str(os.getpid()).encode(), 0)
+        yield
+    finally:
+        os.close(file)
+
+
+def _locked(file: int) -> bool:
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError as error:
+        # Some network folders have no locks.
+        log.warning("a second process of this link would not be noticed: %s", error.strerror or error)
+    return True
 
 
 def _write_lines(file: Path, lines: Iterable[dict[str, Any]]) -> None:

@@ -13,7 +13,7 @@ from ...core.parent_process import call_at_end_of_input, notify
 from .adapter import Adapter
 from .client import LinkClient
 from .errors import FrameChangedError, LinkError
-from .memory import LinkMemory
+from .memory import LinkMemory, only_process
 from .settings import LinkSettings
 
 log = logging.getLogger(__name__)
@@ -42,6 +42,11 @@ async def _serve_frames(load: Load) -> None:
 
 async def serve(settings: LinkSettings, adapter: Adapter) -> None:
     """Run an adapter and its connection to the gateway until one of them fails, or this is cancelled."""
+    async with only_process(settings.memory_file):
+        await _connect(settings, adapter)
+
+
+async def _connect(settings: LinkSettings, adapter: Adapter) -> None:
     client = LinkClient(settings, adapter, LinkMemory(settings.memory_file))
     connecting = asyncio.create_task(client.run())
     adapting = asyncio.create_task(_adapt(client, adapter))

@@ -261,7 +261,7 @@ class Vda5050Adapter(Adapter):
             if kept is None or kept.basis in ("", self._basis(robot, kept)):
                 return made(kept)
             log.warning("vehicle %s: what it was to do is given up: its settings have changed", identity)
-            # Before anything is kept of it by the settings of now. What was asked of a former name is done by nobody.
+            # Before anything is kept of it by the settings of now. What a former name was asked nobody does.
             for name in {kept.basis.partition(" ")[0], robot} if self._link is not None else ():
                 self._link.adrift(name)
             return made(kept.without_task())

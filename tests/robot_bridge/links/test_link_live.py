@@ -184,6 +184,38 @@ def test_a_robot_of_a_link_and_one_of_its_own_are_told_apart(bridge, link, desk,
         link.do("add", names[1], DRIVES)
         wait_until(lambda: link.adapter.refusals)
         assert "another robot runs as" in link.adapter.refusals[0][1]
+        desk.until(lambda: "another robot runs as" in str(link_of(desk, "test").get("text")), 20)
+    desk.until(lambda: link_of(desk, "test").get("text") is None, 40)
+
+
+def link_of(desk, name):
+    return next((one for one in desk.links if one["link"] == name), {})
+
+
+def test_of_two_links_with_one_robot_one_commands_it_and_operators_are_told(
+    bridge, link, desk, names, tmp_path
+):
+    place(link, desk, names[:1])
+    second = LinkOnTheLine(bridge, tmp_path, name="second")
+    try:
+        second.do("add", names[0], DRIVES)
+        desk.until(
+            lambda: f"{names[0]}: another robot runs as" in str(link_of(desk, "second").get("text")), 20
+        )
+        desk.send(f"go-{names[0]}", names[0], "SetPosEnd", x=40.0, y=8.0)
+        desk.wait_for_step(f"go-{names[0]}", "acknowledged")
+        desk.send(f"stop-{names[0]}", names[0], "Abort")
+        desk.wait_for_step(f"stop-{names[0]}", "acknowledged")
+        assert (second.adapter.commands, second.adapter.stops) == ([], [])
+        assert link.adapter.stops == [(names[0], False)]
+        # An emergency stop goes to both: who drives a robot may not be who is let in.
+        desk.ask("emergency_stop", {"command": f"all-{names[0]}"})
+        wait_until(
+            lambda: (names[0], True) in link.adapter.stops and (names[0], True) in second.adapter.stops
+        )
+        desk.ask("clear_emergency_stop", {})
+    finally:
+        second.end()
 
 
 class bridge_robot:  # noqa: N801 - reads as a function

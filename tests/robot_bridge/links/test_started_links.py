@@ -16,8 +16,9 @@ from robot_bridge.core.sites.settings_tables import LinkOptions
 from robot_bridge.gateway.fleet import link_supervision
 from robot_bridge.gateway.fleet.link_supervision import LinkProcesses
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.bridge.link_process import LinkProcess
 from tests.support.patience import BUSY
-from tests.support.processes import is_running
+from tests.support.processes import Processes, is_running
 
 SETTINGS = 'kind = "tracker"\n[tracker]\nnmea_udp = "127.0.0.1:0"\n[tracker.names]\n1 = "car-1"\n'
 
@@ -84,6 +85,23 @@ def test_links_are_started_again_and_told_of_and_end_with_their_gateway(bridge):
     bridge.gateway.terminate()
     assert bridge.gateway.wait(BUSY * 10) == 0
     assert not is_running(third)
+
+
+def test_a_link_that_is_started_twice_runs_once(bridge, tmp_path):
+    file = tmp_path / "vans.toml"
+    file.write_text(f'{SETTINGS}[gateway]\nurl = "{bridge.address}/link"\n', encoding="utf-8")
+    with Processes(tmp_path / "logs") as processes:
+        first, second = (LinkProcess(processes, "tracker", file) for _ in range(2))
+        first.start()
+        desk = bridge.desk()
+        desk.until(lambda: (reported(desk, "vans") or {}).get("up"), 20)
+        second.start()
+        assert second.process.wait(BUSY * 20) != 0
+        assert f"link vans runs already on this computer, as process {first.process.pid}" in second.output()
+        assert first.process.poll() is None
+        first.kill()
+        second.start()
+        wait_until(lambda: (tmp_path / "vans.lock").read_text() == str(second.process.pid), 20)
 
 
 async def test_a_link_that_cannot_even_be_tried_keeps_no_other_from_going_on(tmp_path, monkeypatch):

@@ -16,7 +16,7 @@ from robot_bridge.links.base import client
 from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
-from robot_bridge.links.base.memory import LinkMemory
+from robot_bridge.links.base.memory import CompletedCall, LinkMemory
 from robot_bridge.protocol import jsonrpc
 from tests.support.bridge.adapter_on_the_line import LinkOnTheLine, ObedientAdapter
 
@@ -102,6 +102,7 @@ async def test_what_a_robot_gave_up_is_told_to_no_gateway_with_another_database(
             await gateway.connection.close()
             while link.client.is_connected:
                 await asyncio.sleep(0.01)
+            link.client._memory._note("r1", 5, CompletedCall())
             # Message 5 is another one there, and maybe on its way to the robot.
             await asyncio.to_thread(link.do, "give_up", "r1", 5, "no path")
             gateway.let_in.clear()

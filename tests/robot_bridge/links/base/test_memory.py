@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 
 import pytest
 
 from robot_bridge.links.base.errors import LinkError
-from robot_bridge.links.base.memory import MOST_DONE, CompletedCall, LinkMemory
+from robot_bridge.links.base.memory import MOST_DONE, CompletedCall, LinkMemory, only_process
 
 
 @pytest.fixture
@@ -130,3 +132,35 @@ async def test_robots_are_adrift_with_another_database_or_in_another_frame(file)
     memory.clear_adrift("agv-1")
     memory = LinkMemory(file)
     assert memory.use_database("two", "there") is False and not memory.is_adrift("agv-1")
+
+
+PROCESS = """
+import asyncio, pathlib, sys
+from robot_bridge.links.base.memory import only_process
+async def run():
+    async with only_process(pathlib.Path(sys.argv[1])):
+        print("runs", flush=True)
+        await asyncio.Event().wait()
+asyncio.run(run())
+"""
+
+
+async def test_a_second_process_of_a_link_is_refused_until_the_first_has_ended(file):
+    first = subprocess.Popen([sys.executable, "-c", PROCESS, file], stdout=subprocess.PIPE)
+    try:
+        assert first.stdout.readline() == b"runs\n"
+        with pytest.raises(LinkError, match=f"link agvs runs already.*process {first.pid}"):
+            async with only_process(file, 0.2):
+                pass
+        first.kill()
+        async with only_process(file, 20.0):
+            pass
+    finally:
+        first.kill()
+        first.wait()
+        first.stdout.close()
+
+
+async def test_a_folder_without_locks_keeps_no_link_from_running(tmp_path, caplog):
+    async with only_process(tmp_path / "none" / "agvs.state"):
+        assert "would not be noticed" in caplog.text
