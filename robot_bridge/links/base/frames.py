@@ -39,6 +39,21 @@ class FrameSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     scale: bool = False
     largest_residual_m: float = 1.0
 
+    def check_metres(self, where: str) -> None:
+        """Raise LinkError for coordinates in degrees, which robots that are sent somewhere do not speak.
+
+        ``where`` is file and key.
+        """
+        try:
+            in_degrees = self.crs == WGS84 or (self.crs not in (SITE, UTM) and crs_of(self.crs).is_geographic)
+        except CrsError as error:
+            raise LinkError(f"{where}.crs: {error}") from None
+        if in_degrees:
+            raise LinkError(
+                f"{where}.crs = {self.crs!r}: these robots are sent metres, and it is in degrees; write "
+                "'site', 'utm', or a projected CRS such as 'EPSG:32633'"
+            )
+
 
 @dataclass(frozen=True)
 class Similarity:

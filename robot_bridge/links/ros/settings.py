@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from pathlib import Path
 from typing import Literal
 
 import msgspec
 
 from ..base.errors import LinkError
+from ..base.settings import LinkSettings
 from .effects import RosAction
 from .errors import RosError, RosNameError
 
@@ -148,8 +148,10 @@ def distribution_names() -> str:
     return ", ".join(DISTRIBUTIONS)
 
 
-def check_robots(settings: RobotSettings, table: str, file: Path) -> None:
+def check_robots(settings: RobotSettings, table: str, link: LinkSettings) -> None:
     """Raise LinkError, naming file and key of ``table``, for what the types alone do not refuse."""
+    file = link.file
+    link.frame.check_metres(f"{file}: frame")
     where = f"{file}: {table}"
     if settings.distribution not in DISTRIBUTIONS:
         raise LinkError(

@@ -60,13 +60,13 @@ class Ros2Settings(RobotSettings, frozen=True, forbid_unknown_fields=True):
         return DdsSettings(self.domain, self.range, self.interfaces, self.peers, security)
 
 
-def check(settings: Ros2Settings, file: Path) -> None:
+def check(settings: LinkSettings, own: Ros2Settings) -> None:
     """Raise LinkError, naming file and key, for what the types alone do not refuse."""
-    check_robots(settings, "ros2", file)
+    check_robots(own, "ros2", settings)
     try:
-        settings.dds(file.resolve().parent)
+        own.dds(settings.folder)
     except RosError as error:
-        raise LinkError(f"{file}: ros2.{error}") from None
+        raise LinkError(f"{settings.file}: ros2.{error}") from None
 
 
 # --- Readers of one robot's topics over DDS ---
@@ -483,5 +483,5 @@ class Ros2Adapter(RosAdapter[Offers]):
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
     """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
     settings, table = read_settings(file, "ros2", Ros2Settings)
-    check(table, file)
+    check(settings, table)
     return settings, Ros2Adapter(table, settings.state_folder / f"{settings.name}.servers")

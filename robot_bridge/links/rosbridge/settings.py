@@ -71,7 +71,7 @@ def server_of(settings: LinkSettings, own: RosbridgeSettings) -> Server:
 def check(settings: LinkSettings, own: RosbridgeSettings) -> None:
     """Raise LinkError, naming file and key, for what the types alone do not refuse."""
     file = settings.file
-    check_robots(own, "rosbridge", file)
+    check_robots(own, "rosbridge", settings)
     parts = urlsplit(own.url)
     if parts.scheme not in ("ws", "wss") or not parts.hostname or parts.username:
         raise LinkError(f"{file}: rosbridge.url = {own.url[:80]!r}: write it as ws://robots.example:9090")

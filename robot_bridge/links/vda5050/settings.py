@@ -15,7 +15,7 @@ from ...core.errors import AccessError
 from ...core.gateway_addresses import client_context
 from ...core.messages.base import ROBOT_NAME
 from ..base.errors import LinkError
-from ..base.frames import WGS84, FrameSettings, LinkFrame
+from ..base.frames import FrameSettings, LinkFrame
 from ..base.settings import LinkSettings
 from .messages import Topics, Vda5050Error, VehicleId
 from .presence import MapFrame
@@ -184,11 +184,7 @@ def check(settings: LinkSettings, own: Vda5050Settings) -> None:
 def _check_frames(settings: LinkSettings, own: Vda5050Settings) -> None:
     frames = {"frame": settings.frame, **{f"vda5050.maps.{id}": one for id, one in own.maps.items()}}
     for key, frame in frames.items():
-        if frame.crs == WGS84:
-            raise LinkError(
-                f"{settings.file}: {key}.crs = {WGS84!r}: vehicles speak in metres; write 'site', 'utm', or "
-                "a projected CRS such as 'EPSG:32633'"
-            )
+        frame.check_metres(f"{settings.file}: {key}")
 
 
 def topics(own: Vda5050Settings) -> Topics:

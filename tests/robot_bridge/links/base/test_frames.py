@@ -75,3 +75,13 @@ def test_settings_of_no_frame_are_named_with_file_and_key(settings, reason):
     with pytest.raises(LinkError, match=re.escape(reason)) as refused:
         LinkFrame(settings, SITE, "links/agvs.toml")
     assert str(refused.value).startswith("links/agvs.toml: frame.")
+
+
+@pytest.mark.parametrize("crs", ["wgs84", "EPSG:4326"])
+@pytest.mark.parametrize("kind", ["ros2", "rosbridge", "vda5050"])
+def test_robots_that_are_sent_somewhere_speak_no_degrees(tmp_path, kind, crs):
+    load = pytest.importorskip(f"robot_bridge.links.{kind}.adapter").load
+    file = tmp_path / "agvs.toml"
+    file.write_text(f'[frame]\ncrs = "{crs}"\n[{kind}]\n', encoding="utf-8")
+    with pytest.raises(LinkError, match=f"agvs.toml: frame.crs = '{crs}': these robots are sent metres"):
+        load(file)

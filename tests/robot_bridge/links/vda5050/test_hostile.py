@@ -176,5 +176,5 @@ def test_on_a_full_disk_no_order_is_published_and_every_stop_is(adapter, tmp_pat
 
 @pytest.mark.parametrize("table", ["frame", "vda5050.maps.hall"])
 def test_coordinates_in_degrees_are_refused(tmp_path, table):
-    with pytest.raises(LinkError, match=f"{table}.crs = 'wgs84': vehicles speak in metres"):
+    with pytest.raises(LinkError, match=f"{table}.crs = 'wgs84': these robots are sent metres"):
         make(tmp_path, f"[{table}]", 'crs = "wgs84"')
