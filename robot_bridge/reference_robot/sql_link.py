@@ -7,13 +7,15 @@ import contextlib
 import json
 import logging
 from collections.abc import Sequence
+from pathlib import Path
 
-from sqlalchemy import URL, Connection
+from sqlalchemy import URL, Connection, make_url
 
 from ..core.errors import StoreError
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Alive, OpAck, Ready, Request, SendPos
 from ..gateway.storage.database import Database
+from ..gateway.storage.dialects import GONE
 from ..gateway.storage.repositories import requests as answers
 from ..gateway.storage.repositories.requests import AnswerRow
 from ..gateway.storage.wakeups import robot_channel
@@ -30,7 +32,10 @@ class RobotSqlLink:
     """Writes what the agent says as it says it, and hands it what is answered as soon as it is there."""
 
     def __init__(self, database: str | URL, robot: str) -> None:
+        self._address = make_url(database)
         self._database = Database(database)
+        self._file = self._inode()
+        """Which file of SQLite it reads, None on a server."""
         self._robot = robot
         self._outgoing: list[Request] = []
         self._magic: int | None = None
@@ -62,6 +67,8 @@ class RobotSqlLink:
                     await wakeup.wait(found=await self._turn(agent))
                 except StoreError as error:
                     await self._wait_for_the_database(error)
+                    if GONE in str(error):
+                        await self._follow_file(agent)
         finally:
             await wakeup.close()
 
@@ -76,6 +83,32 @@ class RobotSqlLink:
     async def _wait_for_the_database(self, error: StoreError) -> None:
         log.warning("%s; trying again in %g s", error, RETRY_AFTER)
         await asyncio.sleep(RETRY_AFTER)
+
+    async def _follow_file(self, agent: Agent) -> None:
+        """Open SQLite's file again: another may be there, by which a gateway has to reach the robot.
+
+        Not in the midst of a turn: what was read in one file is deleted and acknowledged in no other.
+        """
+        file = self._inode()
+        if file is None:
+            return
+        former, self._database = self._database, Database(self._address)
+        await former.close()
+        if file == self._file:
+            # Its log may be another one.
+            return
+        log.warning("robot %s goes on with the file that has taken the place of its database", self._robot)
+        self._file = file
+        self._outgoing = [one for one in self._outgoing if not isinstance(one, OpAck)]
+        agent.greet()
+
+    def _inode(self) -> tuple[int, int] | None:
+        path = self._address.database if self._address.get_backend_name() == "sqlite" else None
+        try:
+            status = None if path is None else Path(path).stat()
+        except OSError:
+            return None
+        return None if status is None else (status.st_dev, status.st_ino)
 
     async def _turn(self, agent: Agent) -> bool:
         rows = await self._database.read(answers.read_answers, self._robot)

@@ -303,7 +303,8 @@ _DESCRIPTORS = Path("/proc/self/fd")
 """The files that this process has open, where the system has that."""
 _BESIDE = ("", "-wal", "-shm")
 """How the names end of a database's file, of its log and of the index of that."""
-_GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
+GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
+"""What is said of a file of SQLite where another one, or none, is by now."""
 
 
 class SQLite(Dialect):
@@ -347,7 +348,7 @@ class SQLite(Dialect):
     def _begin(self, connection: Connection) -> None:
         opened: _Opened | None = connection.info.get("opened")
         if opened is not None and (gone := opened.missing()) is not None:
-            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{gone} {_GONE}"))
+            raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{gone} {GONE}"))
         mode = connection.info.get("mode", Durability.WRITE)
         # Through the driver, here and below: through SQLAlchemy each takes several times as long.
         driver = connection.connection.driver_connection

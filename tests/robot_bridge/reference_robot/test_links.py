@@ -75,6 +75,27 @@ async def on_sql(database, tmp_path):
     await asyncio.gather(running, return_exceptions=True)
 
 
+async def test_on_sql_it_goes_on_with_the_file_that_has_taken_the_place_of_its_database(
+    database, on_sql, tmp_path
+):
+    other = Database(f"sqlite:///{tmp_path}/other.db")
+    await other.open()
+    await other.run(answers.add_answers, [("r1", SetPosEnd(5.0, 0.0)), ("r1", Abort())])
+    await other.close()
+    for end in ("-wal", "-shm"):
+        (tmp_path / f"fleet.db{end}").unlink(missing_ok=True)
+    (tmp_path / "other.db").replace(tmp_path / "fleet.db")
+    here = Database(f"sqlite:///{tmp_path}/fleet.db")
+    try:
+        async with asyncio.timeout(30):
+            while [one for one in await said(here, 3) if one[0] == "OpAck"] != [("OpAck", 1), ("OpAck", 2)]:
+                await asyncio.sleep(0.02)
+        assert "Ready" in [name for name, _ in await said(here, 3)]
+        assert await here.read(answers.read_answers, "r1") == []
+    finally:
+        await here.close()
+
+
 async def test_on_sql_it_says_where_it_is_before_it_acknowledges_an_abort(database, on_sql):
     await database.run(answers.add, "r1", SetPosEnd(5.0, 0.0))
     id = await database.run(answers.add, "r1", Abort())
