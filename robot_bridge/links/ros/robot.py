@@ -316,7 +316,7 @@ class RosRobot(Generic[Network]):
             await taken
         except asyncio.CancelledError:
             self._overtaken.add(id)
-            self._tasks.withdraw(id)
+            self._run(self._tasks.withdraw(id, time.monotonic()))
             raise
         finally:
             self._commands.pop(id, None)

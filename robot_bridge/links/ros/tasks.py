@@ -284,10 +284,18 @@ class Tasks:
             self._stop.restart(now)
         return [*effects, *self.step(abilities, now)]
 
-    def withdraw(self, message: int) -> None:
-        """Forget an order that is held: nobody waits for it any more."""
+    def withdraw(self, message: int, now: float) -> list[Effect]:
+        """Give up an order that was not taken on yet: nobody waits for it any more, or believes in it."""
         if self._held is not None and self._held.message == message:
             self._held = None
+        if self._waiting is not None and self._waiting.message == message:
+            self._waiting = None
+        task = self._task
+        if task is None or task.message != message or task.taken or task.action is None:
+            return []
+        self._give_up(task, now, stopped=True)
+        self._task = None
+        return [CancelGoals(task.action, task.goal)]
 
     def goal_answered(self, action: RosAction, accepted: bool, now: float) -> None:
         """Take in a reply to ``send_goal``, maybe to another client: the status topic says more."""

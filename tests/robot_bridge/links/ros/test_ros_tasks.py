@@ -438,8 +438,15 @@ def test_a_stop_ends_a_target_that_waits_and_goes_out_at_once(patient):
 
 
 def test_a_target_that_waits_is_not_sent_once_nobody_waits_for_it(patient):
-    patient.withdraw(7)
+    assert patient.withdraw(7, 0.5) == []
     assert patient.step(NAV2, 1.0) == []
+
+
+def test_a_goal_that_is_taken_on_when_nobody_waits_for_it_any_more_is_stopped(tasks):
+    tasks.order(7, TARGET, NAV2, 0.0)
+    assert tasks.withdraw(7, 1.0) == [CancelGoals(RosAction.TO_POSE, goal_id(7))]
+    assert statuses(tasks, GoalStatus.EXECUTING, now=2.0) == []
+    assert CancelGoals(RosAction.TO_POSE) in tasks.step(NAV2, 2.0) + tasks.step(NAV2, 2.1)
 
 
 def test_a_newer_target_takes_the_place_of_one_that_waits(patient):

@@ -303,6 +303,27 @@ def test_actions_of_another_distribution_are_named_and_the_rest_is_used(bridge, 
         nodes.end(name)
 
 
+def test_a_goal_that_is_taken_on_too_late_is_not_driven(bridge, nodes, desk, tmp_path):
+    """Its command has failed by then."""
+    name, file = f"robot{next(NUMBERS)}", tmp_path / "hasty.toml"
+    settings = SETTINGS.format(
+        address=bridge.address, domain=nodes.other_domain, distribution=nodes.distribution, resolution=COARSE
+    )
+    settings = settings.replace("image_every_s", "hold_s = 0.0\nimage_every_s")
+    file.write_text(f"answer_within_s = 0.5\n{settings}", encoding="utf-8")
+    with Processes(tmp_path / "logs") as processes:
+        ros2_link(processes, file).start()
+        nodes.start(name, *SLOW, "--odd", "late-goals", domain=nodes.other_domain)
+        desk.wait_for_robots(name, seconds=BUSY * 10)
+        desk.wait_for_abilities(name, "targets")
+        desk.send(f"go-{name}", name, "SetPosEnd", x=90.0, y=8.0)
+        desk.wait_for_step(f"go-{name}", "failed")
+        assert "did not take it on within 0.5 s" in steps(desk, f"go-{name}")[-1]["reason"]
+        wait_until(lambda: events(nodes, name, "goal ended"), 10)
+        assert desk.robots[name]["x"] < 30.0
+        nodes.end(name)
+
+
 def test_a_node_that_is_killed_and_started_anew_is_sent_again_what_is_open(desk, robot, nodes):
     # Until its lease is over it counts as the one that has the goal.
     name = robot(*SLOW, short_lease=True)
