@@ -262,8 +262,9 @@ class Vda5050Adapter(Adapter):
                 return made(kept)
             log.warning("vehicle %s: what it was to do is given up: its settings have changed", identity)
             # Before anything is kept of it by the settings of now. What a former name was asked nobody does.
-            for name in {kept.basis.partition(" ")[0], robot} if self._link is not None else ():
-                self._link.adrift(name)
+            if self._link is not None:
+                for name in {kept.basis.partition(" ")[0], robot}:
+                    self._link.adrift(name)
             return made(kept.without_task())
         except Vda5050Error as error:
             log.error("vehicle %s begins without what was kept: %s", identity, error)
