@@ -267,7 +267,7 @@ class LayerReadings:
         try:
             while (before := self._threads.get(id)) is not None and before.is_reading:
                 yield from before.wait_for_end()
-            self._threads[id] = thread = ReadingThread(reader.read)
+            self._threads[id] = thread = ReadingThread(reader)
             thread.start()
             reading = yield from thread.result()
         except StalledError as error:

@@ -187,23 +187,29 @@ class LayerFacts(NamedTuple):
     crs: QgsCoordinateReferenceSystem
 
 
-def _features(layer: QgsVectorLayer, name: str) -> Steps[list[QgsFeature]]:
-    chosen = layer.selectedFeatureIds()
-    source = QgsVectorLayerFeatureSource(layer)
-    request = QgsFeatureRequest(chosen) if chosen else QgsFeatureRequest()
+class _FeatureReader:
+    """Reads the features with the ids in ``chosen``, or as many of a layer as a queue takes; counts all."""
 
-    def read(go_on: Callable[[], bool]) -> tuple[list[QgsFeature], int]:
+    def __init__(self, layer: QgsVectorLayer, chosen: Sequence[int]):
+        self._source = QgsVectorLayerFeatureSource(layer)
+        self._request = QgsFeatureRequest(list(chosen)) if chosen else QgsFeatureRequest()
+        self._most = len(chosen) or LONGEST_QUEUE
+
+    def read(self, go_on: Callable[[], bool]) -> tuple[list[QgsFeature], int]:
         first: list[QgsFeature] = []
         count = 0
-        for feature in source.getFeatures(request):
+        for feature in self._source.getFeatures(self._request):
             count += 1
-            if chosen or count <= LONGEST_QUEUE:
+            if count <= self._most:
                 first.append(feature)
             if not go_on():
                 break
         return first, count
 
-    thread = ReadingThread(read)
+
+def _features(layer: QgsVectorLayer, name: str) -> Steps[list[QgsFeature]]:
+    chosen = layer.selectedFeatureIds()
+    thread = ReadingThread(_FeatureReader(layer, chosen))
     thread.start()
     try:
         features, count = yield from thread.result()

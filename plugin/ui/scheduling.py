@@ -6,7 +6,7 @@ import math
 import threading
 import time
 from collections.abc import Callable, Generator
-from typing import Any, Generic, TypeVar
+from typing import Any, Generic, Protocol, TypeVar
 
 from qgis.core import QgsTask
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
@@ -19,6 +19,7 @@ from .errors import FleetError
 # drawn, and what they call of QGIS keeps Python to itself as long as it takes.
 
 T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
 Steps = Generator[float, None, T]
 """Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
 
@@ -196,18 +197,24 @@ class StalledError(Exception):
     """A thread has made no progress for as long as anybody waits for it."""
 
 
-class ReadingThread(threading.Thread, Generic[T]):
-    """Reads what may hang for ever: a database, a share, a server.
+class Reader(Protocol[T_co]):
+    """Reads something in a thread of its own."""
 
-    ``read`` calls what it is called with for each thing that it has read, and ends when that returns false.
+    def read(self, go_on: Callable[[], bool]) -> T_co:
+        """Return what was read; ``go_on`` is called for each part, and the reading ends when it says no."""
+
+
+class ReadingThread(threading.Thread, Generic[T]):
+    """Has a reader read what may hang for ever: a database, a share, a server.
+
     A thread of its own and no task of QGIS: those share their few threads with the drawing of the map, where
     the layers of a server that hangs keep all of them.
     """
 
-    def __init__(self, read: Callable[[Callable[[], bool]], T]):
+    def __init__(self, reader: Reader[T]):
         # QGIS can be closed while it hangs.
         super().__init__(name="fleet reading", daemon=True)
-        self._read = read
+        self._reader = reader
         self._progress_at = time.monotonic()
         self._ended = threading.Event()
         self._is_cancelled = False
@@ -221,7 +228,7 @@ class ReadingThread(threading.Thread, Generic[T]):
 
     def run(self) -> None:
         try:
-            self._result = self._read(self._progressed)
+            self._result = self._reader.read(self._progressed)
         except Exception as error:  # raised again by whoever waits
             self._error = error
         finally:
