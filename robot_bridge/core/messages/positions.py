@@ -193,7 +193,7 @@ class RobotReport:
     """One robot as the gateway knows it. ``age`` is seconds since its last message, when this was sent.
 
     A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None. ``device_time``
-    and ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since its pose came in, by the
+    and ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since it had its pose, by the
     gateway's. ``latency`` is the seconds that the robot's link took there and back when last measured.
     ``paths`` is what the robot declared in Ready about its paths, None of one that declared nothing: it
     drives straight to a target, and places no cone at the end of a path. ``abilities`` are what it can do,

@@ -33,7 +33,7 @@ from ..model.events import (
     RobotLeft,
 )
 from ..model.fence_stays import DONE, Clearances, FoundStays, Stay, Stays, find_stays, finite_places
-from ..model.robot_columns import FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
+from ..model.robot_columns import DOUBTED, FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
@@ -308,7 +308,7 @@ class GeofenceWatch:
         """Return the robots that may be anywhere; those that have gone offline stand where they were."""
         lost_after = self._site.settings.liveness.lost_after_s
         is_recent = now - places.table[POSE_AT] < lost_after
-        seen = (places.states == FRESH) & ((places.flags & LOCATED) > 0) & is_recent
+        seen = (places.states == FRESH) & ((places.flags & (LOCATED | DOUBTED)) == LOCATED) & is_recent
         rows = np.flatnonzero((places.states != OFFLINE) & ~seen)
         return sorted(places.names[row] for row in rows.tolist())
 

@@ -518,7 +518,8 @@ class Fleet:
     def _moved(self, robot: str, pose: SendPos, now: float) -> Awaitable[None] | None:
         self._saving.observe(now, [(robot, pose)])
         self.maps.located([(robot, pose)])
-        return self._book.observe(robot, pose)
+        # A place where it was a while ago says neither that it stands nor that it has arrived.
+        return None if self.robots.is_doubted(robot) else self._book.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
         """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""

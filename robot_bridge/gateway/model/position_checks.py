@@ -162,6 +162,44 @@ class LatePoses:
         return False
 
 
+# --- How old a position is that a robot gives a time, whatever its clock says ---
+
+TIME_OF_DAY = 1e9
+"""seconds since 1970, in 2001: a stamp before is no time of day. It may be simulated time, which passes
+faster or slower, so it tells the order of positions and not their age."""
+DRIFT = 1e-3
+"""seconds that a robot's clock may lose in a second: ten times what the worst quartz does."""
+
+
+@dataclass(slots=True)
+class StampAge:
+    """How much older positions are than the timeliest one was, by stamps of one clock that may be wrong.
+
+    ``least`` is the smallest difference seen between the gateway's clock and the stamps, at time ``at``; both
+    seconds.
+    """
+
+    least: float = math.inf
+    at: float = 0.0
+
+    def measure(self, stamp: float, now: float) -> float:
+        """Return the seconds for which a position with ``stamp`` was under way, or the fix was repeated."""
+        if stamp < TIME_OF_DAY:
+            return 0.0
+        behind = now - stamp
+        least = self.least + DRIFT * (now - self.at)
+        self.at = now
+        if behind <= least:
+            self.least = behind
+            return 0.0
+        self.least = least
+        return behind - least
+
+    def forget(self) -> None:
+        """Measure from the next stamp on: one of the two clocks was set."""
+        self.least = math.inf
+
+
 # --- Course and speed over ground, for robots whose GPS says only where they are ---
 
 LEAST_MOVE = 0.5

@@ -17,6 +17,7 @@ from ...core.clock import ClockStep
 from ...core.messages.base import COORDINATE, SPEED, THETA
 from ...core.messages.robots import SendPos
 from ...core.messages.safety import PathDeclaration, RobotState
+from .arrival import STANDING_SPEED
 
 ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
 """Flags of a robot: it said Stopped or ended in good order, has said where it is since its Ready, is only
@@ -29,7 +30,7 @@ and m, which other gateways do not tell."""
 NUMBERS = 8
 REPORTED_NUMBERS = 6
 """numbers of a robot in a message, the first of those; in place of times there are seconds since."""
-_THETA = 2
+_THETA, _V = 2, 3
 _OF_A_POSE = ("x", "y", "theta", "v", "battery", "status")
 """What is known of the pose of a robot of another gateway."""
 STATES = tuple(RobotState)
@@ -262,12 +263,12 @@ class RobotColumns:
         self._owners[row] = self._owner(robot.gateway or "")
         self._revisions[row] = robot.revision
 
-    def move(self, name: str, pose: SendPos, at: float, revision: int) -> None:
-        """Write where a robot with a row is at time ``at``, of which all else is as it was."""
+    def move(self, name: str, pose: SendPos, pose_at: float, at: float, revision: int) -> None:
+        """Write where a robot with a row was at time ``pose_at``, heard at ``at``; all else is as it was."""
         row = self._rows[name]
-        x, y, theta, v, pose_at, received_at, revisions = self._cells
+        x, y, theta, v, pose_times, received_at, revisions = self._cells
         x[row], y[row], theta[row], v[row] = pose.x, pose.y, pose.theta, pose.v
-        pose_at[row] = received_at[row] = at
+        pose_times[row], received_at[row] = pose_at, at
         revisions[row] = revision
 
     def remove(self, name: str) -> None:
@@ -385,6 +386,14 @@ class RobotColumns:
         is_outdated = self._states_at(now, stale_after, lost_after) != self._states
         is_outdated |= self._numbers[RECEIVED_AT] > now
         return self._named(np.flatnonzero(is_outdated & (self._revisions >= 0)))
+
+    def driving_unseen(self, since: float) -> list[str]:
+        """Return the names of those that are fresh, and have not said where they are after ``since``, when
+        they drove. Those whose place is doubted, or not known since their Ready, are not among them."""
+        # A row that has no robot, or a robot that has no place, is NaN there.
+        unseen = (self._numbers[POSE_AT] <= since) & (np.abs(self._numbers[_V]) > STANDING_SPEED)
+        unseen &= (self._states == FRESH) & ((self._flags & (LOCATED | ENDED | DOUBTED)) == LOCATED)
+        return self._named(np.flatnonzero(unseen & (self._revisions >= 0)))
 
     def move_times(self, step: ClockStep) -> None:
         """Keep the times since robots were heard when the clock was set."""

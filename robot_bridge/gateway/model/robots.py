@@ -17,7 +17,7 @@ from ...core.messages.robots import Command, SendPos, SetPath, SetPosEnd
 from ...core.messages.safety import Ability, PathDeclaration, RobotState
 from .arrival import standing
 from .events import EventBus, RobotReturned
-from .position_checks import AcceptedArea, LatePoses
+from .position_checks import AcceptedArea, LatePoses, StampAge
 from .robot_columns import (
     DOUBTED,
     ONLY_SEEN,
@@ -40,7 +40,11 @@ class PoseOrder:
     fix_t: float | None = None
     t: float | None = None
     link: str = ""
+    delay: float = 0.0
+    """seconds by which the newest pose was older than when it came in, 0 where it has no stamp."""
     _late: LatePoses | None = None
+    _by_fix: StampAge = field(default_factory=StampAge)
+    _by_t: StampAge = field(default_factory=StampAge)
 
     def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
         """Tell whether a pose with these stamps counts, and take it for the newest if so.
@@ -51,8 +55,14 @@ class PoseOrder:
         """
         if fix_t is not None or (t is not None and self.t is not None and t < self.t):
             stamp = self._late_by(fix_t, t)
-            if stamp is not None and not self._set_back(stamp, link, now):
-                return False
+            if stamp is not None:
+                if not self._set_back(stamp, link, now):
+                    return False
+                self.clock_was_set()
+        if fix_t is not None:
+            self.delay = self._by_fix.measure(fix_t, now)
+        else:
+            self.delay = 0.0 if t is None else self._by_t.measure(t, now)
         self.fix_t = self.fix_t if fix_t is None else fix_t
         self.t = self.t if t is None else t
         self.link = link
@@ -62,6 +72,12 @@ class PoseOrder:
     def restarted(self) -> None:
         """Forget the robot's own clock: a robot that started again may count from nought."""
         self.t = self._late = None
+        self.clock_was_set()
+
+    def clock_was_set(self) -> None:
+        """Forget how the robot's clocks and the gateway's differ: one of them was set."""
+        self._by_fix.forget()
+        self._by_t.forget()
 
     def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
         """Return the stamp by which a pose is late, or None for one that is not."""
@@ -81,19 +97,27 @@ class PoseOrder:
 # by which alone a robot is fresh, stale or lost.
 
 RobotPose = tuple[str, SendPos]
+OLD = (
+    "its position was {:.0f} s old when it came, by its own time (fix_t, else t): it waited on its way, or "
+    "is one that the receiver repeats. The robot may be elsewhere"
+)
+UNSEEN = (
+    "it was driving when it said its position last, and has said none for {:g} s. The robot may be elsewhere"
+)
+"""Why a robot may not be where it is shown, after so many seconds."""
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 """States of robots that cannot be told anything."""
 
 
 @dataclass
 class Robot:
-    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` that of its pose.
+    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` when it had its pose.
 
     ``latency`` is the seconds that its link took there and back when that was last measured. ``paths`` is
     what its last Ready declared, to this gateway or to an earlier one. ``located`` is true once it has said
     where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
-    link broke, and it may have driven on unseen. ``doubt`` is why the place that it said last is not
-    believed. ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
+    link broke, and it may have driven on unseen. ``doubt`` is why it may not be where its pose is.
+    ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
     it can do with spaces between them, None for everything. ``described`` is the revision since which more of
     it may have changed than where it is. ``gateway`` is the other gateway of the fleet that has it, None for
     this one: all else is what that one tells then. ``ended_in_order`` is true from when it says Stopped until
@@ -252,6 +276,11 @@ class Robots:
         robot = self._find(name)
         return robot is not None and robot.is_placed
 
+    def is_doubted(self, name: str) -> bool:
+        """Tell whether the place that a robot said last is not believed, or is one where it was."""
+        robot = self._find(name)
+        return robot is not None and robot.doubt is not None
+
     def is_unseen(self, name: str, now: float) -> bool:
         """Tell whether a robot may have come further since it said where it is: too long ago, or before its
         link or the gateway broke.
@@ -345,15 +374,19 @@ class Robots:
         self._note_heard(robot, link, now, stopped=False, waited=waited)
         is_newest = robot.order.admit(pose.fix_t, pose.t, link, now)
         if is_newest:
-            robot.pose, robot.doubt = pose, None
-            robot.pose_at, robot.located = (robot.received_at, robot.located) if waited else (now, True)
+            self._place(robot, pose, now)
+            if waited:
+                robot.pose_at, robot.doubt = robot.received_at, None
+            else:
+                robot.located = True
         self._touch(robot)
         return is_newest
 
     def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
         """Take in, as :meth:`observe`, a pose that only goes on from where its robot was a moment ago.
 
-        Return false for a late one; None, with nothing done, where there is something to consider about it.
+        Return false for a late one, and for one that says where the robot was ``stale_after`` ago; None, with
+        nothing done, where there is something to consider about it.
         """
         robot = self._robots.get(name)
         x_min, y_min, x_max, y_max, step = near
@@ -374,9 +407,13 @@ class Robots:
         if not robot.order.admit(pose.fix_t, pose.t, link, now):
             self._own_columns.write(robot)
             return False
-        robot.pose, robot.pose_at = pose, now
+        if robot.order.delay >= self._stale_after:
+            self._place(robot, pose, now)
+            self._touch(robot)
+            return False
+        robot.pose, robot.pose_at = pose, now - robot.order.delay
         if pose.battery == last.battery and pose.status == last.status and pose.accuracy == last.accuracy:
-            self._own_columns.move(name, pose, now, robot.revision)
+            self._own_columns.move(name, pose, robot.pose_at, now, robot.revision)
         else:
             robot.described = robot.revision
             self._own_columns.write(robot)
@@ -469,6 +506,7 @@ class Robots:
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
+            robot.order.clock_was_set()
         self._own_columns.move_times(step)
         self._other_columns.move_times(step)
 
@@ -479,6 +517,10 @@ class Robots:
             # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
             robot.received_at = min(robot.received_at, now)
             robot.state = self._judge(robot, now)
+            self._touch(robot)
+        for name in self._own_columns.driving_unseen(now - self._stale_after):
+            robot = self._robots[name]
+            robot.doubt = UNSEEN.format(self._stale_after)
             self._touch(robot)
         self.revision = self._other_columns.age(now, self._stale_after, self._lost_after, self.revision)
 
@@ -570,6 +612,12 @@ class Robots:
         self._details.pop(name, None)
         self._other_columns.remove(name)
         return self._elsewhere.pop(name, None)
+
+    def _place(self, robot: Robot, pose: SendPos, now: float) -> None:
+        """Take a pose for the newest, which is doubted where its stamp says that the robot has gone on."""
+        delay = robot.order.delay
+        robot.pose, robot.pose_at = pose, now - delay
+        robot.doubt = OLD.format(delay) if delay >= self._stale_after else None
 
     def _judge(self, robot: Robot, now: float) -> RobotState:
         return liveness(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+import time
 
 import pytest
 
@@ -88,6 +89,33 @@ def test_a_position_in_fragments_with_pings_between_them_counts_in_its_turn(brid
     stream = call("Ready", 1, magic=7) + pose(1) + fragments + pose(9) + frame("still?", PING)
     with send(bridge, robot, stream, size):
         wait_until(lambda: known(desk, robot).get("x") == 9.0)
+
+
+def test_a_robot_whose_fix_stands_still_is_marked_and_its_position_grows_old(bridge, desk, robot):
+    fix = time.time()
+    with send(bridge, robot, call("Ready", 1, magic=7) + pose(1, t=fix, fix_t=fix), 100_000) as raw:
+
+        def is_marked():
+            raw.sendall(pose(1, t=time.time(), fix_t=fix))
+            return "old when it came" in (known(desk, robot).get("status") or "")
+
+        wait_until(is_marked)
+        seen = known(desk, robot)
+        assert seen["state"] == "fresh" and seen["pose_age"] >= 3.0 > seen["age"]
+        raw.sendall(pose(2, t=time.time(), fix_t=time.time()))
+        wait_until(lambda: known(desk, robot).get("x") == 2.0)
+        assert known(desk, robot).get("status") is None
+
+
+def test_a_robot_that_drives_and_says_only_that_it_is_alive_is_marked(bridge, desk, robot):
+    with send(bridge, robot, call("Ready", 1, magic=7) + pose(1, t=None), 100_000) as raw:
+
+        def is_marked():
+            raw.sendall(call("Alive"))
+            return "the robot may be elsewhere" in (known(desk, robot).get("status") or "").lower()
+
+        wait_until(is_marked)
+        assert known(desk, robot)["state"] == "fresh"
 
 
 def test_nothing_counts_from_a_robot_that_is_not_ready(bridge, desk, robot):

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from robot_bridge.core.errors import RefusedError
-from robot_bridge.core.messages.robots import Ready, SendGPS, SendPos
+from robot_bridge.core.messages.robots import Alive, Ready, SendGPS, SendPos, Stopped
 
 
 @pytest.fixture
@@ -142,3 +142,80 @@ async def test_a_robot_that_says_too_much_at_a_time_is_heard_and_marked(yard):
     yard.sql("insert into rr (robot, op, params) values ('r1', 'SendPos', ?)", '{"status": "' + "x" * 100_000)
     await yard.link.poll()
     assert (told(yard).state.value, "SendPos: params has" in told(yard).status) == ("fresh", True)
+
+
+AHEAD = 1.79e9
+"""seconds by which the robot's clock differs from the yard's."""
+
+
+async def said(yard, fix, v=0.0, x=20.0):
+    """Have the robot say a position of time ``fix``, half a second later."""
+    yard.now += 0.5
+    await yard.fleet.receive("r1", "websocket", SendPos(x, 8.0, 0.0, v, fix_t=AHEAD + fix), None)
+    yard.fleet.age()
+
+
+async def test_a_fix_that_is_repeated_is_told_as_old_and_says_no_more_where_it_is(standing):
+    fix = standing.now
+    for _ in range(6):
+        await said(standing, fix)
+    assert (told(standing).status, round(told(standing).pose_age, 1)) == (None, 2.5)
+    assert standing.fleet.robots.is_placed("r1")
+    for _ in range(2):
+        await said(standing, fix)
+    assert "3 s old when it came" in told(standing).status
+    assert not standing.fleet.robots.is_placed("r1")
+    await said(standing, standing.now)
+    assert (told(standing).status, told(standing).pose_age) == (None, 0.0)
+    assert standing.fleet.robots.is_placed("r1")
+
+
+async def test_positions_that_waited_show_the_robot_where_it_was_and_not_as_being_there(standing):
+    await said(standing, standing.now, 1.0)
+    began = standing.now
+    standing.now += 60.0
+    for k in range(40):
+        await standing.fleet.receive(
+            "r1", "websocket", SendPos(20.0 + k, 8.0, 0.0, 1.0, fix_t=AHEAD + began + k), None
+        )
+    assert (place(standing), round(told(standing).pose_age)) == ((59.0, 8.0), 20)
+    assert "old when it came" in told(standing).status
+
+
+async def test_neither_standing_nor_arrival_is_judged_by_a_repeated_fix(standing):
+    await said(standing, standing.now)
+    fix = standing.now
+    for _ in range(8):
+        await said(standing, fix)
+    await standing.send("there", x=20.0, y=8.0)
+    await standing.acknowledge_all()
+    await said(standing, fix)
+    assert (await standing.states())["there"] == "acknowledged"
+    await said(standing, standing.now)
+    assert (await standing.states())["there"] == "reached"
+
+
+async def test_a_robot_that_drove_and_says_only_that_it_is_alive_is_marked(standing):
+    await standing.at(25.0, 8.0, v=1.0)
+    for alive in (1.0, 1.0, 1.1):
+        assert told(standing).status is None
+        standing.now += alive
+        await standing.fleet.receive("r1", "websocket", Alive(), None)
+        standing.fleet.age()
+    assert "has said none for 3 s" in told(standing).status
+    assert told(standing).state.value == "fresh"
+    assert not standing.fleet.robots.is_placed("r1")
+    await standing.at(30.0, 8.0, v=1.0)
+    assert told(standing).status is None
+
+
+@pytest.mark.parametrize("stopped", [False, True])
+async def test_a_robot_that_stands_need_not_say_where(standing, stopped):
+    await standing.at(25.0, 8.0, v=1.0 if stopped else 0.0)
+    if stopped:
+        await standing.fleet.receive("r1", "websocket", Stopped(), None)
+    for _ in range(20):
+        standing.now += 1.0
+        await standing.fleet.receive("r1", "websocket", Alive(), None)
+        standing.fleet.age()
+    assert told(standing).status is None

@@ -10,7 +10,7 @@ import pytest
 
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.records import GetObservations, ReviewObservation
-from robot_bridge.core.messages.robots import SetObject
+from robot_bridge.core.messages.robots import Alive, SetObject
 from robot_bridge.core.messages.safety import EmergencyStop, FenceAlarm, Geofence
 from robot_bridge.core.sites.fences import Fences
 from robot_bridge.core.sites.settings_tables import GeofenceSettings
@@ -76,6 +76,16 @@ def reported_elsewhere(yard, *alarms, **more):
 
 def basin(robot, outcome="aborted", since=1000.0):
     return FenceAlarm(robot, "keepout", "Water basin", since, 66.0, 32.0, "abort", outcome)
+
+
+async def test_a_robot_that_may_have_driven_on_since_it_said_where_it_is_is_not_judged(guarded):
+    await guarded.at(*OUTSIDE, v=1.0)
+    assert (await look(guarded)).unjudged == []
+    for _ in range(4):
+        guarded.now += 1.0
+        await guarded.fleet.receive("r1", "websocket", Alive(), None)
+    guarded.fleet.age()
+    assert (await look(guarded)).unjudged == ["r1"]
 
 
 async def test_a_robot_of_a_gateway_that_reports_nothing_is_told_of_and_left_to_that(guarded):

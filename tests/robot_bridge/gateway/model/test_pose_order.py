@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY
+from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY, StampAge
 from robot_bridge.gateway.model.robots import PoseOrder
 
 
@@ -119,3 +119,55 @@ def test_within_a_few_seconds_the_stamps_that_count_only_grow(poses):
         if order.admit(None, t, link, 1000.0 + k * 0.04):
             counted.append(t)
     assert counted == sorted(counted)
+
+
+NOW = 1_790_000_000.0
+
+
+def delays(stamps, every=1.0, order=None):
+    """Hand in fixes, each of a time ago; return how old each is taken to be."""
+    order, found = order or PoseOrder(), []
+    for k, ago in enumerate(stamps):
+        now = NOW + k * every
+        assert order.admit(now - ago, None, "websocket", now)
+        found.append(round(order.delay, 1))
+    return found
+
+
+@pytest.mark.parametrize("wrong", [0.0, 7200.0, -7200.0, 1e8])
+def test_a_position_is_as_old_as_it_is_later_than_the_timeliest_whatever_the_clock_says(wrong):
+    assert delays([wrong + ago for ago in (0.5, 0.2, 0.2, 1.2, 2.2, 3.2, 0.2)]) == [0, 0, 0, 1, 2, 3, 0]
+
+
+def test_a_fix_that_is_repeated_grows_old():
+    assert delays([float(k) for k in range(6)]) == [0, 1, 2, 3, 4, 5]
+
+
+def test_a_time_since_power_on_or_a_simulated_one_says_no_age():
+    order = PoseOrder()
+    for k in range(20):
+        assert order.admit(None, 100.0 + k / 2, "websocket", NOW + k)
+        assert order.delay == 0.0
+
+
+def test_a_fix_without_its_time_is_not_judged_by_that_of_another():
+    order = PoseOrder()
+    assert order.admit(NOW - 3600.0, NOW, "websocket", NOW)
+    assert order.admit(None, NOW + 1.0, "websocket", NOW + 1.0)
+    assert order.delay == 0.0
+
+
+def test_a_clock_that_loses_a_little_or_is_set_back_makes_no_position_old():
+    stamps, a_day = StampAge(), 86_400
+    assert max(stamps.measure(NOW + k * (1 - 2e-4), NOW + k) for k in range(0, a_day, 10)) < 0.1
+    order = PoseOrder()
+    for k in range(100):
+        order.admit(None, NOW + k * 0.1 - (40.0 if k > 20 else 0.0), "websocket", NOW + k * 0.1)
+    assert order.delay < 0.1
+
+
+def test_a_gateway_clock_that_was_set_makes_no_position_old():
+    order = PoseOrder()
+    assert order.admit(NOW, None, "websocket", NOW)
+    order.clock_was_set()
+    assert delays([-3600.0, -3600.0], order=order) == [0, 0]
