@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from ...core.messages.base import MessageError
-from ...core.messages.robots import Alive, Request, SetPath, SetPosEnd, SetPosIni, Stopped
+from ...core.messages.robots import Alive, Request, SendPos, SetPath, SetPosEnd, SetPosIni, Stopped
 from .ledger import Effect, Ledger, PositionInit
 from .messages import Connection, Factsheet, FreshNames, Inbound, State, VehicleId, Visualization
 from .presence import MapFrame, VehiclePresence
@@ -70,6 +70,8 @@ class VehicleController:
         self._admitted = self._awaits_halt = False
         self._next_alive = self._next_poll = self._next_unpause = self._next_clear = -math.inf
         self._last_status: str | None = None
+        self._last_pose: SendPos | None = None
+        """The pose that was told last, as the vehicle's message had it."""
 
     @property
     def is_known(self) -> bool:
@@ -380,6 +382,11 @@ class VehicleController:
             return  # what is said of a vehicle that is gone would have it seem to be there
         self._last_status = self.status(now)
         standing = state is not None and not state.driving
+        if standing and pose is self._last_pose:
+            # One that stands says so seldom, and at once when it sets off: it is still there.
+            pose = replace(pose, t=None, fix_t=None)
+        else:
+            self._last_pose = pose
         try:
             self._report(replace(pose, status=self._last_status, v=0.0 if standing else pose.v))
         except MessageError:

@@ -634,3 +634,17 @@ def test_only_the_newest_tasks_are_remembered_as_done_or_given_up():
     assert len(kept.ended) == len(kept.revoked) == MOST_REMEMBERED
     assert ledger.has_ended(MOST_REMEMBERED) and not ledger.has_ended(0)
     assert ledger.is_revoked("order-1") and not ledger.is_revoked("order-0")
+
+
+def test_a_position_that_is_said_again_is_as_old_as_it_is_unless_the_vehicle_stands(bench):
+    bench.show(driving=False)
+    first = bench.saying(SendPos)[-1]
+    assert first.fix_t is not None
+    bench.controller.set_admitted(True, bench.now)
+    bench.collect()
+    assert (bench.saying(SendPos)[-1].x, bench.saying(SendPos)[-1].fix_t) == (first.x, None)
+    bench.show(driving=True)
+    driving = bench.saying(SendPos)[-1]
+    bench.controller.set_admitted(True, bench.now)
+    bench.collect()
+    assert bench.saying(SendPos)[-1].fix_t == driving.fix_t is not None
