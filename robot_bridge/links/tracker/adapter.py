@@ -42,7 +42,7 @@ class TrackerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     baud: int = 9600
     names: dict[str, str] = {}
     others: str | None = None
-    oldest_s: float = 60.0
+    oldest_s: float = 10.0
     reports_every_s: float = 0.0
 
     def check(self, file: Path) -> None:

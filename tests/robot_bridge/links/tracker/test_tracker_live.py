@@ -103,6 +103,22 @@ def test_a_phone_is_seen_as_the_guide_says_and_comes_back_whatever_is_killed(bri
     wait_until(lambda: reports(ports, place(0.0002)) and is_east(desk, seen["x"] + 12), 20)
 
 
+def test_what_a_phone_kept_shows_nobody_as_being_there(bridge, desk, config, ports):
+    config.write_text(config.read_text(encoding="utf-8").replace('"anna"', '"berta"'), encoding="utf-8")
+    adapter = bridge.start_link("tracker", config)
+    wait_until(lambda: reports(ports, f"{place(0.0)}&timestamp={time.time():.1f}"), 15)
+    before = desk.until(lambda: desk.robots.get("berta", {}).get("x"), 10)
+    desk.until(lambda: desk.robots["berta"]["state"] == "lost", 10)
+    for ago in range(50, 12, -1):
+        assert reports(ports, f"{place(0.001)}&timestamp={time.time() - ago:.1f}")
+    desk.listen(1.0)
+    assert (desk.robots["berta"]["state"], desk.robots["berta"]["x"]) == ("lost", before)
+    assert reports(ports, f"{place(0.001)}&timestamp={time.time():.1f}")
+    desk.until(lambda: desk.robots["berta"]["state"] == "fresh", 10)
+    adapter.kill()
+    adapter.wait(5)
+
+
 def is_east(desk, x):
     desk.listen(0.1)
     return desk.robots.get("anna", {}).get("x", 0.0) > x
