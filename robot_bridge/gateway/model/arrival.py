@@ -14,10 +14,9 @@ from numpy.typing import NDArray
 from ...core.geometry import Polyline
 from ...core.messages.commands import CommandReport, CommandState
 from ...core.messages.robots import Abort, Command, SendPos, SetPath, SetPosEnd, SetPosIni, path_to_end
+from .position_checks import STANDING_SPEED
 from .robot_columns import ACCURACY, RobotPlaces, V, X, Y
 
-STANDING_SPEED = 0.05
-"""m/s below which a robot counts as standing."""
 HEADING_TOLERANCE = 0.15
 """radians; only where the target gives a heading."""
 CORRIDOR = 2.0

@@ -23,6 +23,9 @@ NO_FIX = (
 
 Place = tuple[float, float]
 
+STANDING_SPEED = 0.05
+"""m/s below which a robot counts as standing."""
+
 
 @dataclass
 class Leap:

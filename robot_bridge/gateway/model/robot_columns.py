@@ -17,7 +17,7 @@ from ...core.clock import ClockStep
 from ...core.messages.base import COORDINATE, SPEED, THETA
 from ...core.messages.robots import SendPos
 from ...core.messages.safety import PathDeclaration, RobotState
-from .arrival import STANDING_SPEED
+from .position_checks import STANDING_SPEED
 
 ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
 """Flags of a robot: it said Stopped or ended in good order, has said where it is since its Ready, is only
@@ -30,7 +30,7 @@ and m, which other gateways do not tell."""
 NUMBERS = 8
 REPORTED_NUMBERS = 6
 """numbers of a robot in a message, the first of those; in place of times there are seconds since."""
-_THETA, _V = 2, 3
+_THETA = 2
 _OF_A_POSE = ("x", "y", "theta", "v", "battery", "status")
 """What is known of the pose of a robot of another gateway."""
 STATES = tuple(RobotState)
@@ -391,7 +391,7 @@ class RobotColumns:
         """Return the names of those that are fresh, and have not said where they are after ``since``, when
         they drove. Those whose place is doubted, or not known since their Ready, are not among them."""
         # A row that has no robot, or a robot that has no place, is NaN there.
-        unseen = (self._numbers[POSE_AT] <= since) & (np.abs(self._numbers[_V]) > STANDING_SPEED)
+        unseen = (self._numbers[POSE_AT] <= since) & (np.abs(self._numbers[V]) > STANDING_SPEED)
         unseen &= (self._states == FRESH) & ((self._flags & (LOCATED | ENDED | DOUBTED)) == LOCATED)
         return self._named(np.flatnonzero(unseen & (self._revisions >= 0)))
 

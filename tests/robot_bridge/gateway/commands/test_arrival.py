@@ -10,11 +10,11 @@ import pytest
 from robot_bridge.core.messages.robots import Abort, SendPos, SetPath, SetPosEnd, SetPosIni
 from robot_bridge.gateway.model.arrival import (
     HEADING_TOLERANCE,
-    STANDING_SPEED,
     AbortArrival,
     PathArrival,
     arrival_judge,
 )
+from robot_bridge.gateway.model.position_checks import STANDING_SPEED
 
 TOLERANCE = 0.2
 

@@ -12,13 +12,13 @@ from robot_bridge.gateway.model.arrival import (
     HEADING_TOLERANCE,
     LOOK_AHEAD,
     LOOK_AHEAD_TIME,
-    STANDING_SPEED,
     STRIDE,
     BeginArrival,
     PathArrival,
     TargetArrival,
     standing,
 )
+from robot_bridge.gateway.model.position_checks import STANDING_SPEED
 
 TOLERANCE = 0.25
 STRAIGHT = SetPath([(0.0, 0.0), (100.0, 0.0)])
