@@ -90,6 +90,10 @@ def start_bridge(tmp_path_factory, new_database):
         def start(site, database: str | None = None, options=()) -> Bridge:
             bridge = Bridge(processes, site, database or new_database("sqlite"))
             bridge.options += options
+            if "--state" not in bridge.options and not bridge.database.startswith("sqlite"):
+                # Else what gateways note goes beside the site, which may be a folder of the repository.
+                (state := folder / f"state-{len(bridges)}").mkdir()
+                bridge.options += ["--state", state]
             bridges.append(bridge)
             try:
                 bridge.start_gateway()

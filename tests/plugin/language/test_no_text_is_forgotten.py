@@ -67,6 +67,8 @@ TEXTS = {
     "listening on (ws://127\\.0\\.0\\.1:\\d+)": "what is looked for in the log of the practice gateway",
     "EPSG:00000": "as wide as the codes of most CRSs",
     "a number of site ": "of a message that breaks the protocol",
+    "the gateway's clock": "of a message that breaks the protocol",
+    "fleet reading": "the name of a thread",
     "fleet road_surface ": "a key of a cache",
     "traffic cone": "a label that robots read on their maps",
     "emergency stop": "what is looked for in a gateway's refusal",

@@ -102,8 +102,9 @@ def test_a_stop_made_while_the_server_was_down_outlives_the_gateway(
     assert bridge.robot("ws").wait_for("Abort")["id"] == "emergency-stop-0001"
     assert bridge.sql("select op from sa where robot = 'sq' and urgent > 0") == [("Abort",)]
     assert stopped(bridge) == [("stop-0001", "Ada", "child on the track", None)]
-    wait_until(lambda: list(tmp_path.glob("emergency-stop-*")) == [])
+    assert list(tmp_path.glob("emergency-stop-*")) != []
     assert desk.ask("clear_emergency_stop", {"reason": "free"})["in_force"] is False
+    wait_until(lambda: list(tmp_path.glob("emergency-stop-*")) == [])
     bridge.kill_gateway()
     bridge.start_gateway()
     assert bridge.desk().emergency["in_force"] is False
@@ -115,9 +116,9 @@ def test_a_stop_that_was_stored_and_cleared_does_not_come_back(start_bridge, sam
     desk = bridge.desk()
     assert desk.ask("emergency_stop", {"command": "stop-0001"})["stored"]
     desk.ask("clear_emergency_stop", {"reason": "free"})
-    bridge.kill_gateway()
     journal = bridge.file.with_name(f"{bridge.file.name}.stop")
-    assert not journal.exists()
+    wait_until(lambda: not journal.exists())
+    bridge.kill_gateway()
     # As after a power cut that undid only the file's end.
     journal.write_text('[{"id": "stop-0001", "at": 1.0, "by": "Ada", "reason": null}]', encoding="utf-8")
     bridge.start_gateway()
