@@ -184,10 +184,19 @@ def is_empty(provider: str, stored: str, deleted: int = 0) -> bool:
     an empty one. It is opened once more, from any thread: one that was emptied by another program since then
     says so.
     """
+    layer = _opened(provider, stored)
+    return layer.isValid() and layer.featureCount() <= deleted
+
+
+def count_stored(source: ObstacleSource) -> int:
+    """Return how many features are stored, below 0 where nobody knows; from any thread, and it may hang."""
+    return source.count if source.count >= 0 else _opened(source.provider, source.stored).featureCount()
+
+
+def _opened(provider: str, stored: str) -> QgsVectorLayer:
     options = QgsVectorLayer.LayerOptions()
     options.loadDefaultStyle = False
-    layer = QgsVectorLayer(stored, "", provider, options)
-    return layer.isValid() and layer.featureCount() <= deleted
+    return QgsVectorLayer(stored, "", provider, options)
 
 
 def begin_reading() -> None:

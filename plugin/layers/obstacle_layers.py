@@ -35,6 +35,7 @@ from .layer_source import (
     SomeFeatures,
     begin_reading,
     check_readable,
+    count_stored,
     without_geometry,
 )
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
@@ -370,12 +371,6 @@ def check_sources(sources: Sequence[ObstacleSource], site: SiteGeoreference) -> 
     ObstacleReader(sources, site, (0.0, 0.0, 1.0, 1.0), 0.0)
 
 
-PROGRESS_EVERY = 1000
-"""Features between two words of how far a reading is; the first ones are told of one by one."""
-MANY = 100_000
-"""Features of a layer of unknown size that count as half of it."""
-
-
 class ObstacleReader:
     """Reads as :func:`read_outlines`, and keeps nothing of what it has read but ``warnings``.
 
@@ -397,22 +392,21 @@ class ObstacleReader:
 
     def parts(self, feedback: QgsFeedback) -> Iterator[Outlines]:
         """Yield the outlines, some features' at a time, in the order of layers and features."""
-        for number, layer in enumerate(self._layers):
-            count = layer.source.count
-            for done, feature in enumerate(layer.features(), start=1):
+        total = max(sum(max(count_stored(layer.source), 0) for layer in self._layers), 1)
+        step, done = max(total // 1000, 1), 0
+        for layer in self._layers:
+            for feature in layer.features():
                 if feedback.isCanceled():
                     self.complete = False
                     return
                 layer.read(feature)
-                if done < PROGRESS_EVERY or done % PROGRESS_EVERY == 0:
-                    # Of most layers nobody knows how many features they have before all have come.
-                    share = done / (done + MANY) if count < done else done / count
-                    feedback.setProgress(90.0 * (number + share) / len(self._layers))
+                done += 1
+                if done % step == 0:
+                    feedback.setProgress(90.0 * done / total)
                 if layer.waiting >= TOGETHER:
                     yield from layer.outlines()
             yield from layer.outlines()
             layer.finish()
-            feedback.setProgress(90.0 * (number + 1) / len(self._layers))
 
 
 class _LayerReader:
