@@ -52,6 +52,38 @@ class ManualClock(Clock):
         self.uptime += seconds
 
 
+# --- Noticing that this program stood still, while what was said to it went on ---
+# Held by a debugger or SIGSTOP, asleep with its computer, or with its virtual machine.
+
+LONGEST_PAUSE_S = 5.0
+"""seconds; a loop that is busy for less has not stood still. A gateway gives a peer up after 10 s."""
+LOOK_EVERY_S = 0.5
+
+
+class StandstillWatch:
+    """Tells whether this program has stood still since the watch was made.
+
+    It has, where more than ``longest_s`` have passed between two looks at :attr:`has_stood_still`: look there
+    every :data:`LOOK_EVERY_S`, and before anything is done that was received.
+    """
+
+    def __init__(self, longest_s: float = LONGEST_PAUSE_S, clock: Clock = SYSTEM_CLOCK) -> None:
+        self._longest_s = longest_s
+        self._clock = clock
+        self._looked_at = clock.steady()
+        self.seconds = 0.0
+        """For how long it stood still; 0 where it did not."""
+
+    @property
+    def has_stood_still(self) -> bool:
+        """Whether it stood still; once that is so it stays so."""
+        since, self._looked_at = self._looked_at, self._clock.steady()
+        passed = self._looked_at - since
+        if passed > self._longest_s:
+            self.seconds = max(self.seconds, passed)
+        return self.seconds > 0.0
+
+
 # --- Noticing that this computer's clock was set, while the gateway goes by it ---
 # A small computer without a battery for its clock begins with a wrong time, set right once it has a
 # network.

@@ -15,6 +15,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
+from ...core.clock import LONGEST_PAUSE_S, LOOK_EVERY_S, StandstillWatch
 from ...core.errors import AccessError, BridgeError
 from ...core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ...core.logs import log_and_continue
@@ -49,13 +50,25 @@ SAY_AGAIN = 1.0
 """seconds after which is said once more what the gateway could not store."""
 MEMORY_EVERY = 2.0
 """seconds after which it is tried once more to write what a full disk did not take."""
+ABORTS_WITHIN = 0.2
+"""seconds in which an Abort is read on a connection on which all else is too old."""
 LARGEST_FRAME = 64 << 20
 
 
 class LinkClient:
-    """A connection to the gateway that comes back: the :class:`.adapter.Link` of an adapter."""
+    """A connection to the gateway that comes back: the :class:`.adapter.Link` of an adapter.
 
-    def __init__(self, settings: LinkSettings, adapter: Adapter, memory: LinkMemory) -> None:
+    Of what lay on a connection while this program stood still for ``longest_pause_s`` seconds only an Abort
+    is done: nobody may want the rest any more. What is still wanted comes again on the next one.
+    """
+
+    def __init__(
+        self,
+        settings: LinkSettings,
+        adapter: Adapter,
+        memory: LinkMemory,
+        longest_pause_s: float = LONGEST_PAUSE_S,
+    ) -> None:
         self.name = settings.name
         self._settings = settings
         self._adapter = adapter
@@ -76,6 +89,8 @@ class LinkClient:
         self._outgoing: deque[str] = deque()
         self._wake = asyncio.Event()
         self._waking: asyncio.TimerHandle | None = None
+        self._longest_pause_s = longest_pause_s
+        self._standstill = StandstillWatch(longest_pause_s)
         self._is_welcome = False
         self._status = LinkStatus(ok=True)
         self._reported_fault: str | None = None
@@ -259,13 +274,29 @@ class LinkClient:
         self._urgent.clear()
         self._outgoing.clear()
         self._pending_calls.clear()
-        writing = asyncio.create_task(self._write(connection))
+        self._standstill = StandstillWatch(self._longest_pause_s)
+        tasks = [asyncio.create_task(work) for work in (self._write(connection), self._look(connection))]
         try:
             async for frame in connection:
                 self._receive(frame)
         finally:
-            writing.cancel()
-            await asyncio.gather(writing, return_exceptions=True)
+            for task in tasks:
+                task.cancel()
+            await asyncio.gather(*tasks, return_exceptions=True)
+
+    async def _look(self, connection: ClientConnection) -> None:
+        """End a connection on which what was received is too old to be done."""
+        while not self._standstill.has_stood_still:
+            await asyncio.sleep(LOOK_EVERY_S)
+        seconds = self._standstill.seconds
+        log.warning(
+            "link %s stood still for %.0f s: what came meanwhile is asked for again", self.name, seconds
+        )
+        for name in self._robots:
+            self._commanding.drop(name, f"the link stood still for {seconds:.0f} s before it was begun")
+        await asyncio.sleep(ABORTS_WITHIN)
+        # Closed in good order it would seem that its robots were switched off.
+        connection.transport.abort()
 
     def _lose(self) -> None:
         self._is_welcome = False
@@ -348,6 +379,8 @@ class LinkClient:
             log.warning("the gateway refuses: %s", reply.error)
 
     def _take_call(self, call: jsonrpc.Call) -> None:
+        if self._standstill.has_stood_still and call.method != Abort.__name__:
+            return
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
         if call.method == Start.__name__:

@@ -194,7 +194,7 @@ class Commanding:
             self._answer(call, reason)
         line.waiting.clear()
         if line.task is not None:
-            line.task.cancel()
+            line.task.cancel(OVERTAKEN if reason == GONE else reason)
 
     def close(self) -> None:
         """Give up all commands; note and answer nothing more: their ids are those of other messages now."""
@@ -245,8 +245,9 @@ class Commanding:
             return CompletedCall(str(error))
         try:
             done = await self._carried_out(Command(robot, id, message, again))
-        except asyncio.CancelledError:
-            await asyncio.shield(self._finish(robot, id, CompletedCall(OVERTAKEN)))
+        except asyncio.CancelledError as error:
+            reason = str(error) or OVERTAKEN
+            await asyncio.shield(self._finish(robot, id, CompletedCall(reason)))
             raise
         await self._finish(robot, id, done)
         return done

@@ -5,10 +5,11 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+from robot_bridge.core.clock import LONGEST_PAUSE_S
 from robot_bridge.links.base.adapter import Adapter, Command
 from robot_bridge.links.base.client import LinkClient
 from robot_bridge.links.base.memory import LinkMemory
@@ -44,8 +45,15 @@ class LinkOnTheLine:
     """A :class:`LinkClient` that runs in a thread of its own, and is asked from the test's."""
 
     def __init__(
-        self, bridge: Any, folder: Path, name: str = "test", token: str | None = None, kind: str = "obedient"
+        self,
+        bridge: Any,
+        folder: Path,
+        name: str = "test",
+        token: str | None = None,
+        kind: str = "obedient",
+        longest_pause_s: float = LONGEST_PAUSE_S,
     ) -> None:
+        self._longest_pause_s = longest_pause_s
         lines = ["[gateway]", f'url = "{bridge.address}/link"']
         if token is not None:
             (folder / f"{name}.token").write_text(token, encoding="utf-8")
@@ -62,7 +70,8 @@ class LinkOnTheLine:
     def start(self) -> None:
         """Begin to connect, with what is remembered on the disk."""
         self._loop = asyncio.new_event_loop()
-        self.client = LinkClient(self._settings, self.adapter, LinkMemory(self._settings.memory_file))
+        memory = LinkMemory(self._settings.memory_file)
+        self.client = LinkClient(self._settings, self.adapter, memory, self._longest_pause_s)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -80,6 +89,16 @@ class LinkOnTheLine:
             return await done if asyncio.iscoroutine(done) else done
 
         return asyncio.run_coroutine_threadsafe(work(), self._loop).result(20)
+
+    @contextlib.contextmanager
+    def standing_still(self) -> Iterator[None]:
+        """Have it do nothing until the block ends, as a program that is held."""
+        goes_on = threading.Event()
+        self._loop.call_soon_threadsafe(goes_on.wait)
+        try:
+            yield
+        finally:
+            goes_on.set()
 
     def kill(self) -> None:
         """End it with all that it is doing."""

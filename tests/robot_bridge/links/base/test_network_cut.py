@@ -107,6 +107,81 @@ def test_a_network_that_was_cut_loses_nothing_and_does_nothing_twice(bridge, lin
         assert len(states) == len(set(states)), states
 
 
+PAUSE = 0.5
+"""seconds for which a link may be busy before it counts as having stood still."""
+
+
+@pytest.fixture
+def hasty_link(line, tmp_path):
+    link = LinkOnTheLine(SimpleNamespace(address=line.address), tmp_path, "hasty", longest_pause_s=PAUSE)
+    yield link
+    link.end()
+
+
+def stand_still(desk, link, line, name, *, abort):
+    """Have a link stand still, and its connection die, with a target in its buffer; with an Abort behind."""
+    with link.standing_still():
+        began = time.monotonic()
+        desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
+        desk.wait_for_step(f"go-{name}", "delivered")
+        line.cut()
+        if abort:
+            desk.send(f"stop-{name}", name, "Abort")
+            desk.listen(0.2)
+        time.sleep(max(0.0, began + 2 * PAUSE - time.monotonic()))
+
+
+def test_a_link_that_stood_still_begins_no_target_that_was_aborted_meanwhile(bridge, line, hasty_link):
+    link, name, desk = hasty_link, "held-robot", bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    link.do("add", name, ["targets"])
+    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
+    desk.wait_for_robots(name)
+    stand_still(desk, link, line, name, abort=True)
+    wait_until(lambda: not link.client.is_connected)
+    line.mend(reset=True)
+    wait_until(lambda: link.adapter.stops == [(name, False)])
+    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
+    desk.wait_for_step(f"stop-{name}", "reached")
+    assert link.adapter.commands == []
+    # Both come again: what became of the target depends on which of its ends is stored first.
+    desk.until(lambda: desk.commands[f"go-{name}"]["state"] in ("aborted", "failed"))
+
+
+def test_a_link_that_stood_still_is_asked_again_for_what_is_still_wanted(bridge, line, hasty_link):
+    link, name, desk = hasty_link, "asked-again", bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    link.do("add", name, ["targets"])
+    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
+    desk.wait_for_robots(name)
+    stand_still(desk, link, line, name, abort=False)
+    wait_until(lambda: not link.client.is_connected)
+    assert link.adapter.commands == []
+    line.mend(reset=True)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
+    assert [command.robot for command in link.adapter.commands] == [name]
+
+
+def test_an_abort_that_lay_on_the_connection_of_a_link_that_stood_still_is_done(bridge, line, hasty_link):
+    link, name, desk = hasty_link, "stopped-asleep", bridge.desk()
+    desk.ask("subscribe", {"rate": 20})
+    link.do("add", name, ["targets"])
+    link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
+    desk.wait_for_robots(name)
+    with link.standing_still():
+        began = time.monotonic()
+        desk.send(f"stop-{name}", name, "Abort")
+        desk.wait_for_step(f"stop-{name}", "delivered")
+        desk.listen(0.2)
+        line.cut()
+        time.sleep(max(0.0, began + 2 * PAUSE - time.monotonic()))
+    # Nothing comes through the line, which is cut: it was there already.
+    wait_until(lambda: link.adapter.stops == [(name, False)])
+    line.mend(reset=True)
+    stop = f"stop-{name}"
+    desk.until(lambda: "acknowledged" in [step["state"] for step in desk.commands[stop]["steps"]])
+
+
 def begin(link, work):
     """Have the link's own loop do ``work``; return its future."""
     return asyncio.run_coroutine_threadsafe(work, link._loop)
