@@ -117,6 +117,8 @@ class Agent:
         """The ids of the newest messages that were done, in that order."""
         self._database: str | None = None
         self._admitted = False
+        self._rests = False
+        """Whether it stands until the gateway has let it in: its task may have been aborted meanwhile."""
         self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
@@ -212,7 +214,9 @@ class Agent:
         self._notice_stop()
 
     def _move(self, dt: float) -> None:
-        if self._body.hindrance is not None:
+        if self._rests:
+            self._body.drive(0.0, 0.0)
+        elif self._body.hindrance is not None:
             # It is not steered by a pose that is wrong, nor does it come to the end of its task by one.
             self._hindered = True
             self._body.drive(0.0, 0.0)
@@ -232,6 +236,10 @@ class Agent:
             self._driver = None
             self._keep()
         self._body.drive(*(motion or (0.0, 0.0)))
+
+    def wait_for_gateway(self) -> None:
+        """Stand until the gateway has let the robot in once more; its task stays, unless it is aborted."""
+        self._rests = True
 
     def stop(self) -> None:
         """Say that the robot stands and does nothing; what it remembers of its task stays."""
@@ -278,14 +286,18 @@ class Agent:
             return
         self._admitted = ack.ok
         if ack.ok:
+            self._rests = False
             self._count_ids_of(ack.database)
             self._ask_path()
         else:
             self._greet_in = GREET_AGAIN
 
     def _count_ids_of(self, database: str | None) -> None:
-        """Forget what was done when ids begin anew, in another database."""
+        """Stop, and forget what was done, when ids begin anew: its task is in no other database."""
         if database != self._database:
+            if self._database is not None:
+                self._halt()
+                self._moving = True
             self._done.clear()
             self._database = database
             self._keep()

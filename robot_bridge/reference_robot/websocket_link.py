@@ -11,10 +11,11 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
+from ..core.clock import LONGEST_PAUSE_S, LOOK_EVERY_S, StandstillWatch
 from ..core.errors import AccessError, BridgeError
 from ..core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ..core.messages.base import MessageError, to_json
-from ..core.messages.robots import Observed, OpAck, Ready, Request, Start
+from ..core.messages.robots import Abort, Observed, OpAck, Ready, Request, Start
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from .agent import Agent
@@ -23,6 +24,8 @@ log = logging.getLogger(__name__)
 
 SAY_AGAIN = 1.0
 """seconds after which an observation that the gateway could not store is said once more."""
+ABORTS_WITHIN = 0.2
+"""seconds in which an Abort is read on a connection on which all else is too old."""
 REPLACED = 4001
 """Close code of a gateway to which another robot has connected under the same name."""
 Frame = str
@@ -34,15 +37,25 @@ class RobotWebSocketLink:
     """Carries what the agent says while connected; what it says in between is dropped as out of date.
 
     Observations are kept, and said again after the next Ready, until the gateway has acknowledged them.
-    Where several gateways serve the fleet it goes on at another one when its own does not answer.
+    Where several gateways serve the fleet it goes on at another one when its own does not answer. Of what lay
+    on a connection while this program stood still for ``longest_pause_s`` seconds only an Abort is done:
+    nobody may want the rest any more. What is still wanted comes again on the next one.
     """
 
-    def __init__(self, url: str, robot: str, credentials: ClientCredentials | None = None) -> None:
+    def __init__(
+        self,
+        url: str,
+        robot: str,
+        credentials: ClientCredentials | None = None,
+        longest_pause_s: float = LONGEST_PAUSE_S,
+    ) -> None:
         self._credentials = credentials or ClientCredentials()
         self._addresses = GatewayAddresses(url, has_token=self._credentials.token_file is not None)
         self._robot = robot
         self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
         """What is to be sent, in order: a reply does not overtake what was said before it."""
+        self._longest_pause_s = longest_pause_s
+        self._standstill = StandstillWatch(longest_pause_s)
         self._connected = False
         self._ids = itertools.count(1)
         self._untold: list[Observed] = []
@@ -98,13 +111,30 @@ class RobotWebSocketLink:
     async def _carry(self, connection: ClientConnection, agent: Agent) -> None:
         self._outgoing = asyncio.Queue()
         self._pending_requests = {}
-        sending = asyncio.create_task(self._send_all(connection))
+        self._standstill = StandstillWatch(self._longest_pause_s)
+        tasks = [asyncio.create_task(self._send_all(connection)), asyncio.create_task(self._look(connection))]
         try:
             async for frame in connection:
+                if self._standstill.has_stood_still:
+                    agent.wait_for_gateway()
                 self._receive(agent, frame)
         finally:
             self._connected = False
-            sending.cancel()
+            for task in tasks:
+                task.cancel()
+            if self._standstill.has_stood_still:
+                agent.wait_for_gateway()
+
+    async def _look(self, connection: ClientConnection) -> None:
+        """End a connection on which what was received is too old to be done."""
+        while not self._standstill.has_stood_still:
+            await asyncio.sleep(LOOK_EVERY_S)
+        log.warning(
+            "robot %s stood still for %.0f s: it waits for the gateway", self._robot, self._standstill.seconds
+        )
+        await asyncio.sleep(ABORTS_WITHIN)
+        # Closed in good order it would seem to be switched off.
+        connection.transport.abort()
 
     async def _send_all(self, connection: ClientConnection) -> None:
         try:
@@ -128,6 +158,8 @@ class RobotWebSocketLink:
             return
         if isinstance(message, jsonrpc.Reply):
             self._receive_reply(agent, message)
+            return
+        if self._standstill.has_stood_still and message.method != Abort.__name__:
             return
         # Nothing is said before the gateway's Start.
         self._connected = True

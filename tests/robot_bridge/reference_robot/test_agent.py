@@ -229,6 +229,31 @@ def test_in_another_database_the_same_id_is_another_message(robot, news):
     assert robot.distance < 0.1
 
 
+@pytest.mark.parametrize("news", [Start("second"), OpAck(magic=42, database="second")])
+def test_in_another_database_it_stops_for_nobody_there_knows_of_its_task(robot, news):
+    robot.agent.receive(SetPosEnd(60.0, 0.0), 1)
+    robot.live(2)
+    robot.agent.receive(news, None)
+    robot.agent.receive(OpAck(magic=42, database="second"), None)
+    robot.live(5)
+    stood_at = robot.distance
+    robot.live(2)
+    assert robot.distance == stood_at < 10 and len(robot.sent_of(Stopped)) == 1
+
+
+def test_after_its_program_stood_still_it_drives_on_when_the_gateway_has_let_it_in_again(robot):
+    robot.agent.receive(SetPosEnd(20.0, 0.0), 1)
+    robot.live(2)
+    robot.agent.wait_for_gateway()
+    robot.live(5)
+    stood_at = robot.distance
+    robot.live(2)
+    assert robot.distance == stood_at < 10 and robot.sent_of(Stopped) == []
+    robot.agent.receive(OpAck(magic=42, database="first"), None)
+    robot.live(12)
+    assert robot.distance == pytest.approx(20.0, abs=0.1) and len(robot.sent_of(Stopped)) == 1
+
+
 def test_in_the_same_database_a_new_start_makes_nothing_be_done_twice(robot):
     robot.agent.receive(SetPosEnd(3.0, 0.0), 1)
     robot.live(8)

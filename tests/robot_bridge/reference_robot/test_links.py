@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
+import threading
+import time
 
 import pytest
 from websockets.asyncio.server import serve
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.server import serve as serve_in_a_thread
 
 from robot_bridge.core.errors import StoreError
 from robot_bridge.core.messages.robots import Abort, OpAck, Ready, SetObject, SetPosEnd
@@ -146,3 +150,71 @@ async def test_on_a_websocket_it_says_where_it_is_before_it_acknowledges_an_abor
         running.cancel()
         await asyncio.gather(running, return_exceptions=True)
     assert (first["method"], second["id"], "result" in second) == ("SendPos", 7, True)
+
+
+PAUSE = 0.4
+"""seconds for which the robot may be busy before it counts as having stood still."""
+
+
+class PatientGateway:
+    """A gateway in threads of its own: it tells ``late`` once, while the robot's loop stands."""
+
+    def __init__(self, late):
+        self._late = late
+        self._server = serve_in_a_thread(self._carry, "127.0.0.1", 0)
+        self._thread = threading.Thread(target=self._server.serve_forever, daemon=True)
+        self._thread.start()
+        self.url = f"ws://127.0.0.1:{self._server.socket.getsockname()[1]}/robot"
+        self.is_told, self.has_told = threading.Event(), threading.Event()
+        self.greeted = 0
+        self.replies = []
+
+    def _carry(self, connection):
+        connection.send(json.dumps({"jsonrpc": "2.0", "method": "Start", "params": {"database": "first"}}))
+        try:
+            for text in connection:
+                self._take(connection, json.loads(text))
+        except ConnectionClosed:
+            return
+
+    def _take(self, connection, frame):
+        if frame.get("method") == "Ready":
+            connection.send(json.dumps({"jsonrpc": "2.0", "id": frame["id"], "result": ADMITTED}))
+            self.greeted += 1
+            if self.greeted == 1:
+                self.is_told.wait(30)
+                for id, (method, params) in enumerate(self._late, 7):
+                    call = {"jsonrpc": "2.0", "id": id, "method": method, "params": params}
+                    connection.send(json.dumps(call))
+                self.has_told.set()
+        elif "method" not in frame:
+            self.replies.append(frame["id"])
+
+    def end(self):
+        self._server.shutdown()
+        self._thread.join(10)
+
+
+@pytest.mark.parametrize("aborted", [False, True], ids=["a target", "a target and an Abort"])
+async def test_a_robot_that_stood_still_does_nothing_that_lay_on_its_connection_but_an_abort(aborted):
+    late = [("SetPosEnd", {"x": 5.0, "y": 0.0}), *([("Abort", {})] if aborted else [])]
+    gateway = PatientGateway(late)
+    link = RobotWebSocketLink(gateway.url, "r1", longest_pause_s=PAUSE)
+    agent = agent_on(link)
+    running = asyncio.create_task(link.run(agent))
+    async with asyncio.timeout(30):
+        while gateway.greeted == 0:
+            await asyncio.sleep(0.02)
+        await asyncio.sleep(0.1)
+        # From here on the robot's loop stands, as a program that is held.
+        gateway.is_told.set()
+        assert gateway.has_told.wait(10)
+        time.sleep(2 * PAUSE)
+        while gateway.greeted < 2:
+            await asyncio.sleep(0.02)
+            agent.step(0.05)
+    assert agent.pose[:2] == (0.0, 0.0)
+    assert gateway.replies == ([8] if aborted else [])
+    running.cancel()
+    await asyncio.gather(running, return_exceptions=True)
+    gateway.end()
