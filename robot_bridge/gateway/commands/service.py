@@ -10,7 +10,7 @@ from typing import Any
 
 from sqlalchemy import Connection
 
-from ...core.clock import Clock
+from ...core.clock import Clock, steady_time
 from ...core.errors import DataRefusedError, RefusedError, StoreError
 from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport, CommandState
@@ -133,13 +133,14 @@ class CommandService(CommandReader):
         return known
 
     def may_send(self, robot: str, checked_at: float) -> bool:
-        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` (steady clock) may be sent still.
+        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` may be sent still.
 
-        A process that stood still in between may find that another gateway has the robot by now.
+        ``checked_at`` is of :func:`.steady_time`.
+
+        A process that stood still in between may find that another gateway has the robot by now, or that an
+        operator has given the command up: what is to be read of that is read before the message comes again.
         """
-        if self._fence is SOLE_FENCE:
-            return True
-        return self._fence.may_command(robot) and self._clock.steady() - checked_at < CHECK_VALID_S
+        return self._fence.may_command(robot) and steady_time() - checked_at < CHECK_VALID_S
 
     async def delivered(self, sa_ids: Iterable[int]) -> None:
         """Note that the messages ``sa_ids`` have reached their robots."""

@@ -7,13 +7,16 @@ import json
 
 import pytest
 
+from robot_bridge.core.clock import steady_time
 from robot_bridge.core.errors import StoreError, UncertainError
 from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.api import delivery
 from robot_bridge.gateway.api.delivery import Delivery
 from robot_bridge.gateway.api.robot_session import RobotChannel
+from robot_bridge.gateway.commands import service
 from robot_bridge.gateway.commands.persistence import write_steps
+from robot_bridge.gateway.storage.repositories.robots import CHECK_VALID_S
 from tests.support.bridge.queue_line import PLACES, placed, task
 
 CONE = PLACES["a"]
@@ -170,3 +173,23 @@ async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_f
         while list((await line.yard.states()).values()).count("delivered") < 2:
             await asyncio.sleep(0.01)
     assert [method for method, _ in wire.sent] == ["Abort", "Abort"]
+
+
+async def test_a_target_is_checked_again_when_the_gateway_stood_still_before_it_was_sent(
+    line, wire, monkeypatch
+):
+    hand_over, checked = line.yard.fleet.mailboxes.hand_over, []
+
+    async def standing_still(robot, id):
+        is_due = await hand_over(robot, id)
+        checked.append((is_due, len(wire.sent)))
+        stood_for = 2 * CHECK_VALID_S if len(checked) == 1 else 0.0
+        monkeypatch.setattr(service, "steady_time", lambda: steady_time() + stood_for)
+        return is_due
+
+    await line.yard.send("target")
+    monkeypatch.setattr(line.yard.fleet.mailboxes, "hand_over", standing_still)
+    wire.delivery.begin()
+    async with asyncio.timeout(60):
+        await wire.is_cut.wait()
+    assert checked == [(True, 0), (True, 0)] and len(wire.sent) == 1
