@@ -12,6 +12,8 @@ from typing import Any
 
 _MARK = b"FLSV"
 """How the ids of our goals begin."""
+_FOR_CONE = 1 << 63
+"""The bit in the number of a message, never as large, of a goal at whose end a cone is handled."""
 MOST_GOALS = 1000
 """goals in one status message that are looked at."""
 
@@ -35,18 +37,25 @@ Statuses = Mapping[bytes, GoalStatus]
 """By the goal's id."""
 
 
-def goal_id(message: int, salt: int = 0) -> bytes:
+def goal_id(message: int, salt: int = 0, *, cone: bool = False) -> bytes:
     """Return the id, 16 bytes, of the goal for a gateway's message.
 
     The same message gives the same goal: said twice it is done once, and whoever starts anew knows which
-    message a goal on the robot is for. ``salt`` makes another one, below 2³².
+    message a goal on the robot is for, and whether a cone is placed or collected behind it. ``salt`` makes
+    another one, below 2³².
     """
-    return _MARK + salt.to_bytes(4, "big") + message.to_bytes(8, "big")
+    return _MARK + salt.to_bytes(4, "big") + (message | (_FOR_CONE if cone else 0)).to_bytes(8, "big")
 
 
 def message_of(goal: bytes) -> int | None:
     """Return the gateway's message that a goal is for, None for a goal that is no gateway's."""
-    return int.from_bytes(goal[8:], "big") if goal.startswith(_MARK) and len(goal) == 16 else None
+    is_ours = goal.startswith(_MARK) and len(goal) == 16
+    return int.from_bytes(goal[8:], "big") & ~_FOR_CONE if is_ours else None
+
+
+def is_for_cone(goal: bytes) -> bool:
+    """Tell whether a cone is placed or collected where a goal of ours ends."""
+    return message_of(goal) is not None and bool(int.from_bytes(goal[8:], "big") & _FOR_CONE)
 
 
 def statuses_of(message: Any) -> dict[bytes, GoalStatus]:

@@ -24,7 +24,17 @@ from .effects import (
     StopEnded,
     ZeroTwist,
 )
-from .goals import ACTIVE, ENDED, GoalStatus, Statuses, failure_of, goal_id, message_of, missed_text
+from .goals import (
+    ACTIVE,
+    ENDED,
+    GoalStatus,
+    Statuses,
+    failure_of,
+    goal_id,
+    is_for_cone,
+    message_of,
+    missed_text,
+)
 
 # --- How a robot on ROS 2 is stopped: what is said, how often, and when it counts as heard; no I/O ---
 # A stop is three things at once, repeated until they are answered: all goals of its action servers are
@@ -140,6 +150,10 @@ CONE_WITHIN = 60.0
 MOST_GIVEN_UP = 100
 """goals whose servers may take them on after they were given up."""
 
+_TOO_LATE = "the link stood still for longer than it holds a command."
+_CONE_UNKNOWN = (
+    "the robot came there while this link was away, and nobody knows whether its cone was handled: look there"
+)
 _NO_PATHS = (
     "nobody on the robot's side follows paths: no server of FollowPath, NavigateThroughPoses or "
     "FollowWaypoints that the settings allow, nobody listens to its path topic. Are its nodes running?"
@@ -188,6 +202,7 @@ class _Former:
     message: int
     status: GoalStatus
     at: float
+    cone: bool = False
 
 
 class Tasks:
@@ -259,14 +274,15 @@ class Tasks:
             return [*effects, Answered(message, refusal)]
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "another task came before it was begun"))
-        task = RosTask(message, order, goal_id(message), self._action_for(order, abilities))
+        cone = bool(order.cone or order.collect)
+        task = RosTask(message, order, goal_id(message, cone=cone), self._action_for(order, abilities))
         known = self._known(task)
         if known is not None and again:
             self._task = replace(task, sent_at=now)
             return [*effects, *self._judge(self._task, known, now)]
         if known is not None:
             # Ids begin anew with another database: this goal was for another message.
-            task = replace(task, goal=goal_id(message, 1 + int(now * 1000) % (2**32 - 1)))
+            task = replace(task, goal=goal_id(message, 1 + int(now * 1000) % (2**32 - 1), cone=cone))
         self._given_up.pop(task.goal, None)
         self._waiting, self._wait_until = task, now + ENDED_WITHIN
         return [*effects, *self._leave(task, now), *self.step(abilities, now)]
@@ -384,11 +400,12 @@ class Tasks:
         held = self._held
         if held is not None:
             refusal = self._refusal(held.order, abilities)
-            if refusal is None:
+            # Not after its time either: this program may have stood still since.
+            if refusal is None and now < held.until:
                 self._held = None
                 return self.order(held.message, held.order, abilities, now, again=held.again)
             if now >= held.until:
-                return self._end_held(f"{refusal} It was held for {self._hold_s:g} s")
+                return self._end_held(f"{refusal or _TOO_LATE} It was held for {self._hold_s:g} s")
         if self._former is not None and (self.is_busy or self._active()):
             self._former = None
         late = self._cancel_late(now) if self._stop is None else []
@@ -508,17 +525,19 @@ class Tasks:
     def _find_former(self, statuses: Statuses, now: float) -> None:
         """Note a goal of ours that ended before this program came; another server may have a newer one."""
         ours = [
-            (message, status)
+            (message, status, is_for_cone(goal))
             for goal, status in statuses.items()
             if (message := message_of(goal)) is not None
         ]
-        message, status = max(ours, default=(-1, GoalStatus.UNKNOWN))
+        message, status, cone = max(ours, default=(-1, GoalStatus.UNKNOWN, False))
         is_newer = self._former is None or message > self._former.message
         if status in ENDED and is_newer:
-            self._former = _Former(message, status, now + FOUND_WITHIN)
+            self._former = _Former(message, status, now + FOUND_WITHIN, cone)
 
     def _end_former(self, former: _Former) -> list[Effect]:
         self._former = None
+        if former.status == GoalStatus.SUCCEEDED and former.cone:
+            return [Answered(former.message, _CONE_UNKNOWN), Idle()]
         if former.status == GoalStatus.SUCCEEDED:
             return [Idle()]
         reason = f"{failure_of(former.status, None, None)} while this link was away"
@@ -534,7 +553,7 @@ class Tasks:
                 return [_refused(task, task.failure), Idle()]
             if not task.has_result and now - since < DETAILS_WITHIN:
                 return []
-        if task is not None and task.order is not None and (task.order.cone or task.order.collect):
+        if task is not None and is_for_cone(task.goal):
             if task.cone_at is not None:
                 return []
             self._task = replace(task, cone_at=now)

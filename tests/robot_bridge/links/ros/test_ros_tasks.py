@@ -33,8 +33,8 @@ def tasks():
     return Tasks(cones=True)
 
 
-def statuses(tasks, status, message=7, action=RosAction.TO_POSE, now=0.0):
-    return tasks.statuses_came(action, {goal_id(message): status}, now)
+def statuses(tasks, status, message=7, action=RosAction.TO_POSE, now=0.0, cone=False):
+    return tasks.statuses_came(action, {goal_id(message, cone=cone): status}, now)
 
 
 def test_the_id_of_a_goal_names_its_message():
@@ -219,16 +219,30 @@ def test_a_robot_to_which_nobody_listens_is_refused(tasks):
 def test_a_cone_is_placed_where_the_goal_ends(tasks):
     able = Abilities(NAV2.actions, cone_service=True)
     tasks.order(7, SetPosEnd(5.0, 6.0, cone=True), able, 0.0)
-    statuses(tasks, GoalStatus.EXECUTING)
-    assert statuses(tasks, GoalStatus.SUCCEEDED) == [CallCone()]
-    assert statuses(tasks, GoalStatus.SUCCEEDED) == []
+    statuses(tasks, GoalStatus.EXECUTING, cone=True)
+    assert statuses(tasks, GoalStatus.SUCCEEDED, cone=True) == [CallCone()]
+    assert statuses(tasks, GoalStatus.SUCCEEDED, cone=True) == []
     assert tasks.cone_answered(True, "") == [Idle()]
+
+
+def test_a_cone_is_placed_where_a_goal_of_an_earlier_process_ends(tasks):
+    goal = goal_id(7, cone=True)
+    assert message_of(goal) == 7
+    tasks.statuses_came(RosAction.TO_POSE, {goal: GoalStatus.EXECUTING}, 0.0)
+    assert tasks.statuses_came(RosAction.TO_POSE, {goal: GoalStatus.SUCCEEDED}, 1.0) == [CallCone()]
+    assert tasks.cone_answered(True, "") == [Idle()]
+
+
+def test_a_cone_of_which_nobody_knows_is_told(tasks):
+    tasks.statuses_came(RosAction.TO_POSE, {goal_id(7, cone=True): GoalStatus.SUCCEEDED}, 0.0)
+    told, idle = tasks.step(NAV2, 2.0)
+    assert (told.message, idle) == (7, Idle()) and "whether its cone was handled" in told.refusal
 
 
 def test_a_cone_that_is_not_placed_fails_the_task(tasks):
     able = Abilities(NAV2.actions, cone_service=True)
     tasks.order(7, SetPosEnd(5.0, 6.0, cone=True), able, 0.0)
-    statuses(tasks, GoalStatus.SUCCEEDED)
+    statuses(tasks, GoalStatus.SUCCEEDED, cone=True)
     (failed,) = tasks.cone_answered(False, "empty")
     assert failed.refusal == "it stands there, and its cone service said 'empty'"
 
@@ -428,6 +442,11 @@ def test_a_target_that_waits_is_refused_in_the_end(patient):
     (answer,) = patient.step(Abilities(), 10.0)
     assert "nobody on the robot's side drives to targets" in answer.refusal and "10 s" in answer.refusal
     assert patient.step(NAV2, 10.5) == [] and not patient.is_busy
+
+
+def test_a_target_that_waited_while_the_link_stood_still_is_not_sent(patient):
+    (answer,) = patient.step(NAV2, 70.0)
+    assert "the link stood still" in answer.refusal and not patient.is_busy
 
 
 def test_a_stop_ends_a_target_that_waits_and_goes_out_at_once(patient):

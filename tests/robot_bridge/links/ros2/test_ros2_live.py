@@ -347,6 +347,17 @@ def test_an_adapter_that_is_killed_sends_no_goal_twice(desk, robot, adapter, nod
     assert len(events(nodes, name, "goal asked")) == 1
 
 
+def test_a_cone_is_placed_though_the_adapter_was_started_again_on_the_way(desk, robot, adapter, nodes):
+    name = robot(*SLOW, able="cones")
+    desk.send(f"go-{name}", name, "SetPosEnd", x=24.0, y=8.0, cone=True)
+    desk.wait_for_step(f"go-{name}", "acknowledged")
+    adapter.kill()
+    adapter.start()
+    (cone,) = wait_until(lambda: events(nodes, name, "cone"), 20)
+    assert (cone["x"], cone["y"]) == pytest.approx((24.0, 8.0))
+    desk.wait_for_step(f"go-{name}", "reached", 10)
+
+
 def test_a_goal_that_ended_while_the_adapter_was_away_is_over(desk, robot, adapter, nodes):
     near, far = robot(*SLOW), robot(*SLOW)
     desk.send(f"go-{near}", near, "SetPosEnd", x=22.0, y=8.0)
