@@ -112,7 +112,10 @@ class RobotWebSocketLink:
         self._outgoing = asyncio.Queue()
         self._pending_requests = {}
         self._standstill = StandstillWatch(self._longest_pause_s)
-        tasks = [asyncio.create_task(self._send_all(connection)), asyncio.create_task(self._look(connection))]
+        tasks = [
+            asyncio.create_task(self._send_all(connection)),
+            asyncio.create_task(self._look(connection, agent)),
+        ]
         try:
             async for frame in connection:
                 if self._standstill.has_stood_still:
@@ -125,10 +128,11 @@ class RobotWebSocketLink:
             if self._standstill.has_stood_still:
                 agent.wait_for_gateway()
 
-    async def _look(self, connection: ClientConnection) -> None:
+    async def _look(self, connection: ClientConnection, agent: Agent) -> None:
         """End a connection on which what was received is too old to be done."""
         while not self._standstill.has_stood_still:
             await asyncio.sleep(LOOK_EVERY_S)
+        agent.wait_for_gateway()
         log.warning(
             "robot %s stood still for %.0f s: it waits for the gateway", self._robot, self._standstill.seconds
         )
