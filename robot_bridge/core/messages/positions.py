@@ -33,8 +33,8 @@ POSITION_NUMBERS = (
 )  # fmt: skip
 POSITION_FLAGS = ("stopped",)
 """1 for true, 0 for false."""
-POSITION_TEXTS = ("state", "link", "status", "command", "theta_from", "paths", "abilities")
-PLACE_COLUMNS = ("state", "x", "y", "theta")
+POSITION_TEXTS = ("state", "link", "status", "command", "theta_from", "paths", "abilities", "doubt")
+PLACE_COLUMNS = ("state", "x", "y", "theta", "doubt")
 POSITION_ALWAYS = ("age", "stopped", "state", "link")
 """What is known of every robot."""
 
@@ -174,8 +174,8 @@ class PositionColumns:
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
     floats (32-bit in the form ``places``), one for each of ``robots``; NaN is what is not known, and what is
     known of no robot is left out. In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``,
-    ``paths`` and ``abilities`` a number is a place in ``words``, counted from 0. ``removed``, ``everything``,
-    ``untracked`` and ``view`` are as in :class:`Positions`.
+    ``paths``, ``abilities`` and ``doubt`` a number is a place in ``words``, counted from 0. ``removed``,
+    ``everything``, ``untracked`` and ``view`` are as in :class:`Positions`.
     """
 
     t: float
@@ -197,7 +197,8 @@ class RobotReport:
     gateway's. ``latency`` is the seconds that the robot's link took there and back when last measured.
     ``paths`` is what the robot declared in Ready about its paths, None of one that declared nothing: it
     drives straight to a target, and places no cone at the end of a path. ``abilities`` are what it can do,
-    with spaces between them: empty of one that is only seen, None of one that can do everything.
+    with spaces between them: empty of one that is only seen, None of one that can do everything. ``doubt`` is
+    why it may not be where it is shown, None of one that is believed.
     """
 
     robot: str
@@ -221,6 +222,7 @@ class RobotReport:
     theta_from: str | None = None
     paths: PathDeclaration | None = None
     abilities: str | None = None
+    doubt: str | None = None
 
 
 @dataclass(frozen=True)

@@ -97,14 +97,14 @@ def test_a_robot_whose_fix_stands_still_is_marked_and_its_position_grows_old(bri
 
         def is_marked():
             raw.sendall(pose(1, t=time.time(), fix_t=fix))
-            return "old when it came" in (known(desk, robot).get("status") or "")
+            return "old when it came" in (known(desk, robot).get("doubt") or "")
 
         wait_until(is_marked)
         seen = known(desk, robot)
         assert seen["state"] == "fresh" and seen["pose_age"] >= 3.0 > seen["age"]
         raw.sendall(pose(2, t=time.time(), fix_t=time.time()))
         wait_until(lambda: known(desk, robot).get("x") == 2.0)
-        assert known(desk, robot).get("status") is None
+        assert known(desk, robot).get("status") is None and "doubt" not in known(desk, robot)
 
 
 def test_a_robot_that_drives_and_says_only_that_it_is_alive_is_marked(bridge, desk, robot):
@@ -112,7 +112,7 @@ def test_a_robot_that_drives_and_says_only_that_it_is_alive_is_marked(bridge, de
 
         def is_marked():
             raw.sendall(call("Alive"))
-            return "the robot may be elsewhere" in (known(desk, robot).get("status") or "").lower()
+            return "the robot may be elsewhere" in (known(desk, robot).get("doubt") or "").lower()
 
         wait_until(is_marked)
         assert known(desk, robot)["state"] == "fresh"

@@ -27,14 +27,17 @@ export class Alarms {
     if (method in this._unlisted) this._unlisted[method] = params.more;
   }
 
-  /** Show alarms with the lost ones among `robots`; of a large `fleet` the gateway counts those. */
+  /** Show alarms with the lost ones and those that may be elsewhere among `robots`; of a large `fleet` the gateway counts those. */
   show(robots, fleet) {
     const { geofence, nearness, links, suspensions } = this._of, { list, menu, button } = this._parts;
     const lost = [...robots.values()].filter((one) => one.state === "lost");
+    const doubted = new Set([...robots.values()].filter((one) => one.doubt).map(({ robot }) => robot));
+    const unsure = (...names) => names.filter((name) => doubted.has(name)).map((robot) => `; ${tr("{robot} may be elsewhere", { robot })}`).join("");
     const texts = [
       ...lost.map(({ robot }) => tr("{robot} is lost", { robot })),
+      ...[...doubted].map((robot) => tr("{robot} may be elsewhere", { robot })),
       ...geofence.map((one) => tr("{robot} is in {name}", one)),
-      ...nearness.map((one) => tr("{seen} is {m} m from {robot}", { ...one, m: one.metres.toFixed(1) })),
+      ...nearness.map((one) => tr("{seen} is {m} m from {robot}", { ...one, m: one.metres.toFixed(1) }) + unsure(one.seen, one.robot)),
       ...links.map((one) => tr("link {link}: {text}", one)),
       ...suspensions.map((one) => tr("robot {robot} is kept out: {text}", { robot: one.robot, text: one.reason })),
     ];

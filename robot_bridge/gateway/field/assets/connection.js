@@ -340,7 +340,7 @@ function newsOf({ everything, removed, untracked, view }) {
   return { everything: everything === true, removed: removed ?? [], untracked: untracked ?? [], view: view ?? null };
 }
 
-const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities"]);
+const WORDS = new Set(["state", "link", "status", "command", "theta_from", "paths", "abilities", "doubt"]);
 
 /** Read positions that came as a table of numbers behind a JSON head (docs/integrator.md, "The desk"). */
 export function tableOf(buffer) {

@@ -395,7 +395,9 @@ class Field {
       if (one.v !== undefined) facts.push(`${one.v.toFixed(1)} m/s`);
       if (one.pose_age !== undefined) facts.push(tr("position {s} s old", { s: Math.round(one.pose_age + since) }));
       if (one.battery !== undefined) facts.push(tr("battery {n} %", { n: Math.round(100 * one.battery) }));
-      if (one.status) facts.push(one.status);
+      if (one.doubt) facts.push(one.doubt);
+      // As rows say it to programs that do not know the doubt.
+      if (one.status && one.status !== one.doubt) facts.push(one.status);
     }
     by("robot-facts").textContent = facts.join(" · ");
     const step = task?.steps?.at(-1);

@@ -8,6 +8,8 @@ const STATES = {
   lost: { fill: "#b00020", text: "!" },
   offline: { fill: "#5b6670", text: "–" },
 };
+/** A fresh robot that may be elsewhere: hollow, with a broken outline. */
+const UNSURE = { fill: "#ffffff", text: "?", colour: "#b36b00", dashes: [4, 3] };
 const AS_LAST_SEEN = "#5b6670";
 const SIZE = 13;
 const NAMED_AT_MOST = 80;
@@ -153,7 +155,7 @@ const RobotLayer = L.Layer.extend({
     context.textBaseline = "alphabetic";
   },
   _robot(context, one, at) {
-    const look = STATES[one.state] ?? STATES.offline;
+    const look = one.isUnsure ? UNSURE : (STATES[one.state] ?? STATES.offline);
     context.save();
     context.translate(at.x, at.y);
     if (one.robot === this._selected) {
@@ -174,15 +176,21 @@ const RobotLayer = L.Layer.extend({
       context.lineTo(-SIZE * 0.7, SIZE * 0.8);
       context.closePath();
     }
-    context.fillStyle = this._asLastSeen ? AS_LAST_SEEN : look.fill;
+    context.fillStyle = this._asLastSeen && !look.dashes ? AS_LAST_SEEN : look.fill;
     context.strokeStyle = "#ffffff";
-    context.lineWidth = 2;
+    context.lineWidth = look.dashes ? 5 : 2;
     context.fill();
     context.stroke();
+    if (look.dashes) {
+      context.strokeStyle = this._asLastSeen ? AS_LAST_SEEN : look.colour;
+      context.lineWidth = 3;
+      context.setLineDash(look.dashes);
+      context.stroke();
+    }
     context.restore();
     if (look.text && !this._asLastSeen) {
       context.font = "800 14px system-ui, sans-serif";
-      context.fillStyle = look.fill;
+      context.fillStyle = look.colour ?? look.fill;
       context.fillText(look.text, at.x - 4, at.y - SIZE - 3);
     }
   },
@@ -263,7 +271,8 @@ export class SiteMap extends EventTarget {
     this._robots = [];
     for (const one of robots) {
       if (one.x === undefined || one.y === undefined) continue;
-      this._robots.push({ robot: one.robot, state: one.state, place: this._toEarth(one.x, one.y), bearing: this._bearing(one) });
+      const isUnsure = one.state === "fresh" && Boolean(one.doubt);
+      this._robots.push({ robot: one.robot, state: one.state, isUnsure, place: this._toEarth(one.x, one.y), bearing: this._bearing(one) });
     }
     // Hundreds with an alarm would hide the numbers, which have them in red.
     if (density && this._robots.length > NAMED_AT_MOST) this._robots = this._robots.filter(({ robot }) => robot === selected);

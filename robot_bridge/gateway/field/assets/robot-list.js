@@ -12,8 +12,13 @@ const LISTED_FOR_MS = 5000;
 /** Milliseconds for which a list stays as it is after a finger left it: the click comes later. */
 const FINGER_MS = 300;
 
-/** Return the state of a robot as it is, or as it was where the gateway is not heard. */
-export function stateOf({ state }, isCurrent) {
+/** Return the state of a robot as it is, or as it was where the gateway is not heard; of one that is fresh and not believed where. */
+export function stateOf({ state, doubt }, isCurrent) {
+  if (doubt) return state === "fresh" ? tr("may be elsewhere") : `${known(state, isCurrent)}, ${tr("may be elsewhere")}`;
+  return known(state, isCurrent);
+}
+
+function known(state, isCurrent) {
   return isCurrent ? tr(state) : tr("was {state}", { state: tr(state) });
 }
 

@@ -98,6 +98,12 @@ const TEXTS = {
   ],
   "fresh": ["friss", "actual", "actual"],
   "stale": ["elavult", "antic", "antiguo"],
+  "may be elsewhere": ["lehet, hogy máshol van", "pot ser en un altre lloc", "puede estar en otro lugar"],
+  "{robot} may be elsewhere": [
+    "{robot}: lehet, hogy máshol van",
+    "{robot} pot ser en un altre lloc",
+    "{robot} puede estar en otro lugar",
+  ],
   "lost": ["elveszett", "perdut", "perdido"],
   "offline": ["nem elérhető", "fora de línia", "desconectado"],
   "stopped": ["leállt", "aturat", "parado"],

@@ -139,7 +139,11 @@ def test_what_a_robot_declares_and_says_of_itself_is_seen_at_the_other_gateway(p
     assert desk.robots[name].get("status") is None
     # A place that cannot be is doubted there, too.
     robot.tell("SendPos", {**said, "x": 1e7})
-    desk.until(lambda: "km" in (desk.robots[name].get("status") or ""))
+    desk.until(lambda: "km" in (desk.robots[name].get("doubt") or ""))
+    assert desk.robots[name]["status"] == desk.robots[name]["doubt"]
+    # Until it is where it can be.
+    robot.tell("SendPos", {**said, "x": 21.5})
+    desk.until(lambda: desk.robots[name]["x"] == 21.5 and "doubt" not in desk.robots[name])
 
 
 def test_the_newest_connection_counts(pair, name):

@@ -9,6 +9,10 @@ import shutil
 
 import pytest
 
+from robot_bridge.core.messages.positions import PositionForm
+from robot_bridge.core.messages.robots import SendPos
+from robot_bridge.gateway.fleet.operator_updates import table_frame
+from robot_bridge.gateway.model.robots import Robots
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
 from tests.support.wire import RefusedError
@@ -18,6 +22,7 @@ LOST = ("ERR_CONNECTION", "ERR_EMPTY_RESPONSE", "ERR_FAILED", "WebSocket connect
 HELD, GOES_ON = 19, 18
 SLEPT = "Date.now = (now => () => now() + 6e5)(Date.now)"
 """Ten minutes: performance.now() stands still in a phone that sleeps, and its clock does not."""
+AMBER = (179, 107, 0)
 POSES = {"r1": (20.0, 8.0, 0.0), "r2": (100.0, 60.0, 1.5), "r3": (150.0, 120.0, 3.0)}
 
 
@@ -340,6 +345,68 @@ def test_a_robot_that_was_removed_is_no_longer_chosen(page, bridge, desk):
     wait_until(lambda: was_removed(desk, "gone"), 30)
     text_is(page, "#banners", "gone was removed")
     assert page.locator("#robot").is_hidden()
+
+
+def coloured(page, *colour):
+    """Return how many points of the robots' canvas have that colour."""
+    return page.evaluate(
+        """([r, g, b]) => { const c = document.querySelector('#map .leaflet-marker-pane canvas');
+        const d = c.getContext('2d').getImageData(0, 0, c.width, c.height).data;
+        let n = 0; for (let k = 0; k < d.length; k += 4) n += d[k + 3] > 200
+          && Math.abs(d[k] - r) + Math.abs(d[k + 1] - g) + Math.abs(d[k + 2] - b) < 30; return n; }""",
+        colour,
+    )
+
+
+READ_FRAME = """async (bytes) => {
+  const { tableOf } = await import("/field/connection.js");
+  return [...tableOf(new Uint8Array(bytes).buffer).robots.values()];
+}"""
+
+
+def test_a_robot_that_may_be_elsewhere_is_not_said_to_be_fresh_where_it_is_shown(page, bridge, desk):
+    wire = bridge.robot("leaper")
+    wire.plug_in(9)
+
+    def at(x):
+        """Have it say where it is, and not be silent, which would be another state."""
+        wire.tell("SendPos", {"x": x, "y": 80.0, "theta": 0.5, "v": 0.0})
+        page.wait_for_timeout(50)
+
+    def says(selector, pattern, x):
+        def holds():
+            at(x)
+            return re.search(pattern, page.locator(selector).inner_text())
+
+        wait_until(holds)
+
+    at(60.0)
+    select(page, "leaper")
+    says("#robot-facts", "^fresh · heard", 60.0)
+    assert coloured(page, *AMBER) == 0
+    says("#robot-facts", r"^may be elsewhere · heard .* km outside", 1e7)
+    assert page.locator("#robot-facts").inner_text().count("km outside") == 1
+    wait_until(lambda: at(1e7) or coloured(page, *AMBER) > 20)
+    page.locator("#menu-button").tap()
+    says("#robots", "leaper: may be elsewhere", 1e7)
+    says("#alarms", "leaper may be elsewhere", 1e7)
+    says("#robots", "leaper: fresh", 60.5)
+    says("#alarms", r"^(?![\s\S]*leaper may be)", 60.5)
+    wait_until(lambda: at(60.5) or coloured(page, *AMBER) == 0)
+    wire.close()
+    wait_until(lambda: was_removed(desk, "leaper"), 30)
+
+
+def test_it_is_known_of_very_many_robots_too(page):
+    robots = Robots()
+    for name in ("r1", "r2"):
+        robots.ready(name, 1, "websocket", 100.0)
+        robots.observe(name, SendPos(1.0, 2.0, 0.5, 0.0), "websocket", 100.0)
+    robots.disbelieve("r2", "websocket", 100.0, "it leapt")
+    frame = table_frame(100.0, robots.changed(-1), 100.0, form=PositionForm.PLACES)
+    first, second = page.evaluate(READ_FRAME, list(frame))
+    assert first == {"robot": "r1", "state": "fresh", "x": 1, "y": 2, "theta": 0.5}
+    assert second == {**first, "robot": "r2", "doubt": "it leapt"}
 
 
 def test_a_page_that_slept_reads_nothing_that_lay_on_its_link(page):

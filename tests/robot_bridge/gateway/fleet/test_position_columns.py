@@ -64,6 +64,8 @@ def fleet_of(poses):
         robots.ready(name, number, "sql" if number % 2 else "websocket", 10.0)
         if pose is not None:
             robots.observe(name, pose, "websocket", 10.0 + number)
+        if number % 4 == 1:
+            robots.disbelieve(name, "websocket", 10.0 + number, "it leapt")
         if number % 3 == 0:
             robots.assign(name, f"command-{number}")
             robots.measured(name, 0.0123456)
@@ -77,6 +79,12 @@ def test_it_says_of_each_robot_what_the_rows_say(poses, now):
     for report in reports_of(robots.changed(-1), now, RobotReport):
         told = {k: v for k, v in dataclasses.asdict(report).items() if v is not None and k != "robot"}
         told["state"] = told["state"].value
+        if report.doubt is not None:
+            # Rows say it to desks that do not know the field as well, in place of what the robot says.
+            assert told["status"] == "it leapt"
+            pose = robots.get(report.robot).pose
+            told = {k: v for k, v in told.items() if k != "status"}
+            told |= {} if pose is None or pose.status is None else {"status": pose.status}
         assert found[report.robot].keys() == told.keys()
         for name, value in told.items():
             expected = value if isinstance(value, str) else pytest.approx(float(value), abs=0.00051)
@@ -105,11 +113,24 @@ def test_a_place_keeps_every_digit():
 
 
 def test_in_the_form_places_state_and_place_are_told_in_half_as_many_bits():
-    poses = {"a": SendPos(123.456, -7.5, 1.25, 0.4, battery=0.5), "b": None}
-    robots = fleet_of(poses).changed(-1)
+    poses = {"a": SendPos(123.456, -7.5, 1.25, 0.4, battery=0.5)}
+    fleet = fleet_of(poses)
+    fleet.ready("b", 2, "sql", 10.0)
+    robots = fleet.changed(-1)
     params, found = unpacked(table_frame(1.0, robots, 12.0, form=PositionForm.PLACES), "<f4")
     assert params["columns"] == ["state", "x", "y", "theta"]
     assert found["b"] == {"state": "fresh"}
     told = found["a"]
     assert (told["state"], told["y"], told["theta"]) == ("fresh", -7.5, 1.25)
     assert told["x"] == pytest.approx(123.456, abs=1e-5)
+
+
+def test_in_the_form_places_a_robot_that_may_be_elsewhere_is_told_as_such():
+    robots = fleet_of({"a": SendPos(1.0, 2.0, 0.0, 0.5, battery=0.5), "b": SendPos(1.0, 2.0, 0.0, 0.5)})
+    params, found = unpacked(table_frame(1.0, robots.changed(-1), 12.0, form=PositionForm.PLACES), "<f4")
+    assert params["columns"] == ["state", "x", "y", "theta", "doubt"]
+    assert (found["b"]["doubt"], found["b"]["state"]) == ("it leapt", "fresh")
+    assert "doubt" not in found["a"]
+    robots.observe("b", SendPos(1.5, 2.0, 0.0, 0.5), "websocket", 12.0)
+    params, _ = unpacked(table_frame(1.0, robots.changed(-1), 12.0, form=PositionForm.PLACES), "<f4")
+    assert params["columns"] == ["state", "x", "y", "theta"]

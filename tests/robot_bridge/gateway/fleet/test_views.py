@@ -15,6 +15,7 @@ from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.messages.positions import (
     MOST_ALARMED,
     MOST_CELLS,
+    POSITION_TEXTS,
     AlarmLimits,
     FindRobots,
     GetPositions,
@@ -383,6 +384,8 @@ def test_stored_rows_say_what_a_table_made_anew_says():
             more = {"battery": 0.5, "status": f"state {moment}"} if number % 2 else {}
             fleet.put(f"r{number}", float(moment), **more)
             fleet.robots.assign(f"r{number}", f"command-{moment}" if moment % 3 else None)
+            if number % 5 == 1:
+                fleet.robots.disbelieve(f"r{number}", "websocket", fleet.clock.time(), f"leap {moment}")
         chosen = [robot for robot in fleet.robots.changed(-1) if rng.random() < 0.6]
         now = fleet.clock.time()
         assert in_words(*store.table(chosen, now)) == in_words(*position_table(chosen, now))
@@ -403,9 +406,8 @@ def test_rows_of_whom_nobody_sees_any_more_are_forgotten(monkeypatch):
 
 
 def in_words(columns, words):
-    texts = ("state", "link", "status", "command", "theta_from", "paths", "abilities")
     return {
-        name: [None if v != v else words[int(v)] if name in texts else v for v in values.tolist()]
+        name: [None if v != v else words[int(v)] if name in POSITION_TEXTS else v for v in values.tolist()]
         for name, values in columns.items()
     }
 
