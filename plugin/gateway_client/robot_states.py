@@ -22,6 +22,10 @@ from ...robot_bridge.core.position_frame import split_frame
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
+UNSURE = len(STATES)
+"""The look of a robot that is fresh and may not be where it is shown; of others it is the code of their
+state."""
+LOOKS = (*range(len(STATES)), UNSURE)
 WORDED = tuple(name for name in positions.POSITION_TEXTS if name != "state")
 COLUMNS = (*positions.POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
 """``state`` is an index into :data:`STATES`, ``received`` is on the monotonic clock, those of :data:`WORDED`
@@ -304,6 +308,16 @@ class RobotView:
         """Whether the robot ever said where it is."""
         return self.values.get("x") is not None and self.values.get("y") is not None
 
+    @property
+    def is_doubted(self) -> bool:
+        """Whether it may not be where it is shown."""
+        return self.values.get("doubt") is not None
+
+    @property
+    def shown_as(self) -> int:
+        """How it is shown: index into :data:`STATES`, or :data:`UNSURE`."""
+        return UNSURE if self.is_doubted and self.state is RobotState.FRESH else STATES.index(self.state)
+
 
 @dataclass(frozen=True)
 class RobotArrays:
@@ -311,7 +325,7 @@ class RobotArrays:
 
     ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres a
     second, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
-    ``age`` (n,) seconds since the last message.
+    ``age`` (n,) seconds since the last message; ``doubted`` (n,) whether it may not be where ``xy`` is.
     """
 
     names: list[str]
@@ -321,6 +335,14 @@ class RobotArrays:
     accuracy: Numbers
     state: npt.NDArray[np.intp]
     age: Numbers
+    doubted: npt.NDArray[np.bool_]
+
+    @cached_property
+    def shown_as(self) -> npt.NDArray[np.intp]:
+        """(n,) how each is shown: index into :data:`STATES`, or :data:`UNSURE`."""
+        if not self.doubted.any():
+            return self.state
+        return np.where(self.doubted & (self.state == _FRESH), UNSURE, self.state)
 
 
 class RobotStates:
@@ -421,6 +443,7 @@ class RobotStates:
             accuracy=seen.column("accuracy")[rows].copy(),
             state=state,
             age=age,
+            doubted=~np.isnan(seen.column("doubt")[rows]),
         )
 
     def column(self, name: str) -> Numbers:
@@ -446,6 +469,18 @@ class RobotStates:
         """Tell which robots said that they take no commands."""
         places, words = self._seen.texts("abilities")
         return places == words.index("") if "" in words else np.zeros(len(places), dtype=bool)
+
+    def doubts(self) -> dict[int, str]:
+        """Return by row why robots may not be where they are shown, of those that may not."""
+        places, words = self._seen.texts("doubt")
+        rows = np.flatnonzero(places == places)
+        found = places[rows].astype(np.intp).tolist()
+        return {row: words[place] for row, place in zip(rows.tolist(), found, strict=True)}
+
+    def doubted(self) -> set[str]:
+        """Return the names of those robots."""
+        names = self._seen.names
+        return {names[row] for row in self.doubts()}
 
     def row_values(self, row: int) -> dict[str, Any]:
         """Return what was told last of the robot in ``row``, as it came."""

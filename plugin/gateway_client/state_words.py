@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ...robot_bridge.core.messages.commands import CommandState
 from ...robot_bridge.core.messages.queues import QueueReport, QueueState, TaskKind, TaskReport, TaskState
 from ...robot_bridge.core.messages.safety import RobotState
 from ..ui.language import time_of_day, tr, tr_count
-from .robot_states import RobotStates
+from .robot_states import STATES, UNSURE, RobotStates, RobotView
 
 ROBOT_STATES = {
     RobotState.FRESH: tr("fresh"),
@@ -52,9 +54,20 @@ def part_in_words(robots: RobotStates) -> str:
     )
 
 
-def longest_word(words: dict) -> str:
+def longest_word(words: Iterable[str]) -> str:
     """Return the word that needs the widest column."""
-    return max(words.values(), key=len)
+    return max(words, key=len)
+
+
+def look_in_words(look: int) -> str:
+    """Return the word for how a robot is shown: its state, or that it may be elsewhere."""
+    return tr("unsure") if look == UNSURE else ROBOT_STATES[STATES[look]]
+
+
+def robot_state_in_words(view: RobotView) -> str:
+    """Return the state of a robot, and whether it may not be where it is shown."""
+    state = ROBOT_STATES[view.state]
+    return tr("{state}, may be elsewhere", state=state) if view.is_doubted else state
 
 
 TASK_KINDS = {

@@ -348,7 +348,10 @@ def _tree(model: LogModel) -> QTreeView:
     view.setExpandsOnDoubleClick(False)
     view.setIndentation(14)
     shrink_view(view)
-    for column, widest in ((2, longest_word(COMMAND_STATES)), (3, tr("{metres:.2f} m off", metres=0.0))):
+    for column, widest in (
+        (2, longest_word(COMMAND_STATES.values())),
+        (3, tr("{metres:.2f} m off", metres=0.0)),
+    ):
         view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(widest) + 12)
     view.header().setStretchLastSection(False)
     view.header().setSectionResizeMode(1, QHeaderView.ResizeMode.Stretch)

@@ -64,8 +64,11 @@ MOST = 20
 def state_rows(view: RobotView, task: CommandReport | None, off: str, position: str, crs: str) -> list[Row]:
     """Return how a robot is now, as the operator needs it first."""
     values = view.values
-    last_seen = last_seen_in_words(state_words.ROBOT_STATES[view.state], view.age, values.get("link"))
+    last_seen = last_seen_in_words(state_words.robot_state_in_words(view), view.age, values.get("link"))
     rows = [(tr("State"), last_seen)]
+    doubt = values.get("doubt")
+    if doubt:
+        rows.append((tr("Why elsewhere"), str(doubt)))
     if position:
         rows.append((tr("Position, {crs}", crs=crs), position))
     rows.append(
@@ -78,7 +81,7 @@ def state_rows(view: RobotView, task: CommandReport | None, off: str, position: 
     )
     if off:
         rows.append((tr("Off path or target"), off))
-    if values.get("status"):
+    if values.get("status") and values["status"] != doubt:
         rows.append((tr("It says"), str(values["status"])))
     return rows
 

@@ -18,9 +18,9 @@ from ...robot_bridge.core.messages.robots import SetPath, SetPosEnd
 from ...robot_bridge.core.messages.safety import RobotState
 from ..gateway_client.command_cache import CommandCache, PathDeviations, command_in_words
 from ..gateway_client.report_caches import QueueCache
-from ..gateway_client.robot_states import STATES, RobotStates
-from ..gateway_client.state_words import COMMAND_STATES, ROBOT_STATES, longest_word
-from ..ui.glyphs import STATE_COLOURS, StateIcons, for_letters
+from ..gateway_client.robot_states import LOOKS, STATES, UNSURE, RobotStates, RobotView
+from ..gateway_client.state_words import COMMAND_STATES, longest_word, look_in_words, robot_state_in_words
+from ..ui.glyphs import STATE_COLOURS, UNSURE_COLOUR, StateIcons, for_letters
 from ..ui.language import age_in_words, last_seen_in_words, tr
 from ..ui.tables import TO_THE_RIGHT
 
@@ -45,7 +45,7 @@ COLUMNS = (
     Column(
         "State",
         tr("State"),
-        longest_word(ROBOT_STATES),
+        longest_word(map(look_in_words, LOOKS)),
         tr("How far what is known of it can be trusted"),
     ),
     Column("Task", tr("Task"), "", tr("What it is doing, or what it says")),
@@ -135,13 +135,14 @@ class RobotChoice(str, Enum):
 
 @dataclass
 class FleetRows:
-    """Row k is the robot in row k of the picture. ``numbers`` has (n,) by column title, NaN where unknown."""
+    """Row k is the robot in row k of the picture. ``shown_as`` (n,) is as :class:`.RobotArrays` has it;
+    ``numbers`` has (n,) by column title, NaN where unknown."""
 
     picture: RobotStates
     book: CommandCache
     deviations: PathDeviations
     names: list[str]
-    state: npt.NDArray[np.intp]
+    shown_as: npt.NDArray[np.intp]
     xy: Floats
     numbers: dict[str, Floats]
     paused: frozenset[str]
@@ -175,7 +176,7 @@ class FleetRows:
         """Return the rows that are listed, by name: each word of ``text`` is in name, state, task or link."""
         rows = np.array(self.picture.by_name(), dtype=np.intp)
         if which is RobotChoice.TROUBLED:
-            bad = self.state != FRESH
+            bad = self.shown_as != FRESH
             bad[[row for name in troubled if (row := self.picture.row(name)) is not None]] = True
             rows = rows[bad[rows]]
         elif which is not RobotChoice.ALL:
@@ -202,7 +203,9 @@ class FleetRows:
 
     def _keys(self, rows: Rows, title: str) -> Floats:
         if title == "State":
-            return self.state[rows].astype(np.float64)
+            look = self.shown_as[rows]
+            # Between fresh and stale.
+            return np.where(look == UNSURE, FRESH + 0.5, look)
         if title == "Off":
             return self._offs()[rows]
         if title == "Position":
@@ -250,7 +253,7 @@ class FleetRows:
         """Tell which robots have ``word`` in their name, state, task or link; each text is looked at once,
         however many robots say it."""
         has = np.fromiter((word in name for name in names), dtype=bool, count=len(names))
-        has |= np.array([word in ROBOT_STATES[state].casefold() for state in STATES])[self.state]
+        has |= np.array([word in look_in_words(look).casefold() for look in LOOKS])[self.shown_as]
         return has | self.picture.says("link", word) | self._has_task(word)
 
     def _has_task(self, word: str) -> Bools:
@@ -282,7 +285,7 @@ def fleet_rows(
         "Ping": picture.column("latency"),
     }
     paused = frozenset(queue.robot for queue in queues if queue.state is QueueState.PAUSED)
-    return FleetRows(picture, book, deviations, robots.names, robots.state, robots.xy, numbers, paused)
+    return FleetRows(picture, book, deviations, robots.names, robots.shown_as, robots.xy, numbers, paused)
 
 
 # Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
@@ -360,9 +363,9 @@ class RobotModel(QAbstractTableModel):
         if role == Qt.ItemDataRole.DisplayRole:
             return self._text(row, column.title)
         if role == Qt.ItemDataRole.DecorationRole and column.title == "Robot":
-            return self._icons[self._state(row)]
+            return self._icons.unsure if self._is_unsure(row) else self._icons[self._state(row)]
         if role == Qt.ItemDataRole.ForegroundRole and column.title == "State":
-            return for_letters(STATE_COLOURS[self._state(row)])
+            return for_letters(UNSURE_COLOUR if self._is_unsure(row) else STATE_COLOURS[self._state(row)])
         if role == Qt.ItemDataRole.ToolTipRole:
             return self._tip(row)
         if role == Qt.ItemDataRole.TextAlignmentRole and column.is_number:
@@ -439,15 +442,18 @@ class RobotModel(QAbstractTableModel):
         self._order = order
         self._row_at = _inverse(order, len(self._fleet))
 
+    def _is_unsure(self, row: int) -> bool:
+        return bool(self._fleet.shown_as[row] == UNSURE)
+
     def _state(self, row: int) -> RobotState:
-        return STATES[int(self._fleet.state[row])]
+        return RobotState.FRESH if self._is_unsure(row) else STATES[int(self._fleet.shown_as[row])]
 
     def _text(self, row: int, title: str) -> str:
         fleet = self._fleet
         if title == "Robot":
             return fleet.names[row]
         if title == "State":
-            return ROBOT_STATES[self._state(row)]
+            return look_in_words(int(self._fleet.shown_as[row]))
         if title == "Task":
             return fleet.task(row)
         if title == "Link":
@@ -460,8 +466,11 @@ class RobotModel(QAbstractTableModel):
     def _tip(self, row: int) -> str:
         fleet, values = self._fleet, self._fleet.row_values(row)
         name, age = fleet.names[row], fleet.numbers["Age"][row]
-        last_seen = last_seen_in_words(ROBOT_STATES[self._state(row)], age, values.get("link"))
+        view = RobotView(name, values, self._state(row), float(age))
+        last_seen = last_seen_in_words(robot_state_in_words(view), age, values.get("link"))
         lines = [f"{name}: {last_seen}"]
+        if view.is_doubted:
+            lines.append(str(values["doubt"]))
         ping = fleet.numbers["Ping"][row]
         if np.isfinite(ping):
             lines.append(tr("its link takes {ms:.1f} ms there and back", ms=ping * 1000))
@@ -473,7 +482,7 @@ class RobotModel(QAbstractTableModel):
             lines.append(f"{command_in_words(task)}: {COMMAND_STATES[task.state]}")
         elif fleet.task(row) and not values.get("status"):
             lines.append(fleet.task(row))
-        if values.get("status"):
+        if values.get("status") and values["status"] != values.get("doubt"):
             lines.append(tr("it says: {text}", text=values["status"]))
         return "\n".join(lines)
 

@@ -344,6 +344,7 @@ def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[n
         accuracy=np.full(len(names), np.nan),
         state=np.where(silent, _LOST, _FRESH).astype(np.intp),
         age=age,
+        doubted=np.zeros(len(names), dtype=np.bool_),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cached_property
 
 import numpy as np
 import numpy.typing as npt
@@ -32,6 +33,9 @@ STATE_COLOURS = {
     RobotState.OFFLINE: QColor("#757575"),
 }
 """Each state has a shape of its own as well (see :mod:`.glyphs`)."""
+
+UNSURE_COLOUR = STATE_COLOURS[RobotState.STALE]
+"""Of a fresh robot that may be elsewhere: as one that was not heard for a while, with a broken outline."""
 
 STALE_LETTERS = QColor("#A15C00")
 
@@ -96,11 +100,13 @@ def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
 
 CELL = 32
 """Width and height of the square that a robot's drawing fits in at any heading."""
+BROKEN = [1.5, 1.1]
+"""Dashes and gaps of an outline, in widths of its pen."""
 ICON_SCALE = 2.04
 """From a robot's drawing to one of 64 pixels for tables."""
 
 
-def state_icon(state: RobotState) -> QIcon:
+def state_icon(state: RobotState, *, unsure: bool = False) -> QIcon:
     """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
     pixmap = QPixmap(64, 64)
     pixmap.fill(QColor(0, 0, 0, 0))
@@ -109,7 +115,7 @@ def state_icon(state: RobotState) -> QIcon:
         painter.translate(32, 32)
         painter.scale(ICON_SCALE, ICON_SCALE)
         painter.rotate(-90)
-        draw_robot(painter, state, True)
+        draw_robot(painter, state, True, unsure=unsure)
     return QIcon(pixmap)
 
 
@@ -120,20 +126,29 @@ class StateIcons(dict[RobotState, QIcon]):
         self[state] = state_icon(state)
         return self[state]
 
+    @cached_property
+    def unsure(self) -> QIcon:
+        """The icon of a fresh robot that may be elsewhere."""
+        return state_icon(RobotState.FRESH, unsure=True)
 
-def draw_robot(painter: QPainter, state: RobotState, with_heading: bool) -> None:
+
+def draw_robot(painter: QPainter, state: RobotState, with_heading: bool, *, unsure: bool = False) -> None:
     """Draw a robot that points along +x: full when fresh, hollow when stale, crossed out when lost, and a
-    box when offline."""
-    colour = STATE_COLOURS[state]
+    box when offline; hollow with a broken outline when ``unsure``: it may be elsewhere."""
+    colour = UNSURE_COLOUR if unsure else STATE_COLOURS[state]
     outline = _outline(state, with_heading)
     painter.setBrush(Qt.BrushStyle.NoBrush)
     painter.setPen(pen(CASING, 5.0))
     painter.drawPath(outline)
-    hollow = state in (RobotState.STALE, RobotState.LOST)
+    hollow = unsure or state in (RobotState.STALE, RobotState.LOST)
     painter.setPen(pen(PAPER, 3.2))
     painter.drawPath(outline)
     painter.setBrush(QBrush(PAPER if hollow else colour))
-    painter.setPen(pen(colour, 2.6 if hollow else 0.6))
+    rim = pen(colour, 2.6 if hollow else 0.6)
+    if unsure:
+        rim.setCapStyle(Qt.PenCapStyle.FlatCap)
+        rim.setDashPattern(BROKEN)
+    painter.setPen(rim)
     painter.drawPath(outline)
     if state is RobotState.LOST:
         _cross(painter, colour)

@@ -2172,6 +2172,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/state_words.py" />
+            <source>unsure</source>
+            <translation>inseguro</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>waiting</source>
             <translation>en espera</translation>
         </message>
@@ -2184,6 +2189,11 @@
             <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, EN PAUSA{when}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/state_words.py" />
+            <source>{state}, may be elsewhere</source>
+            <translation>{state}, puede estar en otro lugar</translation>
         </message>
         <message>
             <location filename="../../plugin/help.py" />
@@ -3259,6 +3269,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
+            <source>why</source>
+            <translation>por qué</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>hace {age_in_words}, {escape}</translation>
         </message>
@@ -4109,6 +4124,11 @@
             <translation>{text} (ahora no se le oye)</translation>
         </message>
         <message>
+            <location filename="../../plugin/panel/alarms/board.py" />
+            <source>{text}; {robot} may be elsewhere</source>
+            <translation>{text}; {robot} puede estar en otro lugar</translation>
+        </message>
+        <message>
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>; last{where}</source>
             <translation>; la última vez{where}</translation>
@@ -4252,6 +4272,11 @@
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>{robot} is outside the site{where}</source>
             <translation>{robot} está fuera del recinto{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} may not be where it is shown: {why}</source>
+            <translation>{robot} puede no estar donde se muestra: {why}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -5174,6 +5199,11 @@
             <location filename="../../plugin/panel/robot_details.py" />
             <source>The image that came cannot be read: it is none of a kind that QGIS knows.</source>
             <translation>La imagen que llegó no se puede leer: no es de ningún tipo que QGIS conozca.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_details.py" />
+            <source>Why elsewhere</source>
+            <translation>Por qué en otro lugar</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_details.py" />

@@ -2163,6 +2163,11 @@
         </message>
         <message>
             <location filename="../../plugin/gateway_client/state_words.py" />
+            <source>unsure</source>
+            <translation>bizonytalan</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/state_words.py" />
             <source>waiting</source>
             <translation>vár</translation>
         </message>
@@ -2175,6 +2180,11 @@
             <location filename="../../plugin/gateway_client/state_words.py" />
             <source>{robot}: {count}, PAUSED{when}{why}</source>
             <translation>{robot}: {count}, SZÜNETEL{when}{why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/gateway_client/state_words.py" />
+            <source>{state}, may be elsewhere</source>
+            <translation>{state}, lehet, hogy máshol van</translation>
         </message>
         <message>
             <location filename="../../plugin/help.py" />
@@ -3239,6 +3249,11 @@
         </message>
         <message>
             <location filename="../../plugin/map/overlay/fleet_overlay.py" />
+            <source>why</source>
+            <translation>miért</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/map/overlay/fleet_overlay.py" />
             <source>{age_in_words} ago, {escape}</source>
             <translation>{age_in_words}, {escape}</translation>
         </message>
@@ -4087,6 +4102,11 @@
             <translation>{text} (most nem hallani felőle)</translation>
         </message>
         <message>
+            <location filename="../../plugin/panel/alarms/board.py" />
+            <source>{text}; {robot} may be elsewhere</source>
+            <translation>{text}; {robot}: lehet, hogy máshol van</translation>
+        </message>
+        <message>
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>; last{where}</source>
             <translation>; utoljára{where}</translation>
@@ -4230,6 +4250,11 @@
             <location filename="../../plugin/panel/alarms/rules.py" />
             <source>{robot} is outside the site{where}</source>
             <translation>{robot} a telephelyen kívül van{where}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/alarms/rules.py" />
+            <source>{robot} may not be where it is shown: {why}</source>
+            <translation>{robot}: lehet, hogy nem ott van, ahol látszik: {why}</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/panel/alarms/watch.py" />
@@ -5146,6 +5171,11 @@
             <location filename="../../plugin/panel/robot_details.py" />
             <source>The image that came cannot be read: it is none of a kind that QGIS knows.</source>
             <translation>A megérkezett kép nem olvasható: nem a QGIS által ismert fajta.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/panel/robot_details.py" />
+            <source>Why elsewhere</source>
+            <translation>Miért máshol</translation>
         </message>
         <message>
             <location filename="../../plugin/panel/robot_details.py" />

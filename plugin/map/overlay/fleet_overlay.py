@@ -17,9 +17,9 @@ from ....robot_bridge.core.geometry import heading_of
 from ....robot_bridge.core.messages.commands import CommandReport
 from ....robot_bridge.core.sites.frame import SiteFrame
 from ...gateway_client.command_cache import command_in_words
-from ...gateway_client.robot_states import RobotView
-from ...gateway_client.state_words import COMMAND_STATES, ROBOT_STATES
-from ...ui.glyphs import STATE_COLOURS
+from ...gateway_client.robot_states import UNSURE, RobotView
+from ...gateway_client.state_words import COMMAND_STATES, robot_state_in_words
+from ...ui.glyphs import STATE_COLOURS, UNSURE_COLOUR
 from ...ui.language import tr
 from .grouped_robots import BorderHints, DensityPainter, Hint
 from .labels import Labels, NamesPainter, age_in_words
@@ -233,10 +233,9 @@ class HoverCard(QLabel):
 def card(view: RobotView, task: CommandReport | None, remaining: float | None, frame: SiteFrame) -> str:
     """Return what is known of a robot as rich text; what it has not said is left out."""
     report = view.report
-    colour = STATE_COLOURS[view.state].name()
-    head = (
-        f'<b>{escape(view.name)}</b> &nbsp;<span style="color:{colour}">■</span> {ROBOT_STATES[view.state]}'
-    )
+    colour = (UNSURE_COLOUR if view.shown_as == UNSURE else STATE_COLOURS[view.state]).name()
+    state = robot_state_in_words(view)
+    head = f'<b>{escape(view.name)}</b> &nbsp;<span style="color:{colour}">■</span> {state}'
     rows = [
         (
             tr("last message"),
@@ -261,7 +260,9 @@ def card(view: RobotView, task: CommandReport | None, remaining: float | None, f
     if task is not None:
         left = "" if remaining is None else tr(", {remaining:.1f} m to go", remaining=remaining)
         rows.append((tr("task"), f"{escape(command_in_words(task))}: {COMMAND_STATES[task.state]}{left}"))
-    if report.status:
+    if report.doubt:
+        rows.append((tr("why"), escape(report.doubt)))
+    if report.status and report.status != report.doubt:
         rows.append((tr("it says"), escape(report.status)))
     cells = "".join(f"<tr><td>{name}&nbsp;&nbsp;</td><td>{value}</td></tr>" for name, value in rows)
     return f"{head}<table>{cells}</table>"

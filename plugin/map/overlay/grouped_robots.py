@@ -13,7 +13,7 @@ from qgis.PyQt.QtGui import QImage, QPainter, QPixmap, QTransform
 
 from ....robot_bridge.core.messages.positions import Density
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_states import STATES
+from ...gateway_client.robot_states import STATES, UNSURE
 from ...layers.site_transform import SiteToMapTransform
 from ...ui.glyphs import PAPER, SELECTED, STATE_COLOURS, draw_arrow
 from ...ui.language import tr_count
@@ -37,8 +37,8 @@ FIND_EVERY = 0.25
 """Seconds for which the arrows and their numbers stay as they are unless the view moves."""
 _SLOTS = 10_000
 """More than fit along any border."""
-_URGENT = np.array([1, 2, 3, 0])
-"""The rank of each of STATES: an arrow for several robots has the colour of the one to worry about."""
+_URGENT = np.array([1, 3, 4, 0, 2])
+"""The rank of each look: an arrow for several robots has the colour of the one to worry about."""
 _BY_RANK = np.argsort(_URGENT)
 
 
@@ -130,7 +130,9 @@ class BorderHints:
         chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
         rows = np.concatenate([hint.rows for hint in self.hints])
         first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
-        states = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.state[rows]], first)]
+        looks = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.shown_as[rows]], first)]
+        # As that of a stale one: an arrow has no outline that could be broken.
+        states = np.where(looks == UNSURE, STATES.index(RobotState.STALE), looks)
         is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
         cells = np.round(turns * ARROW_TURNS).astype(np.intp) % ARROW_TURNS
@@ -153,9 +155,9 @@ class BorderHints:
 
 def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
     """Return how much each robot is to be noticed: a selected one most, then one to worry about."""
-    ranks = _URGENT[placed.scene.robots.state]
+    ranks = _URGENT[placed.scene.robots.shown_as]
     rows = placed.scene.rows
-    ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(STATES)
+    ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(_URGENT)
     return ranks
 
 

@@ -13,8 +13,8 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPixmap, QStaticText, QTransform
 
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_states import STATES, RobotArrays
-from ...gateway_client.state_words import ROBOT_STATES
+from ...gateway_client.robot_states import STATES, UNSURE, RobotArrays
+from ...gateway_client.state_words import ROBOT_STATES, look_in_words
 from ...ui.glyphs import PAPER, painting
 from ...ui.language import tr
 from .robots_painter import Fragments
@@ -334,9 +334,10 @@ SPOTS = 10_000
 """More than any screen has from top to bottom."""
 STATE_LETTERS = 14.0
 """Letters that a robot's state and age take at most, but for hours and days."""
-_URGENT = np.array([5, 3, 1, 7], dtype=np.int8)
-"""The rank of each of STATES: the lost before the stale before the fresh before those that are off, each with
-one before it for those that had their texts shown already. Small numbers: numpy sorts them faster."""
+_URGENT = np.array([5, 3, 1, 7, 3], dtype=np.int8)
+"""The rank of each look: the lost before the stale and the unsure before the fresh before those that are off,
+each with one before it for those that had their texts shown already. Small numbers: numpy sorts them
+faster."""
 
 
 class NamesPainter:
@@ -436,14 +437,14 @@ class NamesPainter:
     ) -> Rows:
         """Return the rows whose texts do not cover another's text or robot, the most urgent first."""
         robots, scene, seen = placed.scene.robots, placed.scene, view.rows
-        rank = _URGENT.take(robots.state)
+        rank = _URGENT.take(robots.shown_as)
         rank[self._named[self._named < len(rank)]] -= 1
         rank[[scene.rows[name] for name in scene.chosen if name in scene.rows]] = -1
         rank = rank.take(seen)
         if robots.names is not self._names and robots.names != self._names:
             self._lengths = np.fromiter(map(len, robots.names), np.float64, len(robots.names))
         self._names = robots.names
-        more = np.where(robots.state.take(seen) > 0, STATE_LETTERS + 1.0, 1.0)
+        more = np.where(robots.shown_as.take(seen) > 0, STATE_LETTERS + 1.0, 1.0)
         width = LETTER * (self._lengths.take(seen) + more)
         corner = _corners(view.there, width, screen)
         room = LabelPlacer(screen, view.there, taken)
@@ -457,7 +458,10 @@ class NamesPainter:
 
 def texts(robots: RobotArrays, row: int) -> list[str]:
     """Return the texts beside a robot: its name; and its state and its last message's age unless fresh."""
-    state = STATES[robots.state[row]]
+    look = robots.shown_as[row]
+    if look == UNSURE:
+        return [robots.names[row], f"· {look_in_words(UNSURE)}"]
+    state = STATES[look]
     if state is RobotState.FRESH:
         return [robots.names[row]]
     if state is RobotState.OFFLINE:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import accumulate
 
 import numpy as np
@@ -13,13 +14,14 @@ from qgis.PyQt.QtCore import QPointF, Qt
 from qgis.PyQt.QtGui import QColor, QImage, QPainter, QPixmap
 
 from ....robot_bridge.core.messages.safety import RobotState
-from ...gateway_client.robot_states import STATES
+from ...gateway_client.robot_states import STATES, UNSURE
 from ...ui.glyphs import (
     CASING,
     CELL,
     PAPER,
     SELECTED,
     STATE_COLOURS,
+    UNSURE_COLOUR,
     draw_cone,
     draw_robot,
     flat,
@@ -112,16 +114,21 @@ def cell(pixel_ratio: float, size: float = 1.0) -> int:
     return round(CELL * size * pixel_ratio)
 
 
-def robot_atlas(pixel_ratio: float, size: float, state: RobotState) -> Cells:
-    """Return a robot in ``state`` in cells of :func:`cell` device pixels.
+def robot_atlas(pixel_ratio: float, size: float, state: RobotState, *, unsure: bool = False) -> Cells:
+    """Return a robot in ``state`` in cells of :func:`cell` device pixels; ``unsure`` as one that may be
+    elsewhere.
 
     In cell k it points k / :data:`HEADINGS` of a turn clockwise from +x; in the last one its heading is not
     known. ``size`` 1 is the drawing as it is.
     """
     side = cell(pixel_ratio, size)
     scale = side / CELL
-    pointing = turned(lambda painter: draw_robot(painter, state, True), side, scale, HEADINGS)
-    unknown = drawn(lambda painter: draw_robot(painter, state, False), side, scale)
+
+    def draw(painter: QPainter, *, with_heading: bool) -> None:
+        draw_robot(painter, state, with_heading, unsure=unsure)
+
+    pointing = turned(partial(draw, with_heading=True), side, scale, HEADINGS)
+    unknown = drawn(partial(draw, with_heading=False), side, scale)
     return np.concatenate([pointing, unknown[None]])
 
 
@@ -264,10 +271,10 @@ CORNERS = 32
 SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
-_UPWARDS = (_OFFLINE, _FRESH, _STALE, _LOST)
+_UPWARDS = (_OFFLINE, _FRESH, UNSURE, _STALE, _LOST)
 """In which order robots are painted, the selected ones last: what needs to be noticed lies on top."""
 _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
-"""The place of each of STATES in that order."""
+"""The place of each look in that order."""
 STRIP = 16
 STRIPS = 4096
 """Pixels of a strip of the screen, and more strips than any screen has."""
@@ -280,7 +287,7 @@ class RobotsPainter:
 
     def __init__(self) -> None:
         self._drawings: dict[tuple[float, int], Cells] = {}
-        """Of a size and a state; in the order in which they stand in :attr:`_sprites`."""
+        """Of a size and a look; in the order in which they stand in :attr:`_sprites`."""
         self._sprites: Sprites | None = None
         self._marks: dict[float, Sprites] = {}
         self._made_for = 0.0, 0.0
@@ -313,9 +320,9 @@ class RobotsPainter:
         """Make the drawings that are missing for :meth:`paint`: that takes as long as all else in it."""
         self.marks(screen.ratio, self.magnification)
         size = _size(view)
-        states = np.bincount(placed.scene.robots.state.take(view.rows))
+        looks = np.bincount(placed.scene.robots.shown_as.take(view.rows))
         if self.arrows:
-            self._provide({(_worth(state, size), state) for state in np.flatnonzero(states).tolist()})
+            self._provide({(_worth(look, size), look) for look in np.flatnonzero(looks).tolist()})
 
     def paint(
         self,
@@ -332,12 +339,12 @@ class RobotsPainter:
         speed = robots.v.take(view.rows)
         _velocities(painter, view, speed, known, NOSE * size * self.magnification + SHORTEST_VELOCITY)
         chosen = [scene.rows[name] for name in scene.chosen if name in scene.rows]
-        layer = _LAYER.take(robots.state)
+        layer = _LAYER.take(robots.shown_as)
         if chosen:
             rings = np.full(len(chosen), OTHER_RING)
             rings[-1:] = RING
             marks.paint(painter, view.pixels[chosen], rings)
-            layer[chosen] += len(STATES)
+            layer[chosen] += len(_UPWARDS)
         if not self.arrows:
             return
         cells = np.where(known, _directions(view.heading), HEADINGS)
@@ -357,20 +364,23 @@ class RobotsPainter:
             return
         self._provide({*shown.values()})
         places = list(self._drawings)
-        first = np.zeros(2 * len(STATES), dtype=np.intp)
+        first = np.zeros(2 * len(_UPWARDS), dtype=np.intp)
         first[[*shown]] = [(HEADINGS + 1) * places.index(drawing) for drawing in shown.values()]
         order = _from_the_top(layer, at[:, 1])
         cells = cells + first.take(layer)
         self._sprites.paint(painter, at.take(order, axis=0), cells.take(order))
 
     def _provide(self, drawings: set[tuple[float, int]]) -> None:
-        """Have what robots of a size and a state look like, drawn when the first of them is seen."""
+        """Have what robots of a size and a look are like, drawn when the first of them is seen."""
         missing = drawings - self._drawings.keys()
         if not missing:
             return
         ratio, magnification = self._made_for
-        for size, state in sorted(missing):
-            self._drawings[size, state] = robot_atlas(ratio, size * magnification, STATES[state])
+        for size, look in sorted(missing):
+            state = STATES[_FRESH if look == UNSURE else look]
+            self._drawings[size, look] = robot_atlas(
+                ratio, size * magnification, state, unsure=look == UNSURE
+            )
         self._sprites = Sprites([*self._drawings.values()], ratio)
 
 
@@ -379,16 +389,16 @@ def _size(view: InView) -> float:
     return next(size for most, size in SIZES if len(view.rows) <= most)
 
 
-def _worth(state: int, size: float) -> float:
-    """Return the size of robots in a state where those that are as they should be are drawn in ``size``."""
-    return size if state == _FRESH else max(size, NOTICEABLE)
+def _worth(look: int, size: float) -> float:
+    """Return the size of robots of a look where those that are as they should be are drawn in ``size``."""
+    return size if look == _FRESH else max(size, NOTICEABLE)
 
 
 def _drawing(layer: int, size: float) -> tuple[float, int]:
-    """Return the size and the state of the robots in a layer where most are drawn in ``size``."""
-    is_chosen, place = divmod(layer, len(STATES))
-    state = _UPWARDS[place]
-    return (1.0 if is_chosen else _worth(state, size)), state
+    """Return the size and the look of the robots in a layer where most are drawn in ``size``."""
+    is_chosen, place = divmod(layer, len(_UPWARDS))
+    look = _UPWARDS[place]
+    return (1.0 if is_chosen else _worth(look, size)), look
 
 
 def _directions(heading: npt.NDArray[np.float32]) -> Rows:
@@ -430,7 +440,8 @@ def paint_circles(
 ) -> None:
     """Paint what :func:`circles` found: the robot is somewhere inside."""
     for row, corners in found:
-        colour = QColor(STATE_COLOURS[STATES[placed.scene.robots.state[row]]])
+        look = placed.scene.robots.shown_as[row]
+        colour = QColor(UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]])
         outline = polygon(screen.pixels(corners))
         painter.setPen(pen(PAPER, 2.6, 0.55))
         colour.setAlpha(30)

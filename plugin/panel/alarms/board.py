@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -66,7 +66,8 @@ def alarm_colour(pressing: bool) -> QColor:
 class ReportedAlarm(NamedTuple):
     """An alarm as long as the gateway reports it; ``xy`` is metres in the site frame.
 
-    ``began`` is seconds since 1970, None where the desk's own time counts.
+    ``began`` is seconds since 1970, None where the desk's own time counts. ``unsure`` names those of the two
+    that may be elsewhere.
     """
 
     kind: AlarmKind
@@ -76,6 +77,7 @@ class ReportedAlarm(NamedTuple):
     other: str = ""
     area: str = ""
     began: float | None = None
+    unsure: tuple[str, ...] = ()
 
     @property
     def key(self) -> Key:
@@ -101,19 +103,19 @@ def passing_alarms(conflicts: Conflicts, limits: rules.Thresholds) -> list[Repor
     return list({alarm.key: alarm for alarm in reversed(found)}.values())
 
 
-def nearness_alarms(alarms: Iterable[NearnessAlarm]) -> list[ReportedAlarm]:
-    """Return the people and vehicles that are near robots, or will be soon, as alarms."""
-    return [
-        ReportedAlarm(
-            AlarmKind.COMES_NEAR if one.seconds else AlarmKind.NEAR_ROBOT,
-            one.seen,
-            _nearness_text(one),
-            (one.x, one.y),
-            one.robot,
-            began=one.since,
-        )
-        for one in alarms
-    ]
+def nearness_alarms(alarms: Iterable[NearnessAlarm], doubted: Collection[str] = ()) -> list[ReportedAlarm]:
+    """Return the people and vehicles that are near robots, or will be soon, as alarms; those ``doubted`` may
+    be elsewhere."""
+    found = []
+    for one in alarms:
+        kind = AlarmKind.COMES_NEAR if one.seconds else AlarmKind.NEAR_ROBOT
+        unsure = tuple(name for name in (one.seen, one.robot) if name in doubted)
+        text = _nearness_text(one)
+        for name in unsure:
+            text = tr("{text}; {robot} may be elsewhere", text=text, robot=name)
+        place = (one.x, one.y)
+        found.append(ReportedAlarm(kind, one.seen, text, place, one.robot, began=one.since, unsure=unsure))
+    return found
 
 
 def _nearness_text(one: NearnessAlarm) -> str:
@@ -181,6 +183,7 @@ class AlarmBoard:
     def __init__(self, limits: rules.Thresholds | None = None) -> None:
         self._limits = limits or rules.Thresholds()
         self._rows = {kind: RowHysteresis() for kind in rules.RULES}
+        self._doubted = RowHysteresis()
         self._pairs = PairHysteresis()
         self._reported: dict[Key, float] = {}
         """The alarms that the gateway judges, with when each was reported last."""
@@ -215,6 +218,7 @@ class AlarmBoard:
             rises, falls = self._rows[kind].update(holds, over, moment, wait, OFF_AFTER)
             events += [self._begin(kind, now, row, at) for row in rises.tolist()]
             events += self._end([(kind, now.names[row], "") for row in falls.tolist()], at)
+        events += self._begin_for_doubts(now, moment, at)
         events += self._look_at_pairs(now, at)
         self.log.extend(events)
         self._let_go()
@@ -232,7 +236,9 @@ class AlarmBoard:
                 continue
             if one.key not in self._reported:
                 began = at if one.began is None else one.began
-                alarm = Alarm(one.kind, one.robot, one.text, began, one.other, one.xy, area=one.area)
+                alarm = Alarm(
+                    one.kind, one.robot, one.text, began, one.other, one.xy, area=one.area, unsure=one.unsure
+                )
                 events.append(self._put_up(alarm, at))
             self._reported[one.key] = moment
             renewed |= self._renew_text(one)
@@ -269,6 +275,7 @@ class AlarmBoard:
     def clear(self) -> None:
         """Forget the robots and their alarms: they are another site's. The log stays."""
         self._rows = {kind: RowHysteresis() for kind in rules.RULES}
+        self._doubted = RowHysteresis()
         self._pairs = PairHysteresis()
         self._reported.clear()
         self._alarms.clear()
@@ -276,7 +283,7 @@ class AlarmBoard:
 
     def drop(self, gone: RemovedRobots) -> None:
         """Forget robots that are there no more or out of view, with their alarms. The log stays."""
-        for latch in (*self._rows.values(), self._pairs):
+        for latch in (*self._rows.values(), self._doubted, self._pairs):
             latch.drop(gone.rows)
         names = gone.all_names
         for key, alarm in list(self._alarms.items()):
@@ -292,6 +299,15 @@ class AlarmBoard:
             over = (alarm for alarm in self._alarms.values() if alarm.ended is not None)
             for alarm in sorted(over, key=lambda alarm: alarm.began)[:too_many]:
                 del self._alarms[alarm.key]
+
+    def _begin_for_doubts(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
+        """Let what began since a robot does not know its place begin again where it may be elsewhere."""
+        kind = AlarmKind.UNSURE
+        holds = now.doubted & self._rows[kind].on
+        rises, _ = self._doubted.update(holds, ~now.doubted, moment, 0.0, 0.0)
+        held = [(row, self._alarms.get((kind, now.names[row], ""))) for row in rises.tolist()]
+        anew = [row for row, alarm in held if alarm is not None and not alarm.unsure]
+        return [self._begin(kind, now, row, at) for row in anew]
 
     def _look_at_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
         one, other, apart = rules.too_close(now, self._limits)
@@ -313,18 +329,20 @@ class AlarmBoard:
             at,
             "" if other is None else now.names[other],
             (x, y) if np.isfinite(x) and np.isfinite(y) else None,
+            unsure=(now.names[row],) if kind is AlarmKind.UNSURE and now.doubted[row] else (),
         )
         return self._put_up(alarm, at)
 
     def _renew_text(self, one: ReportedAlarm) -> bool:
         """Let an alarm say what the gateway says of it now, and return whether that is something else.
 
-        How near two robots pass changes all the time: that stays as it was when the alarm began.
+        How near two robots pass changes all the time: that stays as it was when the alarm began, or when one
+        of them could be elsewhere, or no more.
         """
         alarm = self._alarms.get(one.key)
-        if alarm is None or alarm.text == one.text or not one.area:
+        if alarm is None or alarm.text == one.text or not (one.area or alarm.unsure != one.unsure):
             return False
-        self._alarms[one.key] = alarm._replace(text=one.text)
+        self._alarms[one.key] = alarm._replace(text=one.text, unsure=one.unsure)
         return True
 
     def _put_up(self, alarm: Alarm, at: float) -> AlarmEvent:

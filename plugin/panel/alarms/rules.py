@@ -154,8 +154,8 @@ class Alarm(NamedTuple):
     """Something that holds since ``began``, or held until ``ended``; times are seconds since 1970.
 
     It stays until it is over and somebody has seen it. ``times`` counts how often it began since it was
-    last acknowledged. ``area`` is the keepout or obstacle that it is about. ``xy`` is where the robot was
-    when it began, metres in the site frame.
+    last acknowledged. ``area`` is the keepout or obstacle that it is about, ``unsure`` those of its robots
+    that may be elsewhere. ``xy`` is where the robot was when it began, metres in the site frame.
     """
 
     kind: AlarmKind
@@ -169,6 +169,7 @@ class Alarm(NamedTuple):
     by: str = ""
     times: int = 1
     area: str = ""
+    unsure: tuple[str, ...] = ()
 
     @property
     def key(self) -> Key:
@@ -225,6 +226,7 @@ class AlarmSnapshot:
     ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
     ``stopped`` (n,) whether it said that it stops; ``driving`` (n,) whether it accepted a task that is not
     finished and nobody has it wait; ``only_seen`` (n,) whether it takes no commands, as phones do;
+    ``doubted`` (n,) whether it may not be where ``xy`` is, for which ``doubts`` has the reasons by row;
     ``off_road`` (n,) whether it is further than the margin from every road surface, and ``on_road`` whether
     it is on one, both None where no surfaces are known. ``bounds`` is x_min, y_min, x_max, y_max.
     """
@@ -239,6 +241,8 @@ class AlarmSnapshot:
     driving: Bools
     only_seen: Bools
     bounds: tuple[float, float, float, float]
+    doubted: Bools
+    doubts: dict[int, str]
     off_road: Bools | None = None
     on_road: Bools | None = None
 
@@ -249,14 +253,16 @@ def lost(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
 
 
 def unsure(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
-    """A robot says that it does not know its place; over when it does, or says no more of it, or is offline.
+    """A robot may not be where it is shown, or says that it does not know its place; over when it is believed
+    and does, or says no more of it, or is offline.
 
     A margin as large as the limit would never end: then half the limit is well enough.
     """
     surely = max(limits.unsure - limits.unsure_margin, limits.unsure / 2)
     fresh = now.state == FRESH
-    known = (now.accuracy < surely) | np.isnan(now.accuracy)
-    return fresh & (now.accuracy >= limits.unsure), (fresh & known) | (now.state == OFFLINE)
+    known = ((now.accuracy < surely) | np.isnan(now.accuracy)) & ~now.doubted
+    begins = (now.accuracy >= limits.unsure) | now.doubted
+    return fresh & begins, (fresh & known) | (now.state == OFFLINE)
 
 
 def low_battery(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
@@ -330,6 +336,9 @@ def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None 
         last = tr("; last{where}", where=where) if where else ""
         return tr("{robot} is lost: nothing is heard of it{last}", robot=name, last=last)
     if kind is AlarmKind.UNSURE:
+        if now.doubted[row]:
+            why = now.doubts.get(row, "")
+            return tr("{robot} may not be where it is shown: {why}", robot=name, why=why)
         accuracy = now.accuracy[row]
         return tr(
             "{robot} does not know its place: ± {accuracy:.1f} m{where}",

@@ -145,13 +145,15 @@ class SnapshotBuilder:
             xy=robots.xy,
             v=self._speeds(robots, moment),
             battery=self._state.robots.column("battery"),
-            # Nobody drives by the accuracy of what is only seen: a phone's is some metres all day.
+            # Nobody drives by the place of what is only seen: a phone's is metres, or seconds, off all day.
             accuracy=np.where(only_seen, np.nan, robots.accuracy),
             state=robots.state,
             stopped=self._state.robots.column("stopped") == 1.0,
             driving=self._driving(len(robots.names)),
             only_seen=only_seen,
             bounds=self._state.site.bounds,
+            doubted=robots.doubted & ~only_seen,
+            doubts=self._state.robots.doubts(),
             off_road=off,
             on_road=on,
         )
@@ -329,7 +331,8 @@ class AlarmWatch(QObject):
 
     def _take_reported(self, moment: float) -> None:
         reported = fence_alarms(self._state.geofence.alarms)
-        reported += nearness_alarms(self._state.nearness.alarms)
+        if self._state.nearness.alarms:
+            reported += nearness_alarms(self._state.nearness.alarms, self._state.robots.doubted())
         reported += passing_alarms(self._state.conflicts, self.board.limits)
         events, renewed = self.board.report(reported, moment, time.time())
         self._tell(events)

@@ -11,12 +11,16 @@ from fleet_supervisor.plugin.gateway_client.robot_rows import table_from_rows
 from fleet_supervisor.plugin.gateway_client.robot_states import (
     COLUMNS,
     SPARE_WORDS,
+    STATES,
+    UNSURE,
+    RobotStates,
     RobotTable,
     table_from_frame,
 )
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
 from fleet_supervisor.robot_bridge.core.messages.positions import PositionForm
 from fleet_supervisor.robot_bridge.core.messages.robots import SendPos
+from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from fleet_supervisor.robot_bridge.gateway.fleet.operator_updates import EVERYTHING, Snapshots
 from fleet_supervisor.robot_bridge.gateway.model.robots import Robots
 
@@ -33,6 +37,37 @@ def gateway(number=3):
 def frames(robots):
     made = Snapshots(robots, ManualClock(wall=102.5))
     return [made.after(EVERYTHING, form=form).frame for form in (PositionForm.ROWS, PositionForm.COLUMNS)]
+
+
+def test_who_may_be_elsewhere_is_known_from_rows_and_from_columns_until_it_is_believed():
+    robots = gateway()
+    robots.disbelieve("r1", "websocket", 102.0, "it leapt")
+    for form, frame in zip(("rows", "columns"), frames(robots), strict=True):
+        states = RobotStates()
+        table = (
+            table_from_rows(json.loads(frame)["params"]["robots"], 7.0)
+            if form == "rows"
+            else table_from_frame(frame, 7.0)
+        )
+        states.merge(table)
+        seen = states.arrays(7.0)
+        row = states.row("r1")
+        assert (seen.doubted.tolist().index(True), seen.doubted.sum(), states.doubts()) == (
+            row,
+            1,
+            {row: "it leapt"},
+        )
+        assert seen.shown_as[row] == UNSURE and (seen.shown_as == seen.state).sum() == 2
+        # Silent, it is as any other: nobody knows where it is.
+        assert states.arrays(1000.0).shown_as.tolist() == [STATES.index(RobotState.LOST)] * 3
+        view = states.view("r1", 7.0)
+        assert (view.shown_as, view.report.doubt) == (UNSURE, "it leapt")
+        # A robot that has a place says what it says itself in columns; rows say it to older desks as well.
+        assert view.report.status == ("it leapt" if form == "rows" else "docking")
+    robots.observe("r1", SendPos(1.5, 2.5, 0.5, 1.0), "websocket", 102.2)
+    for frame in frames(robots)[1:]:
+        states.merge(table_from_frame(frame, 8.0))
+    assert states.doubts() == {} and not states.arrays(8.0).doubted.any()
 
 
 def test_it_is_what_the_rows_are():

@@ -8,13 +8,18 @@ from __future__ import annotations
 import math
 from urllib.request import urlopen
 
+import numpy as np
 import pytest
 from fleet_supervisor.plugin.panel.emergency import ClearDialog
+from fleet_supervisor.plugin.panel.robot_model import TITLES
+from fleet_supervisor.plugin.ui.glyphs import UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
-from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton
+from qgis.PyQt.QtWidgets import QLabel, QLineEdit, QPushButton, QTableView
 
+from tests.plugin.map.on_canvas import expected, spots
 from tests.robot_bridge.links.vda5050.peers import Yard, require_peers
 from tests.support.processes import Processes, free_port
+from tests.support.robots.robot_wires import RobotWire
 
 ROBOT = "linked"
 
@@ -128,3 +133,44 @@ def test_a_tracker_is_only_seen_and_a_target_for_it_is_refused_with_the_reason(l
             "the reason", lambda: "was not sent: linked is only seen" in str(operator.notices()), 20
         )
         assert operator.sent_to(ROBOT) == []
+
+
+def test_a_robot_that_leaps_is_unsure_on_the_map_in_the_list_and_among_the_alarms_until_believed(
+    loop, operator
+):
+    robot = RobotWire(f"{loop.address}/robot?robot={ROBOT}")
+    robot.plug_in(1)
+
+    def say(x):
+        """Have it say where it is: silent, it would be stale."""
+        robot.tell("SendPos", {"x": x, "y": 8.0, "theta": 0.5, "v": 0.0})
+
+    def shown():
+        """Return its state in the list, and how many points at its place have the colour of such robots."""
+        listed = operator._window.findChild(QTableView, "fleet_robot_table").model()
+        state = listed.index(0, TITLES.index("State")).data()
+        points = spots(operator.canvas, UNSURE_COLOUR)
+        at = expected(operator.canvas, operator.desk.state.site, 20.0, 8.0)
+        return state, int((np.hypot(*(points - at).T) < 14).sum())
+
+    def alarms():
+        model = operator._window.findChild(QTableView, "fleet_alarms").model()
+        return [(model.index(row, 1).data(), model.index(row, 2).data()) for row in range(model.rowCount())]
+
+    def is_shown(x, state, has_points):
+        say(x)
+        word, points = shown()
+        return word == state and (points > 15) is has_points
+
+    try:
+        say(20.0)
+        operator.connect_to(loop, [ROBOT], declare_paths=False)
+        operator.wait("it fresh", lambda: is_shown(20.0, "fresh", False), 20)
+        operator.wait("it unsure", lambda: is_shown(5e6, "unsure", True), 20)
+        operator.wait("the alarm", lambda: say(5e6) or [state for _, state in alarms()] == ["new"], 20)
+        ((text, _),) = alarms()
+        assert text.startswith("linked may not be where it is shown: ") and "km outside site" in text
+        operator.wait("it fresh again", lambda: is_shown(20.1, "fresh", False), 20)
+        operator.wait("the end", lambda: say(20.1) or [state for _, state in alarms()] == ["over"], 20)
+    finally:
+        robot.close()

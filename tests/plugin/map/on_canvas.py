@@ -14,7 +14,7 @@ from qgis.PyQt.QtGui import QColor, QImage
 from qgis.PyQt.QtWidgets import QApplication
 
 
-def arrays(*robots, v=np.nan, accuracy=np.nan, age=0.0) -> RobotArrays:
+def arrays(*robots, v=np.nan, accuracy=np.nan, age=0.0, doubted=False) -> RobotArrays:
     number = len(robots)
     return RobotArrays(
         names=[f"r{k}" for k in range(1, number + 1)],
@@ -24,6 +24,7 @@ def arrays(*robots, v=np.nan, accuracy=np.nan, age=0.0) -> RobotArrays:
         accuracy=np.full(number, accuracy),
         state=np.array([STATES.index(state) for _, _, _, state in robots], dtype=np.intp),
         age=np.full(number, age),
+        doubted=np.full(number, doubted),
     )
 
 

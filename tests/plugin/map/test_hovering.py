@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 from fleet_supervisor.plugin.map.tools.drawing_tools import BESIDE
+from fleet_supervisor.plugin.ui.glyphs import UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandState
 from qgis.PyQt.QtCore import QEvent, QPoint, QPointF, QRect, QSize, Qt
 from qgis.PyQt.QtGui import QMouseEvent
@@ -86,6 +87,18 @@ def test_it_follows_what_comes_in_and_goes_when_the_robot_drives_off(
     wait(lambda: "25%" in cards(viewport)[0], what="the battery")
     gateway.show(make_robot("r2", 20, 20))
     wait(lambda: cards(viewport) == [], what="the card to go")
+
+
+def test_why_a_robot_may_be_elsewhere_is_on_its_card_once(viewport, gateway, iface, make_robot, wait):
+    point_at(viewport, iface.pixel(80, 60))
+    # As a gateway tells it in rows: the status says it to desks that do not know more.
+    gateway.show(make_robot("r2", 80, 60, status="it <leapt>", doubt="it <leapt>"))
+    wait(lambda: "fresh, may be elsewhere" in cards(viewport)[0])
+    (text,) = cards(viewport)
+    assert text.count("it &lt;leapt&gt;") == 1 and UNSURE_COLOUR.name() in text
+    gateway.show(make_robot("r2", 80, 60))
+    wait(lambda: "elsewhere" not in cards(viewport)[0])
+    assert UNSURE_COLOUR.name() not in cards(viewport)[0]
 
 
 def test_what_a_robot_says_is_text_and_no_markup(viewport, gateway, iface, make_robot, wait):

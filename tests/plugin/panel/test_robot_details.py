@@ -76,6 +76,18 @@ def test_diagnostics_are_shown_as_received_with_their_units(details, at_desk, ga
     assert now["Position, site frame"] == "50.12, 40.00"
 
 
+def test_why_a_robot_may_be_elsewhere_is_told_once(details, at_desk, gateway, make_robot, wait):
+    at_desk.desk.selection.select("r1")
+    gateway.show(make_robot("r1", 50, 40, status="it leapt", doubt="it leapt"))
+    wait(lambda: "Why elsewhere" in dict(sections(details).get("Now", [])))
+    now = dict(sections(details)["Now"])
+    assert now["Why elsewhere"] == "it leapt" and "It says" not in now
+    assert now["State"].startswith("fresh, may be elsewhere, last heard")
+    gateway.show(make_robot("r1", 50, 40, status="docking"))
+    wait(lambda: "Why elsewhere" not in dict(sections(details)["Now"]))
+    assert dict(sections(details)["Now"])["It says"] == "docking"
+
+
 def test_what_was_not_heard_for_hours_is_told_in_hours(details, at_desk, monkeypatch):
     at_desk.desk.selection.select("r1")
     clock = at_desk.desk.clock

@@ -10,6 +10,7 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
 from fleet_supervisor.plugin.gateway_client.state_words import ROBOT_STATES
 from fleet_supervisor.plugin.panel.robot_model import COLUMNS, TITLES, RobotChoice, number_in_words
 from fleet_supervisor.plugin.panel.robot_table import AROUND_SEARCH, ROBOT_CHOICES, WIDEST_NAME
+from fleet_supervisor.plugin.ui.glyphs import UNSURE_COLOUR, for_letters
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.core import (
@@ -388,6 +389,28 @@ def test_states_stand_in_the_operators_words(table, monkeypatch):
     row = column(table, "State").index("elveszett")
     tip = table.model().index(row, 0).data(Qt.ItemDataRole.ToolTipRole)
     assert tip.startswith("a9: elveszett, last heard")
+
+
+def test_a_robot_that_may_be_elsewhere_is_not_fresh_in_the_table(table, at_desk, gateway, make_robot, wait):
+    why = "its position was 6 s old when it came"
+    gateway.show(make_robot("r2", 80, 60, status="docking", doubt=why))
+    wait(lambda: column(table, "State")[column(table, "Robot").index("r2")] == "unsure")
+    index = table.model().index(column(table, "Robot").index("r2"), TITLES.index("State"))
+    assert index.data(Qt.ItemDataRole.ForegroundRole) == for_letters(UNSURE_COLOUR)
+    tip = index.data(Qt.ItemDataRole.ToolTipRole)
+    assert tip.startswith("r2: fresh, may be elsewhere, last heard")
+    assert why in tip.splitlines() and "it says: docking" in tip.splitlines()
+    icons = [table.model().index(row, 0).data(Qt.ItemDataRole.DecorationRole).cacheKey() for row in range(4)]
+    assert len({*icons}) == 3
+    click_head(table, "State")
+    assert column(table, "State") == ["fresh", "fresh", "unsure", "lost"]
+    type_search(at_desk, "unsure")
+    assert column(table, "Robot") == ["r2"]
+    type_search(at_desk, "")
+    box = at_desk.dock.findChild(QComboBox, "fleet_robot_filter")
+    for _ in range(list(RobotChoice).index(RobotChoice.TROUBLED)):
+        QTest.keyClick(box, Qt.Key.Key_Down)
+    assert sorted(column(table, "Robot")) == ["a9", "r2"]
 
 
 def test_the_tip_tells_hours_of_what_was_not_heard_for_hours(table, at_desk):

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS
+from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS, UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
 from tests.plugin.map.on_canvas import expected, scene_of, show, spots
@@ -25,3 +25,9 @@ def test_robots_beyond_the_border_are_pointed_to(canvas, site, rotation):
     assert 0 < hint.x < canvas.width() and 0 < hint.y < canvas.height()
     red = spots(canvas, STATE_COLOURS[RobotState.LOST])
     assert np.hypot(*(red - (hint.x, hint.y)).T).max() < 14
+
+
+def test_the_arrow_to_a_robot_that_may_be_elsewhere_is_not_that_of_a_fresh_one(canvas, site):
+    show(canvas, site, scene_of((600, 50, 0.0, RobotState.FRESH), doubted=True))
+    assert len(spots(canvas, UNSURE_COLOUR)) > 10
+    assert len(spots(canvas, STATE_COLOURS[RobotState.FRESH])) == 0

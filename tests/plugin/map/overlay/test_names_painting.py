@@ -39,6 +39,10 @@ def test_the_age_of_the_last_message_is_written_beside_a_lost_robot(qgis_app):
     known = arrays((0, 0, 0, RobotState.LOST), (1, 1, 0, RobotState.FRESH), age=75.0)
     assert texts(known, 0) == ["r1", "· lost 1 min"]
     assert texts(known, 1) == ["r2"]
+    known.doubted[:] = True
+    assert texts(known, 0) == ["r1", "· lost 1 min"]
+    # How it is shown is looked up once for each moment.
+    assert texts(dataclasses.replace(known), 1) == ["r2", "· unsure"]
 
 
 def written_after(canvas, site, first, second):

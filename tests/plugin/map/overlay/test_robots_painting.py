@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from fleet_supervisor.plugin.gateway_client.robot_states import STATES
 from fleet_supervisor.plugin.map.overlay import robots_painter
 from fleet_supervisor.plugin.map.overlay.robots_painter import Sprites
 from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
-from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS
+from fleet_supervisor.plugin.ui.glyphs import SELECTED, STATE_COLOURS, UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 from qgis.PyQt.QtCore import QSize
 from qgis.PyQt.QtGui import QColor, QImage, QPainter
@@ -49,10 +50,43 @@ def test_each_state_has_its_colour_and_its_own_shape(canvas, site, state):
     assert len(spots(canvas, STATE_COLOURS[state])) > 20
 
 
+def test_a_fresh_robot_that_may_be_elsewhere_is_hollow_with_a_broken_outline(canvas, site):
+    def pixels(state, **how):
+        overlay = show(canvas, site, scene_of((60, 50, 0.0, state), **how))
+        seen = canvas.grab().toImage()
+        counts = [len(spots(canvas, colour)) for colour in (BLUE, UNSURE_COLOUR)]
+        canvas.scene().removeItem(overlay)
+        return seen, counts
+
+    _, (blue, amber) = pixels(RobotState.FRESH)
+    assert blue > 60 and amber == 0
+    _, (blue, amber) = pixels(RobotState.FRESH, doubted=True)
+    _, (_, unbroken) = pixels(RobotState.STALE)
+    assert blue == 0 and 20 < amber < 0.8 * unbroken
+    # Of one that is not heard nobody knows where it is, whatever it said last.
+    for state in (RobotState.STALE, RobotState.LOST, RobotState.OFFLINE):
+        assert pixels(state)[0] == pixels(state, doubted=True)[0]
+
+
+def test_what_may_be_elsewhere_is_drawn_among_thousands_and_on_top_of_those_that_are_there(canvas, site):
+    rng = np.random.default_rng(1)
+    at = rng.uniform((0, 0), (120, 100), (3000, 2))
+    scene = scene_of(
+        *[(x, y, 0.5, RobotState.FRESH) for x, y in at.tolist()], (60, 50, 0.5, RobotState.FRESH)
+    )
+    scene.robots.doubted[3000] = True
+    show(canvas, site, scene)
+    found = spots(canvas, UNSURE_COLOUR)
+    assert len(found) > 15
+    assert np.hypot(*(found - expected(canvas, site, 60, 50)).T).max() < 16
+
+
 def test_drawings_are_made_before_robots_are_painted(canvas, site, monkeypatch):
     overlay = show(canvas, site, scene_of((60, 50, 0.0, RobotState.FRESH)))
     made, make = [], robots_painter.robot_atlas
-    monkeypatch.setattr(robots_painter, "robot_atlas", lambda *of: (made.append(of[-1]), make(*of))[1])
+    monkeypatch.setattr(
+        robots_painter, "robot_atlas", lambda *of, **how: (made.append(of[-1]), make(*of, **how))[1]
+    )
     scene = scene_of((60, 50, 0.0, RobotState.FRESH), (70, 50, 0.0, RobotState.LOST))
     overlay.show_scene(SceneTransformer().placed(scene, placement_of(canvas, site)))
     assert made == [RobotState.LOST]
@@ -65,7 +99,11 @@ def test_states_differ_without_their_colours(qgis_app):
     from fleet_supervisor.plugin.ui.glyphs import CELL
 
     grey = QImage.Format.Format_Grayscale8
-    atlases = [in_a_column(robot_atlas(1.0, 1.0, state)).toImage().convertToFormat(grey) for state in STATES]
+    drawings = [
+        *map(partial(robot_atlas, 1.0, 1.0), STATES),
+        robot_atlas(1.0, 1.0, RobotState.FRESH, unsure=True),
+    ]
+    atlases = [in_a_column(drawing).toImage().convertToFormat(grey) for drawing in drawings]
     cells = [atlas.copy(0, 0, CELL, CELL) for atlas in atlases]
     tables = [np.frombuffer(as_bytes(cell), np.uint8) for cell in cells]
     for first in range(len(tables)):

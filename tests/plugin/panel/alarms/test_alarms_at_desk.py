@@ -88,6 +88,12 @@ def test_what_robots_tell_of_themselves_is_an_alarm_and_over_when_they_tell_bett
     wait_for(text)
     gateway.show(make_robot("r1", 50, 40, accuracy=0.06))
     wait_for(text, "over")
+    why = "its position was 6 s old when it came"
+    gateway.show(make_robot("r1", 50, 40, doubt=why), make_robot("phone", 20, 20, abilities="", doubt=why))
+    text = f"r1 may not be where it is shown: {why}"
+    wait_for(text, "new ×2")
+    gateway.show(make_robot("r1", 50, 40))
+    wait_for(text, "over ×2")
     gateway.show(make_robot("r1", 203, 40))
     wait_for("r1 is outside the site at 203.0, 40.0 m")
     gateway.show(make_robot("r1", 79.5, 60))
@@ -201,7 +207,7 @@ def test_an_older_gateway_tells_no_clearance(at_alarms, gateway, wait):
     wait(lambda: alarms(at_alarms) == [("r1 will pass r2 at 0.7 m at 60.0, 40.0 m", "new")])
 
 
-def test_a_phone_that_comes_near_a_robot_and_is_near_names_both(at_alarms, gateway, wait):
+def test_a_phone_that_comes_near_a_robot_and_is_near_names_both(at_alarms, gateway, make_robot, wait):
     def tell(*alarms, **more):
         at = {"t": time.time(), "metres": 5.0, "within_s": 10.0, **more}
         gateway.tell("nearness", {**at, "alarms": list(alarms)})
@@ -215,6 +221,19 @@ def test_a_phone_that_comes_near_a_robot_and_is_near_names_both(at_alarms, gatew
     wait(lambda: alarms(at_alarms) == [(near, "new"), (coming, "over")])
     tell()
     wait(lambda: alarms(at_alarms) == [(near, "over"), (coming, "over")])
+    gateway.show(make_robot("r1", 50, 40, doubt="it leapt"), make_robot("anna", 20, 20, abilities=""))
+
+    def tell_again():
+        tell({**anna, "metres": 3.4, "seconds": 0.0})
+        return [text for text, state in alarms(at_alarms) if state.startswith("new") and "anna" in text]
+
+    unsure = f"{near}; r1 may be elsewhere"
+    wait(lambda: tell_again() == [unsure])
+    gateway.show(make_robot("r1", 50, 40))
+    wait(lambda: tell_again() == [near])
+    # How near they are stays as it was.
+    tell({**anna, "metres": 3.0, "seconds": 0.0})
+    assert tell_again() == [near]
     tell(fault="it cannot be judged")
     panel = at_alarms.dock.findChild(QTableView, "fleet_alarms").parent()
     wait(lambda: "People near robots are not watched: it cannot be judged." in panel._watch.why_not())

@@ -34,8 +34,16 @@ def situation(count=2, **more) -> AlarmSnapshot:
         "driving": np.zeros(count, dtype=bool),
         "only_seen": np.zeros(count, dtype=bool),
         "bounds": (0.0, 0.0, 200.0, 100.0),
+        "doubted": np.zeros(count, dtype=bool),
+        "doubts": {},
     }
     return AlarmSnapshot(**{**values, **{name: np.array(v) for name, v in more.items() if name != "bounds"}})
+
+
+def doubted(*rows, **more) -> AlarmSnapshot:
+    """The same, with some that may not be where they are shown."""
+    now = situation(doubted=[row in rows for row in range(2)], **more)
+    return replace(now, doubts=dict.fromkeys(rows, "it leapt"))
 
 
 class Looking:
@@ -112,6 +120,7 @@ def test_an_alarm_begins_beyond_its_threshold_and_ends_well_within(desk, kind, w
         {"state": [LOST, FRESH]},
         {"battery": [0.05, 0.9]},
         {"accuracy": [40.0, 0.05]},
+        {"doubted": [True, False]},
         {"xy": [(-50, 5), (15, 5)]},
         {"off_road": [True, False], "on_road": [False, True]},
     ],
@@ -150,6 +159,29 @@ def test_a_robot_that_says_no_more_of_its_accuracy_or_goes_is_not_unsure(desk, l
     # What was said before it fell silent is neither news nor over.
     assert desk.look(situation(accuracy=[9.0, 0.05], state=[STALE, FRESH])) == []
     assert desk.look(situation(**later)) == [(ENDED, AlarmKind.UNSURE, "r1")]
+
+
+def test_a_robot_that_may_be_elsewhere_is_unsure_with_the_reason_until_it_is_believed(desk):
+    assert desk.look(doubted(0)) == [(BEGAN, AlarmKind.UNSURE, "r1")]
+    (alarm,) = desk.board.alarms()
+    assert alarm.text == "r1 may not be where it is shown: it leapt"
+    # For a moment only it was believed.
+    assert desk.look(situation(), 0.5) + desk.look(doubted(0)) == []
+    assert desk.look(doubted(0, state=[STALE, FRESH])) == []
+    assert desk.look(situation(state=[STALE, FRESH])) == []
+    assert desk.look(situation()) == [(ENDED, AlarmKind.UNSURE, "r1")]
+
+
+def test_who_does_not_know_its_place_and_then_leaps_is_told_of_again(desk):
+    lost_itself = {"accuracy": [9.0, 0.05]}
+    assert desk.look(situation(**lost_itself)) == [(BEGAN, AlarmKind.UNSURE, "r1")]
+    desk.board.acknowledge([desk.board.alarms()[0].key], "anna", desk.now)
+    assert desk.look(doubted(0, **lost_itself)) == [(BEGAN, AlarmKind.UNSURE, "r1")]
+    (alarm,) = desk.board.alarms()
+    assert alarm.is_new and alarm.text == "r1 may not be where it is shown: it leapt"
+    # Believed again, it still does not know its place.
+    assert desk.look(situation(**lost_itself)) == []
+    assert desk.look(situation()) == [(ENDED, AlarmKind.UNSURE, "r1")]
 
 
 def test_a_margin_as_large_as_the_limit_still_lets_the_alarm_end():
