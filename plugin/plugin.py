@@ -99,7 +99,7 @@ class FleetPlugin:
 
     def initProcessing(self):
         self._add(RegisteredProvider(FleetProvider()))
-        self._surfaces = self._add(SurfaceStore(QgsProject.instance()))
+        self._surfaces = self._add(SurfaceStore(QgsProject.instance(), has_window=self._iface is not None))
         self._add(ExpressionFunctions(self._surfaces, self._fleet))
 
     def initGui(self):

@@ -10,7 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from qgis.core import (
     QgsAbstractFeatureSource,
@@ -24,6 +24,7 @@ from qgis.core import (
     QgsFeedback,
     QgsFields,
     QgsGeometry,
+    QgsProcessingFeedback,
     QgsProviderRegistry,
     QgsVectorLayer,
     QgsVectorLayerFeatureSource,
@@ -32,8 +33,9 @@ from qgis.core import (
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QDateTime, QObject, Qt, pyqtSignal
 
-from ..ui.errors import LayerTypeError
+from ..ui.errors import LayerReadingError, LayerTypeError
 from ..ui.language import tr
+from ..ui.scheduling import STALLED_AFTER, Reader, ReadingThread, StalledError, Steps
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
@@ -255,6 +257,53 @@ def _gdal() -> Any:
     except ImportError:
         return None
     return gdal
+
+
+# --- Reading beside the window's thread, which waits for no layer ---
+
+
+T = TypeVar("T")
+
+
+class ThreadFeedback(QgsProcessingFeedback):
+    """Feedback of what reads in a thread: each question whether it is cancelled is a sign of progress."""
+
+    def __init__(self, go_on: Callable[[], bool]):
+        super().__init__(False)
+        self._go_on = go_on
+
+    def isCanceled(self) -> bool:
+        return not self._go_on()
+
+
+class OneAtATime:
+    """Reads a layer for steps of the window's thread, in one thread after the other."""
+
+    def __init__(self) -> None:
+        self._thread: ReadingThread[Any] | None = None
+
+    def read(self, name: str, provider: str, reader: Reader[T]) -> Steps[T]:
+        """Return what ``reader`` reads of the layer ``name``.
+
+        :raises LayerReadingError: when nothing has come from it for as long as anybody waits.
+        """
+        if provider == IN_MEMORY:
+            return reader.read(lambda: True)
+        try:
+            while self._thread is not None and self._thread.is_reading:
+                yield from self._thread.wait_for_end()
+            self._thread = ReadingThread(reader)
+            self._thread.start()
+            return (yield from self._thread.result())
+        except StalledError as error:
+            raise LayerReadingError(
+                tr(
+                    "The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back "
+                    "and try again.",
+                    layer=name,
+                    seconds=STALLED_AFTER,
+                )
+            ) from error
 
 
 # --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,7 +17,6 @@ from qgis.core import (
     QgsFeedback,
     QgsPointXY,
     QgsProject,
-    QgsTask,
     QgsVectorLayer,
 )
 from qgis.PyQt.QtCore import QObject, QThread, pyqtSignal
@@ -27,9 +26,9 @@ from ...robot_bridge.core.roads.surface_index import NOWHERE, SurfaceIndex
 from ...robot_bridge.core.sites.frame import utm_zone_of
 from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
-from ..ui.scheduling import SignallingTask
+from ..ui.scheduling import BackgroundReading
 from .crs import check_site_crs
-from .layer_source import LayerWatch, ObstacleSource, obstacle_sources
+from .layer_source import LayerWatch, ObstacleSource, ThreadFeedback, obstacle_sources
 from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
 from .site_transform import SiteGeoreference, transform_points_or_nan
@@ -145,24 +144,30 @@ def _carries(crs: QgsCoordinateReferenceSystem) -> bool:
 # --- The road surfaces of layers, kept until one of the layers changes ---
 
 Key = tuple[str, ...]
+_WAIT_S = 0.5
+"""Seconds that an expression in the window's thread waits for surfaces; those of most sites are read then."""
 
 
 class SurfaceStore(QObject):
     """Keeps what was read of layers, by their ids. It lives in the main thread, and any thread may ask it.
 
     Another thread gets what is kept, else reads for itself: a layer tells only the main thread of changes.
+    Where the main thread ``has_window`` it waits for no layer.
     """
 
     forgotten = pyqtSignal()
-    """Something was thrown away: read it again before it is told."""
+    """Something was thrown away: have it read again where it is still wanted."""
+    ended = pyqtSignal(object, str)
+    """The layers of a key have been read and are kept, or the text says why not."""
 
-    def __init__(self, project: QgsProject, parent: QObject | None = None):
+    def __init__(self, project: QgsProject, parent: QObject | None = None, *, has_window: bool = True):
         super().__init__(parent)
         self._project = project
+        self._has_window = has_window
         self._maps: dict[Key, SurfaceMap] = {}
+        self._readings: dict[Key, BackgroundReading[SurfaceMap | None]] = {}
         self._watch = LayerWatch(self)
         self._watch.changed.connect(self._forget)
-        self._age = 0
 
     def layers(self) -> list[QgsVectorLayer]:
         """Return the layers of the project with the role road surface."""
@@ -170,39 +175,55 @@ class SurfaceStore(QObject):
 
     def kept(self, layers: Sequence[QgsVectorLayer]) -> SurfaceMap | None:
         """Return what is kept of ``layers``, None where it has to be read."""
-        return self._maps.get(_key(layers))
+        return self._maps.get(key_of(layers))
 
     def read(self, layers: Sequence[QgsVectorLayer]) -> SurfaceMap:
-        """Return the surfaces of ``layers``, read here and now where they are not kept.
+        """Return the surfaces of ``layers``, for an expression.
 
-        :raises FleetError: when a layer cannot be used; names which and why.
+        :raises FleetError: when a layer cannot be used, or not yet; names which and why.
         """
         found = self.kept(layers)
         if found is not None:
             return found
-        in_main_thread = QThread.currentThread() is self.thread()
-        if in_main_thread:
-            self._watch.watch(layers)
+        if QThread.currentThread() is self.thread() and self._has_window:
+            return self._read_soon(layers)
         found = read_surface_map(self._sources(layers), QgsFeedback())
         assert found is not None
-        if in_main_thread:
-            self._maps[_key(layers)] = found
         return found
 
-    def task(self, layers: Sequence[QgsVectorLayer]) -> SurfaceTask:
-        """Return a task that reads ``layers`` beside the window and keeps what it read.
+    def begin(self, layers: Sequence[QgsVectorLayer]) -> None:
+        """Have ``layers`` read in a thread, unless that is under way; :attr:`ended` comes when they are.
 
         :raises FleetError: as :meth:`read`.
         """
+        key = key_of(layers)
+        if key in self._readings and self._readings[key].is_under_way:
+            return
         self._watch.watch(layers)
-        task = SurfaceTask(self._sources(layers), _key(layers), self._age)
-        task.ended.connect(self._keep)
-        return task
+        reader = _SurfaceReader(self._sources(layers))
+        if key not in self._readings:
+            self._readings[key] = BackgroundReading(self)
+            self._readings[key].ended.connect(lambda: self._keep(key))
+        self._readings[key].begin(reader)
 
     def remove(self) -> None:
         """Watch no layer any longer and forget everything."""
         self._watch.remove()
+        self._stop()
         self._maps.clear()
+
+    def _read_soon(self, layers: Sequence[QgsVectorLayer]) -> SurfaceMap:
+        key = key_of(layers)
+        self.begin(layers)
+        self._readings[key].wait(_WAIT_S)
+        if self._readings[key].is_under_way:
+            raise FleetError(
+                tr(
+                    "the road surfaces are still being read ({layers}): try again soon",
+                    layers=", ".join(layer.name() for layer in layers),
+                )
+            )
+        return self._maps.get(key) or self._readings[key].result()
 
     def _sources(self, layers: Sequence[QgsVectorLayer]) -> SurfaceSources:
         project = self._project
@@ -211,42 +232,38 @@ class SurfaceStore(QObject):
         scope.appendScope(QgsExpressionContextUtils.projectScope(project))
         return surface_sources(layers, project.crs(), project.transformContext(), scope)
 
-    def _keep(self, task: SurfaceTask, done: bool) -> None:
-        # What changed while it was read has to be read once more.
-        if done and task.surfaces is not None and task.age == self._age:
-            self._maps[task.key] = task.surfaces
+    def _keep(self, key: Key) -> None:
+        why = ""
+        try:
+            found = self._readings[key].result()
+        except FleetError as error:
+            why = str(error)
+        else:
+            if found is not None:
+                self._maps[key] = found
+        self.ended.emit(key, why)
 
     def _forget(self) -> None:
-        self._age += 1
+        # What changed while it was read has to be read once more.
+        self._stop()
         self._maps.clear()
         self.forgotten.emit()
 
+    def _stop(self) -> None:
+        for reading in self._readings.values():
+            reading.stop()
 
-class SurfaceTask(SignallingTask):
-    """Reads surfaces in a worker: ``surfaces`` is there afterwards, or ``why`` not.
 
-    ``key`` and ``age`` are the store's.
-    """
+class _SurfaceReader:
+    """Reads surfaces in a thread."""
 
-    def __init__(self, sources: SurfaceSources, key: Key, age: int):
-        super().__init__(tr("Reading road surfaces"), QgsTask.Flag.CanCancel)
-        self.key, self.age = key, age
+    def __init__(self, sources: SurfaceSources):
         self._sources = sources
-        self._feedback = QgsFeedback()
-        self.surfaces: SurfaceMap | None = None
-        self.why = ""
 
-    def run(self) -> bool:
-        try:
-            self.surfaces = read_surface_map(self._sources, self._feedback)
-        except FleetError as error:
-            self.why = str(error)
-        return self.surfaces is not None
-
-    def cancel(self) -> None:
-        self._feedback.cancel()
-        super().cancel()
+    def read(self, go_on: Callable[[], bool]) -> SurfaceMap | None:
+        return read_surface_map(self._sources, ThreadFeedback(go_on))
 
 
-def _key(layers: Sequence[QgsVectorLayer]) -> Key:
+def key_of(layers: Sequence[QgsVectorLayer]) -> Key:
+    """Return what ``layers`` are kept by."""
     return tuple(layer.id() for layer in layers)

@@ -226,6 +226,19 @@ class ReadingThread(threading.Thread, Generic[T]):
         """Whether it has not come to its end, whoever waits for it."""
         return not self._ended.is_set()
 
+    @property
+    def is_stalled(self) -> bool:
+        """Whether nothing has been read for :data:`STALLED_AFTER` seconds."""
+        return self.is_reading and time.monotonic() - self._progress_at > STALLED_AFTER
+
+    def cancel(self) -> None:
+        """Have the reading end with the part that it is at."""
+        self._is_cancelled = True
+
+    def wait(self, seconds: float) -> None:
+        """Wait until it has ended, but no longer than that."""
+        self._ended.wait(seconds)
+
     def run(self) -> None:
         try:
             self._result = self._reader.read(self._progressed)
@@ -242,7 +255,7 @@ class ReadingThread(threading.Thread, Generic[T]):
         if self._ended.wait(_AT_ONCE_SECONDS):
             return
         while self.is_reading:
-            if time.monotonic() - self._progress_at > STALLED_AFTER:
+            if self.is_stalled:
                 raise StalledError
             yield WAITING
 
@@ -255,7 +268,7 @@ class ReadingThread(threading.Thread, Generic[T]):
         try:
             yield from self.wait_for_end()
         finally:
-            self._is_cancelled = True
+            self.cancel()
         if self._error is not None:
             raise self._error
         return self._result  # type: ignore[return-value] # it has ended without an error
@@ -263,6 +276,71 @@ class ReadingThread(threading.Thread, Generic[T]):
     def _progressed(self) -> bool:
         self._progress_at = time.monotonic()
         return not self._is_cancelled
+
+
+_LOOK_EVERY_MS = 20
+
+
+class BackgroundReading(QObject, Generic[T]):
+    """Has one reader after the other read in a thread, of which nobody waits for the end.
+
+    No more than one thread reads at a time: the next reader has its turn when the one before has left its
+    source, which it never does where that hangs.
+    """
+
+    ended = pyqtSignal()
+    """What was asked for last has been read, or cannot be: :meth:`result` says which."""
+
+    def __init__(self, parent: QObject | None = None):
+        super().__init__(parent)
+        self._thread: ReadingThread[T] | None = None
+        self._next: Reader[T] | None = None
+        self._began_at = 0.0
+        self._timer = QTimer(self)
+        self._timer.setInterval(_LOOK_EVERY_MS)
+        self._timer.timeout.connect(self._advance)
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether something is still to be read."""
+        return self._timer.isActive()
+
+    def begin(self, reader: Reader[T]) -> None:
+        """Have ``reader`` read soon; what was under way is given up."""
+        self.stop()
+        self._next, self._began_at = reader, time.monotonic()
+        self._timer.start()
+        self._advance()
+
+    def stop(self) -> None:
+        """Give up what is under way; its thread ends when its source lets go of it."""
+        self._timer.stop()
+        self._next = None
+        if self._thread is not None:
+            self._thread.cancel()
+
+    def wait(self, seconds: float) -> None:
+        """Wait for the end, but no longer than so many seconds after the beginning."""
+        until = self._began_at + seconds
+        while self.is_under_way and (left := until - time.monotonic()) > 0:
+            if self._thread is not None:
+                self._thread.wait(left)
+            self._advance()
+
+    def result(self) -> T:
+        """Return what was read; raises what the reading raised."""
+        assert self._thread is not None
+        return run_to_end(self._thread.result())
+
+    def _advance(self) -> None:
+        if self._thread is not None and self._thread.is_reading:
+            return
+        if self._next is None:
+            self._timer.stop()
+            self.ended.emit()
+            return
+        self._thread, self._next = ReadingThread(self._next), None
+        self._thread.start()
 
 
 PULL_EVERY_MS = 50

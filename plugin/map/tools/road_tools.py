@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from qgis.core import QgsApplication, QgsCoordinateReferenceSystem, QgsPointXY
+from qgis.core import QgsCoordinateReferenceSystem, QgsPointXY
 from qgis.gui import QgisInterface, QgsMapCanvas, QgsMapMouseEvent, QgsMapTool
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtGui import QIcon, QKeyEvent
@@ -16,7 +16,7 @@ from ...control.fleet_controller import FleetController
 from ...control.messages import MessageBar
 from ...control.pending_command import ROUTE, PendingCommand, Point
 from ...control.route_queries import SHORTEST, RoutePreferences, RouteQuestion, route_in_words
-from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
+from ...layers.road_surfaces import Key, SurfaceMap, SurfaceStore, key_of
 from ...ui.actions import ICONS
 from ...ui.errors import FleetError, NotSentError
 from ...ui.language import tr
@@ -154,7 +154,8 @@ class SurfaceTool(QgsMapTool):
         super().__init__(canvas)
         self._store = store
         self._notices = notices
-        self._task: SurfaceTask | None = None
+        self._awaited: Key | None = None
+        """The layers that are being read for it."""
         self._clicked: QgsPointXY | None = None
         self._listens = False
         self.setCursor(Qt.CursorShape.WhatsThisCursor)
@@ -164,6 +165,7 @@ class SurfaceTool(QgsMapTool):
         if not self._listens:
             self._listens = True
             self._store.forgotten.connect(self._read_anew)
+            self._store.ended.connect(self._have_read)
         self._try(self._read)
 
     def deactivate(self) -> None:
@@ -201,13 +203,9 @@ class SurfaceTool(QgsMapTool):
         if self._listens:
             self._listens = False
             self._store.forgotten.disconnect(self._read_anew)
-        self._clicked = None
+            self._store.ended.disconnect(self._have_read)
+        self._clicked = self._awaited = None
         QToolTip.hideText()
-        if self._task is not None:
-            self._task.taskCompleted.disconnect(self._have_read)
-            self._task.taskTerminated.disconnect(self._complain)
-            self._task.cancel()
-            self._task = None
 
     def _surfaces(self) -> SurfaceMap | None:
         layers = self._store.layers()
@@ -218,8 +216,6 @@ class SurfaceTool(QgsMapTool):
 
         :raises FleetError: when there are none, or a layer cannot be used.
         """
-        if self._task is not None:
-            return
         layers = self._store.layers()
         if not layers:
             self._clicked = None
@@ -229,17 +225,20 @@ class SurfaceTool(QgsMapTool):
                     "Supervisor > Layer roles."
                 )
             )
-        self._task = self._store.task(layers)
-        self._task.taskCompleted.connect(self._have_read)
-        self._task.taskTerminated.connect(self._complain)
-        QgsApplication.taskManager().addTask(self._task)
+        self._awaited = key_of(layers)
+        self._store.begin(layers)
 
-    def _have_read(self) -> None:
-        self._task = None
-        self._answer()
+    def _have_read(self, key: Key, why: str) -> None:
+        if key != self._awaited:
+            return
+        self._awaited = None
+        if why:
+            self._clicked = None
+            self._notices.warning(why)
+        else:
+            self._answer()
 
     def _answer(self) -> None:
-        # Somebody else may have read the surfaces sooner: the tool's own task is held until it has ended.
         place, surfaces = self._clicked, self._surfaces()
         if surfaces is None:
             # A layer has changed meanwhile.
@@ -259,12 +258,6 @@ class SurfaceTool(QgsMapTool):
         # Without layers there is nothing to read; a click says so.
         if self._store.layers():
             self._try(self._read)
-
-    def _complain(self) -> None:
-        task, self._task = self._task, None
-        self._clicked = None
-        if task is not None and task.why:
-            self._notices.warning(task.why)
 
     def _crs(self) -> QgsCoordinateReferenceSystem:
         return self.canvas().mapSettings().destinationCrs()

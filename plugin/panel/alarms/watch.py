@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from qgis.core import Qgis, QgsApplication, QgsMessageLog
+from qgis.core import Qgis, QgsMessageLog
 from qgis.gui import QgsMessageBar, QgsMessageBarItem
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 from qgis.PyQt.QtWidgets import QToolButton
@@ -19,7 +19,7 @@ from ...control.messages import TITLE, MessageLabel, NoticeBody
 from ...gateway_client.connection_status import ConnectionPhase
 from ...gateway_client.fleet_state import FleetState
 from ...gateway_client.robot_states import RemovedRobots, RobotArrays
-from ...layers.road_surfaces import SurfaceMap, SurfaceStore, SurfaceTask
+from ...layers.road_surfaces import SurfaceMap, SurfaceStore, key_of
 from ...layers.site_transform import SiteToCanvas, SiteToMapTransform, transform_points_or_nan
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import first_of, tr, tr_count
@@ -38,11 +38,11 @@ class RoadGround(QObject):
     def __init__(self, store: SurfaceStore, parent: QObject | None = None):
         super().__init__(parent)
         self._store = store
-        self._task: SurfaceTask | None = None
         self._failed_once = False
         self.why_not = ""
         """Why nobody can tell who is on the road; empty where that is known."""
         store.forgotten.connect(self._forgotten)
+        store.ended.connect(self._have_read)
 
     def judge(self, xy: Floats, placement: SiteToMapTransform, margin: float) -> tuple[Bools, Bools] | None:
         """Return of (n, 2) metres in the site frame which are off the road by ``margin``, and which on it.
@@ -66,9 +66,9 @@ class RoadGround(QObject):
         self.why_not = why
 
     def remove(self) -> None:
-        """Let go of what is being read."""
+        """Ask the store for nothing any more."""
         self._store.forgotten.disconnect(self._forgotten)
-        self._drop()
+        self._store.ended.disconnect(self._have_read)
 
     def _surfaces(self) -> SurfaceMap | None:
         layers = self._store.layers()
@@ -83,24 +83,17 @@ class RoadGround(QObject):
             return None
         if found is not None:
             self.why_not = ""
-        elif self._task is None and not self._failed_once:
+        elif not self._failed_once:
             self.why_not = tr("the road surfaces are being read")
             try:
-                self._task = self._store.task(layers)
+                self._store.begin(layers)
             except FleetError as error:
                 self._give_up(str(error))
-                return None
-            self._task.taskCompleted.connect(self._read)
-            self._task.taskTerminated.connect(self._failed)
-            QgsApplication.taskManager().addTask(self._task)
         return found
 
-    def _read(self) -> None:
-        self._task = None
-
-    def _failed(self) -> None:
-        why, self._task = (self._task.why if self._task else ""), None
-        self._give_up(why or tr("reading was cancelled"))
+    def _have_read(self, key: object, why: str) -> None:
+        if why and key == key_of(self._store.layers()):
+            self._give_up(why)
 
     def _give_up(self, why: str) -> None:
         # Not tried again before a layer changes.
@@ -110,13 +103,6 @@ class RoadGround(QObject):
     def _forgotten(self) -> None:
         self._failed_once = False
         self.why_not = ""
-
-    def _drop(self) -> None:
-        if self._task is not None:
-            self._task.taskCompleted.disconnect(self._read)
-            self._task.taskTerminated.disconnect(self._failed)
-            self._task.cancel()
-            self._task = None
 
 
 def _on_a_surface(xy: Floats, placement: SiteToMapTransform, surfaces: SurfaceMap) -> Bools:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import time
 
 import pytest
@@ -23,7 +22,6 @@ from qgis.PyQt.QtCore import QCoreApplication, QEvent, Qt
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QAction, QApplication, QToolTip
 
-from tests.support.left_behind import slots_that_hold
 from tests.support.patience import BUSY
 
 ORIGIN = (488000.0, 5190000.0)
@@ -124,20 +122,13 @@ def test_a_click_before_the_surfaces_are_read_is_answered_when_they_are(entry, l
     assert iface.said[0][0].startswith("Asphalt")
 
 
-def test_a_click_answered_from_what_others_read_leaves_the_reading_to_its_end(entry, layer, iface):
+def test_a_click_is_answered_once_from_what_others_read(entry, layer, iface):
     entry.action.trigger()
-    task = entry.tool._task
-    assert not slots_that_hold(task), (
-        "collected together with such a slot, the task crashes QGIS when it ends"
-    )
-    # As the watch for robots off the road does when a desk connects.
+    # As an expression does.
     entry.tool._store.read([layer])
     iface.click(50, 50)
-    assert iface.said[0][0].startswith("Asphalt")
-    assert entry.tool._task is task
-    del task
-    gc.collect()
-    until(lambda: entry.tool._task is None, "the reading has ended")
+    assert [text[:7] for text, _ in iface.said] == ["Asphalt"]
+    QTest.qWait(60)
     assert len(iface.said) == 1
 
 
@@ -211,7 +202,8 @@ def test_another_tool_ends_it_and_it_can_be_taken_up_again(ready, layer, iface):
     layer.startEditing()
     layer.addFeature(feature(layer, box(70, 70, 90, 90), "sand", None, None))
     layer.rollBack()
-    assert ready.tool._task is None, "a tool that is put away reads nothing"
+    readings = ready.tool._store._readings.values()
+    assert not any(one.is_under_way for one in readings), "a tool that is put away reads nothing"
     ready.action.trigger()
     iface.click(50, 50)
     until(lambda: iface.said, "the click is answered")
