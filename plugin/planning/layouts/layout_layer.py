@@ -2,34 +2,40 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 from qgis.core import (
-    QgsApplication,
     QgsCoordinateReferenceSystem,
     QgsExpressionContext,
     QgsExpressionContextUtils,
     QgsFeature,
+    QgsFeatureRequest,
     QgsGeometry,
     QgsPointXY,
-    QgsProcessingFeedback,
     QgsProject,
-    QgsTask,
     QgsVectorFileWriter,
     QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
 )
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, NamedGeometry, find_misplaced_cones
 from ...control.messages import MessageBar
 from ...layers.crs import check_site_crs
-from ...layers.layer_source import LayerWatch, ObstacleSource, obstacle_sources
+from ...layers.layer_source import (
+    IN_MEMORY,
+    LayerWatch,
+    ObstacleSource,
+    OneAtATime,
+    ThreadFeedback,
+    obstacle_sources,
+)
 from ...layers.road_layers import read_areas
 from ...layers.roles import OBSTACLE_ROLES, ROAD_SURFACE, LayerExpressions, layers_with_role, setup_of
 from ...layers.site_transform import SiteGeoreference
@@ -37,6 +43,7 @@ from ...processing.common.algorithm import RESOURCES
 from ...processing.common.cone_layers import CONE_FIELDS, cone_values, read_obstacles
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
+from ...ui.scheduling import BackgroundReading, Steps
 
 # --- The layer that the operator's cone layouts go into, and what they are checked against ---
 
@@ -46,11 +53,37 @@ MARK = "fleet/cones"
 OBSTACLE_DISTANCE_M = CONE_DISTANCE_M = 0.5
 
 
+class StandingCone(NamedTuple):
+    """A cone in the layer; ``number`` is its feature's, (x, y) in the CRS of the layer."""
+
+    number: int
+    id: str
+    x: float
+    y: float
+
+
+class StandingReader:
+    """Reads the cones of a layer, in any thread."""
+
+    def __init__(self, layer: QgsVectorLayer):
+        self._features = QgsVectorLayerFeatureSource(layer)
+
+    def read(self, go_on: Callable[[], bool]) -> list[StandingCone]:
+        found = []
+        for feature in self._features.getFeatures(QgsFeatureRequest()):
+            if not go_on():
+                break
+            place = feature.geometry().asPoint()
+            found.append(StandingCone(feature.id(), str(feature["id"]), place.x(), place.y()))
+        return found
+
+
 class LayoutLayer:
     """Finds or makes the layer of cones in a project."""
 
     def __init__(self, project: QgsProject):
         self._project = project
+        self._readings = OneAtATime()
 
     def layer(self) -> QgsVectorLayer | None:
         """Return the layer of cones, None before there is one."""
@@ -73,10 +106,9 @@ class LayoutLayer:
         check_site_crs(canvas)
         return canvas
 
-    def prefix(self, name: str) -> str:
-        """Return what the ids of one more layout ``name`` begin with: no other's do."""
-        layer = self.layer()
-        ids = {str(f["id"]).rpartition("-")[0] for f in layer.getFeatures()} if layer is not None else set()
+    def prefix(self, name: str, standing: Sequence[StandingCone]) -> str:
+        """Return what the ids of one more layout ``name`` begin with: those of no ``standing`` cone do."""
+        ids = {cone.id.rpartition("-")[0] for cone in standing}
         taken = (f"{name}-{number}" for number in range(2, len(ids) + 3))
         return name if name not in ids else next(prefix for prefix in taken if prefix not in ids)
 
@@ -103,50 +135,37 @@ class LayoutLayer:
         layer.triggerRepaint()
         return layer
 
-    def take_out(self, layer_id: str, ids: Collection[str]) -> bool:
-        """Remove the cones ``ids`` from the layer ``layer_id``; false where none is there any more."""
+    def take_out(self, layer_id: str, ids: Collection[str]) -> Steps[bool]:
+        """Remove the cones ``ids`` from the layer ``layer_id``; false where none is there any more.
+
+        :raises LayerReadingError: as :meth:`standing`.
+        """
+        standing = yield from self.standing()
         layer = self.layer()
         if layer is None or layer.id() != layer_id:
             return False
-        found = [feature.id() for feature in layer.getFeatures() if feature["id"] in ids]
+        found = [cone.number for cone in standing if cone.id in ids]
         if not found or not layer.dataProvider().deleteFeatures(found):
             return False
         layer.updateExtents()
         layer.triggerRepaint()
         return True
 
-    def places(self) -> np.ndarray:
-        """Return where cones stand already, (n, 2) in the CRS of their layer."""
-        return np.array([(cone.x, cone.y) for cone in self._standing()], dtype=np.float64).reshape(-1, 2)
+    def standing(self) -> Steps[list[StandingCone]]:
+        """Return the cones that stand already, in the CRS of their layer.
 
-    def check(self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem) -> list[ConeFinding]:
-        """Return what is wrong with ``cones`` by the project's layers and the cones that stand already.
-
-        :raises FleetError: when a layer has no known place in ``crs``.
+        :raises LayerReadingError: when the layer does not answer.
+        :raises MapTransformError: when it has become another one meanwhile.
         """
-        site = SiteGeoreference.in_crs(crs, self._project.transformContext())
-        context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
-        feedback = QgsProcessingFeedback(False)
-
-        def sources(*roles):
-            return obstacle_sources(layers_with_role(self._project, *roles), LayerExpressions(), context)
-
-        roads = sources(ROAD_SURFACE)
-        areas = read_areas(roads, site, ROAD_SURFACE, feedback).items
-        surfaces = [NamedGeometry(area.rings, area.label) for area in areas] if roads else None
-        obstacles = read_obstacles(sources(*OBSTACLE_ROLES), site, feedback)
-        found = find_misplaced_cones(
-            [*self._standing(), *cones], surfaces, obstacles, OBSTACLE_DISTANCE_M, CONE_DISTANCE_M
-        )
-        new = {cone.id for cone in cones}
-        return [finding for finding in found if finding.cone in new]
-
-    def _standing(self) -> list[Cone]:
         layer = self.layer()
-        return [
-            Cone(str(f["id"]), 0, f.geometry().asPoint().x(), f.geometry().asPoint().y(), 0.0, "", "")
-            for f in (layer.getFeatures() if layer is not None else ())
-        ]
+        if layer is None:
+            return []
+        number, name, reader = layer.id(), layer.name(), StandingReader(layer)
+        found = yield from self._readings.read(name, layer.providerType(), reader)
+        layer = self.layer()
+        if layer is None or layer.id() != number:
+            raise MapTransformError(tr("The layer of cones is another one now: place the layout again."))
+        return found
 
     def _made(self, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
         fields = "".join(f"&field={name}:{kind}" for name, kind in CONE_FIELDS.items())
@@ -160,8 +179,6 @@ class LayoutLayer:
 # --- The GeoPackage beside the project that keeps the operator's cones when the project is saved ---
 
 TABLE = "cones"
-IN_MEMORY = "memory"
-"""The name of the provider whose features are gone when the project is closed."""
 
 
 class LayoutFile(QObject):
@@ -227,9 +244,6 @@ def _free_path(project: QgsProject) -> Path | None:
 
 # --- What is wrong with a cone layout while it is still under the cursor, without the window waiting for it
 
-GIVE_UP_S = 5.0
-"""Seconds that the end of a reading is waited for when the plugin is unloaded."""
-
 Floats = npt.NDArray[np.float64]
 
 
@@ -256,6 +270,23 @@ class LayoutGround:
         apart = np.hypot(*(xy[:, None, :] - near[None, :, :]).transpose(2, 0, 1))
         bad = np.array([cone.id in wrong for cone in cones]) | (apart < CONE_DISTANCE_M - 1e-9).any(axis=1)
         return xy[bad]
+
+    def findings(self, cones: Sequence[Cone], standing: Sequence[StandingCone]) -> list[ConeFinding]:
+        """Return what is wrong with ``cones`` here, among those that stand already."""
+        xy = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
+        low, high = xy.min(axis=0) - OBSTACLE_DISTANCE_M, xy.max(axis=0) + OBSTACLE_DISTANCE_M
+        surfaces = None if self.surfaces is None else _meeting(self.surfaces, self._surface_boxes, low, high)
+        near = [
+            Cone(cone.id, 0, cone.x, cone.y, 0.0, "", "")
+            for cone in standing
+            if low[0] <= cone.x <= high[0] and low[1] <= cone.y <= high[1]
+        ]
+        obstacles = _meeting(self.obstacles, self._obstacle_boxes, low, high)
+        found = find_misplaced_cones(
+            [*near, *cones], surfaces, obstacles, OBSTACLE_DISTANCE_M, CONE_DISTANCE_M
+        )
+        new = {cone.id for cone in cones}
+        return [finding for finding in found if finding.cone in new]
 
     @cached_property
     def _surface_boxes(self) -> Floats:
@@ -284,17 +315,24 @@ class LayoutGroundReader(QObject):
     """Reads the project's surfaces and obstacles beside the GUI thread, and again when a layer changed."""
 
     ready = pyqtSignal()
-    """What was asked for last has been read."""
+    """What was asked for last has been read, or cannot be."""
+    forgotten = pyqtSignal()
+    """A layer has changed."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._project = project
         self._watch = LayerWatch(self)
-        self._watch.changed.connect(self.forget)
+        self._watch.changed.connect(self._changed)
         self._ground: LayoutGround | None = None
+        self.why = ""
+        """Why there is no ground; empty where there is one, or while it is being read."""
+        self.unusable = False
+        """Whether that is what a layer is, and not what is in it."""
         self._of: tuple[object, ...] = ()
         """What the ground, or the reading that is under way, is of."""
-        self._task: LayoutGroundTask | None = None
+        self._reading: BackgroundReading[LayoutGround | None] = BackgroundReading(self)
+        self._reading.ended.connect(self._have_read)
 
     def ground(self, crs: QgsCoordinateReferenceSystem) -> LayoutGround | None:
         """Return the ground in ``crs``; None while it is being read, or cannot be."""
@@ -307,17 +345,18 @@ class LayoutGroundReader(QObject):
 
     def forget(self) -> None:
         """Have the ground read again when it is asked for next."""
-        self._of, self._ground = (), None
-        self._cancel()
+        self._of, self._ground, self.why, self.unusable = (), None, "", False
+        self._reading.stop()
 
     def remove(self) -> None:
-        """Watch no layer any longer, and wait until no thread reads one."""
-        task = self._task
-        self._watch.changed.disconnect(self.forget)
+        """Watch no layer any longer."""
+        self._watch.changed.disconnect(self._changed)
         self._watch.remove()
         self.forget()
-        if task is not None and task.began.is_set():
-            task.left.wait(GIVE_UP_S)
+
+    def _changed(self) -> None:
+        self.forget()
+        self.forgotten.emit()
 
     def _begin(
         self, key: tuple[object, ...], roads: list, obstacles: list, crs: QgsCoordinateReferenceSystem
@@ -328,55 +367,33 @@ class LayoutGroundReader(QObject):
         context = QgsExpressionContext(QgsExpressionContextUtils.globalProjectLayerScopes(None))
         try:
             sources = [obstacle_sources(layers, LayerExpressions(), context) for layers in (roads, obstacles)]
-        except FleetError:
-            # A click says what is wrong with the layer.
+        except FleetError as error:
+            self.why, self.unusable = str(error), True
             return
         site = SiteGeoreference.in_crs(crs, self._project.transformContext())
-        self._task = LayoutGroundTask(*sources, site)
-        self._task.taskCompleted.connect(self._completed)
-        QgsApplication.taskManager().addTask(self._task)
+        self._reading.begin(_GroundReader(*sources, site))
 
-    def _cancel(self) -> None:
-        task, self._task = self._task, None
-        if task is not None:
-            task.taskCompleted.disconnect(self._completed)
-            task.cancel()
-
-    def _completed(self) -> None:
-        task, self._task = self._task, None
-        if task is not None:
-            self._ground = task.ground
-            self.ready.emit()
+    def _have_read(self) -> None:
+        try:
+            self._ground = self._reading.result()
+        except FleetError as error:
+            self.why = str(error)
+        self.ready.emit()
 
 
-class LayoutGroundTask(QgsTask):
-    """Reads ``roads`` and ``obstacles`` in the CRS of ``site``; what cannot be read leaves no ground."""
+class _GroundReader:
+    """Reads ``roads`` and ``obstacles`` in the CRS of ``site``, in a thread."""
 
     def __init__(
         self, roads: Sequence[ObstacleSource], obstacles: Sequence[ObstacleSource], site: SiteGeoreference
     ):
-        super().__init__(tr("Reading what cones must keep clear of"), QgsTask.Flag.CanCancel)
         self._roads, self._obstacles, self._site = list(roads), list(obstacles), site
-        self._feedback = QgsProcessingFeedback(False)
-        self.ground: LayoutGround | None = None
-        self.began, self.left = threading.Event(), threading.Event()
-        """Set once the worker has come into :meth:`run`, and left it."""
 
-    def run(self) -> bool:
-        self.began.set()
-        try:
-            areas = read_areas(self._roads, self._site, ROAD_SURFACE, self._feedback).items
-            obstacles = read_obstacles(self._obstacles, self._site, self._feedback)
-        except FleetError:
-            return True
-        finally:
-            self.left.set()
-        if self._feedback.isCanceled():
-            return False
+    def read(self, go_on: Callable[[], bool]) -> LayoutGround | None:
+        feedback = ThreadFeedback(go_on)
+        areas = read_areas(self._roads, self._site, ROAD_SURFACE, feedback).items
+        obstacles = read_obstacles(self._obstacles, self._site, feedback)
+        if feedback.isCanceled():
+            return None
         surfaces = tuple(NamedGeometry(area.rings, area.label) for area in areas) if self._roads else None
-        self.ground = LayoutGround(surfaces, tuple(obstacles))
-        return True
-
-    def cancel(self) -> None:
-        self._feedback.cancel()
-        super().cancel()
+        return LayoutGround(surfaces, tuple(obstacles))

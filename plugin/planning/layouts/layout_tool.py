@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -20,15 +22,17 @@ from qgis.PyQt.QtWidgets import QAction, QApplication, QMenu
 
 from ....robot_bridge.core.geometry import theta_of
 from ....robot_bridge.core.layouts.catalogue import LAYOUTS
-from ....robot_bridge.core.layouts.layout import Cone, Layout, cones_at_pose
+from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, Layout, cones_at_pose
 from ...cone_texts import layout_in_words
 from ...control.messages import MessageBar
 from ...layers.site_transform import transform_or_raise
+from ...ui import scheduling
 from ...ui.actions import ICONS
 from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr, tr_count
+from ...ui.scheduling import BackgroundReading, CooperativeTask, Steps
 from .dimensions import LayoutDimensions, remembered
-from .layout_layer import LayoutFile, LayoutGroundReader, LayoutLayer
+from .layout_layer import LayoutFile, LayoutGroundReader, LayoutLayer, StandingCone, StandingReader
 
 # --- The map tool that places a cone layout: under the cursor, turned with the wheel, placed with a click
 
@@ -60,6 +64,15 @@ class PlacedLayout(NamedTuple):
     """The id of the layer that they are in: another project has cones of the same names."""
 
 
+class UncheckedLayout(NamedTuple):
+    """Cones in ``layer`` that have not been checked, among those that stood there before."""
+
+    cones: list[Cone]
+    standing: Sequence[StandingCone]
+    crs: QgsCoordinateReferenceSystem
+    layer: str
+
+
 class LayoutTool(QgsMapTool):
     """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it.
 
@@ -84,8 +97,20 @@ class LayoutTool(QgsMapTool):
         self._bad: QgsRubberBand | None = None
         self._placed: list[PlacedLayout] = []
         self._taken_back: list[PlacedLayout] = []
+        self._changes: deque[Steps[None]] = deque()
+        """What is still to be done to the layer of cones."""
+        self._changing = CooperativeTask(self)
+        self._unchecked: list[UncheckedLayout] = []
+        self._patience = QTimer(self)
+        self._patience.setSingleShot(True)
+        self._patience.timeout.connect(self._give_up_checking)
+        self._standing = np.empty((0, 2))
+        """Where cones stand already, as far as that has been read; in the CRS of their layer."""
+        self._standing_reading: BackgroundReading[list[StandingCone]] = BackgroundReading(self)
+        self._standing_reading.ended.connect(self._have_standing)
         self._ground = LayoutGroundReader(project, self)
-        self._ground.ready.connect(self._mark_bad)
+        self._ground.ready.connect(self._have_ground)
+        self._ground.forgotten.connect(self._check_placed)
         self._rest = QTimer(self)
         self._rest.setSingleShot(True)
         self._rest.setInterval(CHECK_MS)
@@ -98,6 +123,7 @@ class LayoutTool(QgsMapTool):
     def show_layout(self, layout: Layout) -> None:
         """Place ``layout`` from now on; where the mouse is not over the map it is shown in its middle."""
         self.layout = layout
+        self._read_standing()
         self._show()
 
     def turn_to(self, heading: float) -> None:
@@ -115,27 +141,11 @@ class LayoutTool(QgsMapTool):
 
     def undo(self) -> None:
         """Take the layout that was placed last back out of its layer."""
-        while self._placed:
-            last = self._placed.pop()
-            if self._store.take_out(last.layer, {cone.id for cone in last.cones}):
-                self._taken_back.append(last)
-                break
-        else:
-            self._notices.info(tr("There is nothing to take back."))
-        self._changed()
+        self._change(self._undoing())
 
     def redo(self) -> None:
         """Place again what was taken back last, where the cones' layer is in the same CRS still."""
-        if not self._taken_back:
-            self._notices.info(tr("There is nothing to do again."))
-            return
-        last = self._taken_back.pop()
-        if self._store.crs(last.crs) != last.crs:
-            self._taken_back.clear()
-            raise MapTransformError(tr("The layer of cones is another one now: place the layout again."))
-        layer = self._store.add(last.cones, last.name, last.crs)
-        self._placed.append(last._replace(layer=layer.id()))
-        self._changed()
+        self._change(self._redoing())
 
     def activate(self) -> None:
         super().activate()
@@ -168,7 +178,7 @@ class LayoutTool(QgsMapTool):
             return
         if (event.pos() - pressed).manhattanLength() <= QApplication.startDragDistance():
             self._cursor = event.mapPoint()
-            self._try(self._place)
+            self._place()
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
@@ -186,13 +196,13 @@ class LayoutTool(QgsMapTool):
         if event.key() == Qt.Key.Key_Escape:
             self.canvas().unsetMapTool(self)
         elif event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
-            self._try(self._place)
+            self._place()
         elif event.key() in _TURNS:
             self._turn(_TURNS[event.key()] * (FINE_STEP if fine else STEP))
         elif event.matches(UNDO):
-            self._try(self.undo)
+            self.undo()
         elif event.matches(REDO):
-            self._try(self.redo)
+            self.redo()
         elif event.key() == Qt.Key.Key_F2:
             self.dimensions_requested.emit()
         else:
@@ -202,6 +212,9 @@ class LayoutTool(QgsMapTool):
 
     def remove(self) -> None:
         """Take the preview off the canvas, and read no layers any more."""
+        self._changing.stop()
+        self._patience.stop()
+        self._standing_reading.stop()
         self._ground.remove()
         self._clear()
 
@@ -216,7 +229,8 @@ class LayoutTool(QgsMapTool):
         back = QgsCoordinateTransform(canvas_crs, crs, self._project.transformContext())
         place = self._cursor or self.canvas().center()
         ((x, y),) = transform_or_raise(np.array([[place.x(), place.y()]]), back)
-        cones = self.layout.cones(self._store.prefix(self.layout.NAME))
+        # Of the names only those of cones that are placed matter.
+        cones = self.layout.cones(self.layout.NAME)
         return cones_at_pose(cones, float(x), float(y), theta_of(self.heading)), forward
 
     def _turn(self, degrees: float) -> None:
@@ -246,7 +260,7 @@ class LayoutTool(QgsMapTool):
             ground = self._ground.ground(forward.sourceCrs())
             if ground is None:
                 return
-            bad = ground.bad_cones(cones, self._store.places())
+            bad = ground.bad_cones(cones, self._standing)
             points = transform_or_raise(bad, forward) if len(bad) else bad
         except FleetError:
             return
@@ -267,44 +281,135 @@ class LayoutTool(QgsMapTool):
     def _place(self) -> None:
         if self.layout is None:
             return
-        cones, _ = self._cones()
-        crs = self._store.crs(self.canvas().mapSettings().destinationCrs())
-        findings = self._store.check(cones, crs)
-        layer = self._store.add(cones, self.layout.NAME, crs)
-        self._placed.append(PlacedLayout(cones, self.layout.NAME, crs, layer.id()))
+        try:
+            cones, forward = self._cones()
+        except FleetError as error:
+            self._notices.warning(error)
+            return
+        self._change(self._placing(self.layout.NAME, cones, forward.sourceCrs()))
+
+    def _change(self, change: Steps[None]) -> None:
+        """Do ``change`` to the layer of cones when those before it are done."""
+        self._changes.append(change)
+        if not self._changing.is_busy:
+            self._changing.begin(self._do_changes())
+
+    def _do_changes(self) -> Steps[None]:
+        while self._changes:
+            try:
+                yield from self._changes.popleft()
+            except FleetError as error:
+                self._notices.warning(error)
+
+    def _placing(self, name: str, cones: list[Cone], crs: QgsCoordinateReferenceSystem) -> Steps[None]:
+        if self._ground.ground(crs) is None and self._ground.unusable:
+            raise FleetError(self._ground.why)
+        standing = yield from self._store.standing()
+        prefix = self._store.prefix(name, standing)
+        cones = [replace(cone, id=prefix + cone.id.removeprefix(name)) for cone in cones]
+        layer = self._store.add(cones, name, crs)
+        self._placed.append(PlacedLayout(cones, name, crs, layer.id()))
         self._taken_back.clear()
+        self._unchecked.append(UncheckedLayout(cones, standing, crs, layer.name()))
         self._changed()
+        self._check_placed()
+
+    def _undoing(self) -> Steps[None]:
+        while self._placed:
+            last = self._placed[-1]
+            found = yield from self._store.take_out(last.layer, {cone.id for cone in last.cones})
+            self._placed.pop()
+            if found:
+                self._taken_back.append(last)
+                break
+        else:
+            self._notices.info(tr("There is nothing to take back."))
+        self._changed()
+
+    def _redoing(self) -> Steps[None]:
+        # Cones are written here and now: to a layer that answers.
+        yield from self._store.standing()
+        if not self._taken_back:
+            self._notices.info(tr("There is nothing to do again."))
+            return
+        last = self._taken_back.pop()
+        if self._store.crs(last.crs) != last.crs:
+            self._taken_back.clear()
+            raise MapTransformError(tr("The layer of cones is another one now: place the layout again."))
+        layer = self._store.add(last.cones, last.name, last.crs)
+        self._placed.append(last._replace(layer=layer.id()))
+        self._changed()
+
+    # --- what is wrong with cones that were placed ---
+
+    def _check_placed(self) -> None:
+        """Check against the layers what was placed, as soon as these are read."""
+        while self._unchecked:
+            one = self._unchecked[0]
+            ground = self._ground.ground(one.crs)
+            if ground is None and not self._ground.why:
+                if not self._patience.isActive():
+                    self._patience.start(round(1000 * scheduling.STALLED_AFTER))
+                return
+            self._unchecked.pop(0)
+            if ground is None:
+                self._notices.warning(_unchecked_text(one, self._ground.why))
+            else:
+                self._report(one, ground.findings(one.cones, one.standing))
+        self._patience.stop()
+
+    def _give_up_checking(self) -> None:
+        unchecked, self._unchecked = self._unchecked, []
+        for one in unchecked:
+            why = tr(
+                "layers of road surfaces and obstacles have not been read within {seconds:g} s",
+                seconds=scheduling.STALLED_AFTER,
+            )
+            self._notices.warning(_unchecked_text(one, why))
+
+    def _report(self, placed: UncheckedLayout, findings: Sequence[ConeFinding]) -> None:
         if findings:
             wrong = len({finding.cone for finding in findings})
             self._notices.warning(
                 tr_count(
-                    len(cones),
+                    len(placed.cones),
                     "The cone should not stand there: {text} It is in the layer {layer}.",
                     "{wrong} of %n cones should not stand there: {text} All are in the layer {layer}.",
                     wrong=wrong,
                     text=findings[0].text,
-                    layer=layer.name(),
+                    layer=placed.layer,
                 )
             )
         else:
             self._notices.info(
                 tr_count(
-                    len(cones),
+                    len(placed.cones),
                     "1 cone is in the layer {layer}.",
                     "%n cones are in the layer {layer}.",
-                    layer=layer.name(),
+                    layer=placed.layer,
                 )
             )
 
-    def _try(self, action: Callable[[], None]) -> None:
-        try:
-            action()
-        except FleetError as error:
-            self._notices.warning(error)
+    def _have_ground(self) -> None:
+        self._check_placed()
+        self._mark_bad()
+
+    def _read_standing(self) -> None:
+        layer = self._store.layer()
+        if layer is not None:
+            self._standing_reading.begin(StandingReader(layer))
+        else:
+            self._standing = np.empty((0, 2))
+
+    def _have_standing(self) -> None:
+        cones = self._standing_reading.result()
+        self._standing = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
+        self._rest.start()
 
     def _changed(self) -> None:
         """Show what the cones that stand now leave room for, and whether there is a layout to take back."""
         self.undo_changed.emit(bool(self._placed))
+        self._read_standing()
         self._rest.start()
 
     def _remove_bad(self) -> None:
@@ -318,6 +423,10 @@ class LayoutTool(QgsMapTool):
         if self._band is not None:
             self.canvas().scene().removeItem(self._band)
             self._band = None
+
+
+def _unchecked_text(placed: UncheckedLayout, why: str) -> str:
+    return tr("The cones in the layer {layer} were not checked: {why}", layer=placed.layer, why=why)
 
 
 def _points_of(band: QgsRubberBand | None) -> np.ndarray:

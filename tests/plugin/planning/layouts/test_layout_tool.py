@@ -142,7 +142,7 @@ def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface)
     assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
 
 
-def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface):
+def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface, wait):
     road = QgsVectorLayer("Polygon?crs=EPSG:32633&field=surface:string", "Road", "memory")
     feature = QgsFeature(road.fields())
     box = QgsGeometry.fromWkt("POLYGON((30 40,53 40,53 60,30 60,30 40))")
@@ -152,6 +152,7 @@ def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface):
     set_role(road, ROAD_SURFACE)
     QgsProject.instance().addMapLayer(road)
     iface.click(40, 50)
+    wait(lambda: iface.said, what="the check")
     # The last cone stands 16 m from the first gate, and the second gate 22 m.
     ((text, complaint),) = iface.said
     assert complaint and text.startswith(
@@ -159,6 +160,7 @@ def test_cones_that_should_not_stand_there_are_told_and_placed(slalom, iface):
     )
     assert len(cones()) == 7
     iface.click(40, 50)
+    wait(lambda: len(iface.said) == 2, what="the check")
     assert iface.said[1][0].startswith(
         "7 of 7 cones should not stand there: Cone slalom-2-1 is 0.00 m from slalom-1"
     )
@@ -235,7 +237,7 @@ def test_in_another_project_nothing_is_taken_back(slalom, iface):
     assert iface.said[-1] == ("There is nothing to take back.", False)
 
 
-def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, iface, tmp_path):
+def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, iface, tmp_path, wait):
     project = QgsProject.instance()
     iface.click(40, 50)
     before = cones()
@@ -244,6 +246,7 @@ def test_cones_are_there_again_when_the_project_is_saved_and_opened(slalom, ifac
     assert project.write(str(tmp_path / "yard.qgz"))
     assert [path.name for path in sorted(tmp_path.iterdir())] == ["yard.qgz", "yard_cones.gpkg"]
     iface.click(40, 80)
+    wait(lambda: len(iface.said) == 2, what="the check")
     after = cones()
     assert len(after) == 14 and after.items() > before.items()
     project.clear()
