@@ -26,8 +26,10 @@ from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.state_words import part_in_words
+from ..layers.layer_source import OneAtATime
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
+from ..ui.scheduling import WAITING, CooperativeTask, Steps
 from . import plan_settings
 from .proposal import ClosureCheck, PlanProposal, PlanTask, PlanTravel
 
@@ -51,6 +53,10 @@ class PlanEditor(QObject):
         self.settings: plan_settings.PlanSettings = plan_settings.read_settings(desk.project)
         self.draft: PlanProposal | None = None
         self.task: PlanTask | None = None
+        self._before: PlanTask | None = None
+        """The one that was given up last: its thread may be in a layer that hangs."""
+        self._layers = OneAtATime()
+        self._reading, self._waiting = CooperativeTask(self), CooperativeTask(self)
         self._closures: Sequence[ClosureReport] = ()
         """Those that the task goes by."""
         self._then: Callable[[PlanProposal], None] = self._put
@@ -65,7 +71,7 @@ class PlanEditor(QObject):
     @property
     def busy(self) -> bool:
         """Whether a plan is being made."""
-        return self.task is not None
+        return self.task is not None or self._reading.is_busy
 
     def make(self, *, preview: bool) -> None:
         """Plan the chosen layer's cones, quickly or well.
@@ -73,8 +79,7 @@ class PlanEditor(QObject):
         :raises FleetError: naming what is missing.
         """
         frame = self._frame()
-        targets, facts = plan_settings.read_cones(self._desk.project, self.settings, frame)
-        self._make(targets, facts, frame, preview)
+        self._begin(self._make_placing(frame, preview))
 
     def make_collecting(self, tasks: Sequence[QueueTask], *, preview: bool) -> None:
         """Plan who collects placed cones, given as the gateway's tasks; raises FleetError."""
@@ -84,7 +89,7 @@ class PlanEditor(QObject):
             name = f"{task.cone or task.label or 'cone'} #{task.placement}"
             targets.append(ConeTarget(name, task.x, task.y, 0.0, 0, COLLECT, 1, self.settings.service_s))
             facts[name] = ConeFacts(task.cone or name, task.layout or "", task.placement, task.theta)
-        self._make(tuple(targets), facts, frame, preview)
+        self._begin(self._make(tuple(targets), facts, frame, preview))
 
     def move(self, target: str, robot: str, trip: int, place: int) -> None:
         """Let ``robot`` serve ``target`` as number ``place``, from 0, of its trip ``trip``."""
@@ -116,33 +121,33 @@ class PlanEditor(QObject):
         then: Callable[[PlanProposal], None],
     ) -> None:
         """Make a plan on the ground of another, beside the window's thread; ``then`` gets it."""
-        if self.task is not None:
-            raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
+        self._check_idle()
         apart_m, closures = self.settings.apart_m, self._desk.roads.closures
         task = PlanTask(title, lambda task: ground.with_plan(work(task), apart_m, closures))
         task.ended.connect(self._ended)
         self.task, self._closures, self._then = task, closures, then
-        QgsApplication.taskManager().addTask(task)
+        self._waiting.begin(self._add_task(task))
         self.changed.emit()
 
     def cancel(self) -> None:
         """Give up what is being made; the plan of before stays."""
-        task, self.task = self.task, None
-        if task is None:
+        if not self.busy:
             return
+        self._reading.stop()
+        self._waiting.stop()
+        task, self.task = self.task, None
         # QGIS deletes a task that is done; what it made may still be held against roads closed meanwhile.
-        if not sip.isdeleted(task):
+        if task is not None and not sip.isdeleted(task):
             task.cancel()
+            if task.is_under_way:
+                self._before = task
         self.changed.emit()
 
     def shut_down(self) -> None:
-        """Give up what is being made and wait until its thread has left it."""
-        task = self.task
+        """Give up what is being made; its thread may stay in a layer that hangs."""
         self._look.stop()
         self._look_at_made.stop()
         self.cancel()
-        if task is not None and not sip.isdeleted(task) and task.isActive():
-            task.left.wait(10.0)
 
     def look_at_closures(self) -> None:
         """Find out again what of the plan leads along closed roads."""
@@ -158,10 +163,38 @@ class PlanEditor(QObject):
 
         self._look.begin([draft], self._desk.roads.closures, found)
 
+    def _check_idle(self) -> None:
+        if self.task is not None:
+            raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
+
+    def _begin(self, work: Steps[None]) -> None:
+        """Read layers for a plan and begin to make it."""
+        self._check_idle()
+        self._reading.begin(work, done=lambda _: self.changed.emit(), failed=self._refused)
+        if self._reading.is_busy:
+            self.changed.emit()
+
+    def _refused(self, error: FleetError) -> None:
+        self.changed.emit()
+        self.refused.emit(str(error))
+
+    def _add_task(self, task: PlanTask) -> Steps[None]:
+        """Have QGIS do ``task`` when the thread of the one before has left it: threads would pile up."""
+        while self._before is not None and self._before.is_under_way:
+            yield WAITING
+        self._before = None
+        QgsApplication.taskManager().addTask(task)
+
+    def _make_placing(self, frame: SiteFrame, preview: bool) -> Steps[None]:
+        targets, facts = yield from plan_settings.read_cones(
+            self._desk.project, self.settings, frame, self._layers
+        )
+        yield from self._make(targets, facts, frame, preview)
+
     def _make(
         self, targets: tuple[ConeTarget, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
-    ) -> None:
-        stores = plan_settings.read_stores(self._desk.project, self.settings, frame)
+    ) -> Steps[None]:
+        stores = yield from plan_settings.read_stores(self._desk.project, self.settings, frame, self._layers)
         if not preview and (told := part_in_words(self._desk.state.robots)):
             self._desk.complained.emit(f"{told} {tr('Others take no part in the plan.')}")
         try:

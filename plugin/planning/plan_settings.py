@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, field, fields, replace
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from qgis.core import QgsCoordinateReferenceSystem, QgsProject, QgsVectorLayer, QgsWkbTypes
+from qgis.core import (
+    QgsCoordinateReferenceSystem,
+    QgsFeatureRequest,
+    QgsProject,
+    QgsVectorLayer,
+    QgsVectorLayerFeatureSource,
+    QgsWkbTypes,
+)
 
 from ...robot_bridge.core.assignment.job import FINISHES, PLACE, STAY, ConeTarget, PlanRobot, Store
 from ...robot_bridge.core.assignment.progress import ConeFacts
@@ -21,10 +29,12 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.robot_states import STATES, RobotArrays
 from ..layers.crs import stated_crs
+from ..layers.layer_source import OneAtATime
 from ..layers.site_transform import SiteGeoreference
 from ..processing.common.cone_layers import PointRow, point_rows
 from ..ui.errors import FleetError
 from ..ui.language import tr
+from ..ui.scheduling import Steps
 
 # --- What the operator wants of a plan, kept with the project ---
 
@@ -163,39 +173,43 @@ def point_layers(project: QgsProject) -> list[QgsVectorLayer]:
 
 
 def read_cones(
-    project: QgsProject, settings: PlanSettings, frame: SiteFrame
-) -> tuple[tuple[ConeTarget, ...], dict[str, ConeFacts]]:
+    project: QgsProject, settings: PlanSettings, frame: SiteFrame, readings: OneAtATime
+) -> Steps[tuple[tuple[ConeTarget, ...], dict[str, ConeFacts]]]:
     """Return the cones to place, in the site frame, and what is written down of each, by the target's id.
 
     Fields: ``id``, ``heading`` (degrees clockwise from north), ``layout``, ``stage``, ``demand`` and
     ``service_s``.
 
     :raises ConeLayerError: when the layer is not there, or empty; LayerReadingError naming the layer, the
-        feature and the field that cannot be used.
+        feature and the field that cannot be used, or a layer that does not answer.
     """
     layer = project.mapLayer(settings.cones)
     if layer is None:
         raise ConeLayerError(tr("No layer of cones is chosen. Choose one, or place a cone layout first."))
     targets, facts = [], {}
-    for row in _rows(layer, project, frame, selected=settings.selected_only):
+    # It may be gone when it has been read.
+    name = layer.name()
+    for row in (yield from _rows(layer, project, frame, readings, selected=settings.selected_only)):
         theta = frame.theta_to_site(theta_of(row.number("heading", 90.0)))
         stage, demand = row.whole("stage", 0), row.whole("demand", 1)
         service_s = row.number("service_s", settings.service_s)
         targets.append(ConeTarget(row.name, row.x, row.y, theta, stage, PLACE, demand, service_s))
-        facts[row.name] = ConeFacts(row.name, str(row.values.get("layout") or layer.name()))
+        facts[row.name] = ConeFacts(row.name, str(row.values.get("layout") or name))
     if not targets:
         which = tr("no selected features") if settings.selected_only else tr("no features")
         raise ConeLayerError(
             tr(
                 "The layer {layer} has {which}: there is nothing to be placed.",
-                layer=layer.name(),
+                layer=name,
                 which=which,
             )
         )
     return tuple(targets), facts
 
 
-def read_stores(project: QgsProject, settings: PlanSettings, frame: SiteFrame) -> tuple[Store, ...]:
+def read_stores(
+    project: QgsProject, settings: PlanSettings, frame: SiteFrame, readings: OneAtATime
+) -> Steps[tuple[Store, ...]]:
     """Return the stores in the site frame, nothing where no layer is chosen; raises as :func:`read_cones`."""
     if not settings.stores:
         return ()
@@ -204,16 +218,31 @@ def read_stores(project: QgsProject, settings: PlanSettings, frame: SiteFrame) -
         raise ConeLayerError(
             tr("The layer of stores is not in the project any more. Choose another, or none.")
         )
-    return tuple(
-        Store(row.name, row.x, row.y, row.number("service_s", settings.store_s))
-        for row in _rows(layer, project, frame, selected=False)
-    )
+    rows = yield from _rows(layer, project, frame, readings, selected=False)
+    return tuple(Store(row.name, row.x, row.y, row.number("service_s", settings.store_s)) for row in rows)
 
 
 def _rows(
-    layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, *, selected: bool
-) -> Iterator[PointRow]:
-    crs = stated_crs(QgsCoordinateReferenceSystem(frame.crs))
-    placing = SiteGeoreference(crs, frame, project.transformContext()).of_layer(layer.name(), layer.crs())
-    features = layer.getSelectedFeatures() if selected else layer.getFeatures()
-    return point_rows(layer.name(), features, placing, _NAMES)
+    layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, readings: OneAtATime, *, selected: bool
+) -> Steps[list[PointRow]]:
+    reader = _RowReader(layer, project, frame, selected)
+    return (yield from readings.read(layer.name(), layer.providerType(), reader))
+
+
+class _RowReader:
+    """Reads the points of a layer, in any thread."""
+
+    def __init__(self, layer: QgsVectorLayer, project: QgsProject, frame: SiteFrame, selected: bool):
+        self._name, self._crs = layer.name(), layer.crs()
+        self._features = QgsVectorLayerFeatureSource(layer)
+        self._request = QgsFeatureRequest()
+        if selected:
+            self._request.setFilterFids(layer.selectedFeatureIds())
+        self._frame, self._transforms = frame, project.transformContext()
+
+    def read(self, go_on: Callable[[], bool]) -> list[PointRow]:
+        crs = stated_crs(QgsCoordinateReferenceSystem(self._frame.crs))
+        site = SiteGeoreference(crs, self._frame, self._transforms)
+        placing = site.of_layer(self._name, self._crs)
+        features = takewhile(lambda _: go_on(), self._features.getFeatures(self._request))
+        return list(point_rows(self._name, features, placing, _NAMES))

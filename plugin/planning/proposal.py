@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 import traceback
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -313,10 +312,11 @@ class PlanTask(SignallingTask):
         self.why = ""
         self.share = 0.0
         """How much is done, 0 to 1; known when QGIS has deleted the task, too."""
-        self.left = threading.Event()
-        """Set once the worker has left :meth:`run`."""
+        self.is_under_way = False
+        """Whether a thread is in :meth:`run`."""
 
     def run(self) -> bool:
+        self.is_under_way = True
         try:
             self.draft = self._work(self)
         except AssignmentCancelledError:
@@ -329,7 +329,7 @@ class PlanTask(SignallingTask):
                 traceback=traceback.format_exc(),
             )
         finally:
-            self.left.set()
+            self.is_under_way = False
         return self.draft is not None
 
     def report_progress(self, share: float) -> bool:

@@ -51,7 +51,7 @@ from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
 DELAY_MS = 250
 """How long the table must be left alone before layers are read again."""
 
-GIVE_UP_S = 5.0
+GIVE_UP_S = 0.25
 
 
 class LivePreview(QObject):
@@ -63,6 +63,9 @@ class LivePreview(QObject):
     measured = pyqtSignal(str, object)
     drawn = pyqtSignal(QImage)
     summed = pyqtSignal(str)
+    _left = threading.Event()
+    """Set where no thread is in the task that was ended last, of this dialog or one before."""
+    _left.set()
 
     def __init__(self, project: QgsProject, rows: Sequence[role_table.RoleRow], parent: QObject):
         super().__init__(parent)
@@ -70,9 +73,6 @@ class LivePreview(QObject):
         self._known: dict[object, LayerMeasure] = {}
         self._size, self._ratio = QSize(400, 300), 1.0
         self._task: PreviewTask | None = None
-        self._left = threading.Event()
-        """Set where no thread is in a task that was ended."""
-        self._left.set()
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
         self._timer.setInterval(DELAY_MS)
@@ -106,7 +106,7 @@ class LivePreview(QObject):
         task.measured.disconnect(self._keep)
         task.drawn.disconnect(self.drawn)
         if task.status() == QgsTask.TaskStatus.Running:
-            self._left = task.left
+            type(self)._left = task.left
         task.cancel()
 
     def wait_for_end(self) -> None:
@@ -116,6 +116,10 @@ class LivePreview(QObject):
     def _start(self) -> None:
         if self._task is not None:
             # The one that was cancelled ends soon, and starts this again.
+            return
+        if not self._left.is_set():
+            # In a layer that hangs each dialog would keep one more thread of those that draw the map.
+            self._timer.start()
             return
         rows = [row for row in self._rows if row.setup.role in roles.PUBLISHED_ROLES]
         missing = [row for row in rows if _key(row) not in self._known]

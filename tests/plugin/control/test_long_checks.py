@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import replace
 
 import pytest
 from fleet_supervisor.plugin.control.layer_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import NotSentError
-from qgis.core import QgsFeature, QgsGeometry, QgsProject, QgsVectorLayer
+from qgis.core import (
+    QgsApplication,
+    QgsExpression,
+    QgsExpressionContext,
+    QgsFeature,
+    QgsGeometry,
+    QgsProject,
+    QgsVectorLayer,
+)
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
-from qgis.PyQt.QtWidgets import QApplication, QToolButton
+from qgis.PyQt.QtWidgets import QAction, QApplication, QDockWidget, QToolButton
 
 from tests.support.databases.frozen_layer import frozen_for_layers, layer_in_database
 
@@ -348,13 +357,13 @@ def test_a_thousand_targets_of_a_layer_are_checked_each(hand, layer_of):
 # --- Sources of layers that hang: nothing in the window may wait for them ---
 
 
+BAY = "POLYGON((488060 5190050,488080 5190050,488080 5190060,488060 5190060,488060 5190050))"
+
+
 @pytest.fixture
 def bays(postgis_server, layer_of):
     """The uri of keepouts in a PostGIS whose server can be frozen: nobody has read of them yet."""
-    return layer_in_database(
-        postgis_server,
-        "POLYGON((488060 5190050,488080 5190050,488080 5190060,488060 5190060,488060 5190050))",
-    )
+    return layer_in_database(postgis_server, BAY)
 
 
 @pytest.fixture
@@ -462,3 +471,102 @@ def test_a_draft_of_a_layer_that_hangs_is_not_made_and_nothing_waits_for_it(
         assert hand.complained("so no draft was made of it.")
         assert server.is_frozen
     assert hand.points is None
+
+
+def place_slalom(hand):
+    hand.iface.findChild(QAction, "fleet_cone_layout_slalom").trigger()
+    hand.iface.hover(40, 50)
+    hand.iface.click(40, 50)
+
+
+def points_in(server, number):
+    layer = QgsVectorLayer(
+        layer_in_database(server, f"POINT({488070 + number} 5190055)", "Point"), "Points", "postgres"
+    )
+    assert layer.isValid()
+    QgsProject.instance().addMapLayer(layer)
+    return layer
+
+
+def place_among_cones_that_hang(hand, server):
+    points_in(server, 0).setCustomProperty("fleet/cones", "1")
+    return lambda: place_slalom(hand)
+
+
+def plan_with(setting):
+    def prepare(hand, server):
+        layer = points_in(server, 1)
+        hand.iface.findChild(QAction, "fleet_plan_panel").trigger()
+        dock = hand.iface.findChild(QDockWidget, "fleet_plan_dock")
+        cones = QgsVectorLayer("Point?crs=EPSG:32633", "Own", "memory")
+        cone = QgsFeature(cones.fields())
+        cone.setGeometry(QgsGeometry.fromWkt("POINT(488070 5190055)"))
+        cones.dataProvider().addFeature(cone)
+        QgsProject.instance().addMapLayer(cones)
+        chosen = {"cones": cones.id(), "stores": "", setting: layer.id()}
+        dock.drafts.settings = replace(dock.drafts.settings, **chosen)
+        hand.wait(lambda: dock.robots.model().rowCount() == 2)
+        return lambda: dock.make(preview=True)
+
+    return prepare
+
+
+def evaluate_road_surface(hand, server):
+    layer = QgsVectorLayer(layer_in_database(server, BAY), "Roads", "postgres")
+    QgsProject.instance().addMapLayer(layer)
+    layer.setCustomProperty("fleet/role", "road_surface")
+
+    def evaluate():
+        for _ in range(50):
+            # An expression has to be answered at once: it waits a moment for the first answer alone.
+            expression = QgsExpression("road_surface(488070, 5190055)")
+            expression.evaluate(QgsExpressionContext())
+            assert "still being read (Roads)" in expression.evalErrorString()
+
+    return evaluate
+
+
+@pytest.mark.parametrize(
+    "prepare",
+    [place_among_cones_that_hang, plan_with("cones"), plan_with("stores"), evaluate_road_surface],
+    ids=["cones of layouts", "cones of a plan", "stores of a plan", "expression"],
+)
+def test_the_emergency_stop_goes_out_while_other_layers_hang(hand, postgis_server, prepare):
+    hand.iface.is_settled = lambda: True
+    act = prepare(hand, postgis_server)
+    with frozen_for_layers(postgis_server) as server:
+        act()
+        QTest.keyClick(hand.iface.canvas, Qt.Key.Key_F10)
+        hand.wait(lambda: hand.gateway.requests_of("emergency_stop"), what="the emergency stop")
+        assert server.is_frozen
+
+
+@pytest.mark.parametrize("role", ["road_surface", "obstacle"])
+def test_cones_stand_unchecked_where_a_layer_hangs_and_its_threads_do_not_pile_up(
+    hand, layer_in_postgis, postgis_server, role, monkeypatch
+):
+    monkeypatch.setattr(scheduling, "STALLED_AFTER", 0.3)
+    layer = layer_in_postgis(role)
+    hand.iface.is_settled = lambda: True
+    with frozen_for_layers(postgis_server) as server:
+        for number in range(3):
+            place_slalom(hand)
+            hand.iface.findChild(QAction, "fleet_surface_at_point").trigger()
+            layer.setCustomProperty("changed", number)
+        assert hand.complained("The cones in the layer Cones were not checked: ")
+        assert len(QgsProject.instance().mapLayersByName("Cones")[0]) == 3 * 13
+        readers = [one for one in threading.enumerate() if isinstance(one, scheduling.ReadingThread)]
+        # One of the layout tool, one of the store of road surfaces.
+        assert len(readers) == (2 if role == "road_surface" else 1)
+        assert QgsApplication.taskManager().count() == 0
+        assert server.is_frozen
+
+
+def test_the_plugin_is_unloaded_while_layers_hang(hand, layer_in_postgis, postgis_server, plugin):
+    layer_in_postgis("road_surface")
+    hand.iface.is_settled = lambda: True
+    with frozen_for_layers(postgis_server) as server:
+        place_slalom(hand)
+        hand.iface.findChild(QAction, "fleet_surface_at_point").trigger()
+        plugin.unload()
+        assert server.is_frozen

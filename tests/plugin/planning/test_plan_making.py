@@ -109,7 +109,7 @@ def test_unloading_takes_panel_layers_and_tasks_away(panel, plugin, wait, iface,
     task = panel.drafts.task
     wait(lambda: task.progress() > 0, 20, "progress")
     plugin.unload()
-    assert task.left.is_set()
+    wait(lambda: not task.is_under_way, what="the end of its thread")
     names = {layer.name() for layer in QgsProject.instance().mapLayers().values()}
     assert names == {"Cones"}
     QApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
