@@ -97,7 +97,7 @@ class LayerCheck(QObject):
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._project = project
-        self._readings = readings = LayerReadings()
+        self._readings = readings = LayerReadings(project)
         self._checks: tuple[Check, ...] = (
             KeepoutCheck(project, readings),
             ObstacleCheck(project, readings),
@@ -111,6 +111,7 @@ class LayerCheck(QObject):
     def remove(self) -> None:
         """Watch no layer any longer."""
         self._watch.remove()
+        self._readings.remove()
 
     def check_command(
         self, draft: PendingCommand, placement: SiteToMapTransform, afresh: bool = False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from enum import Enum
 from itertools import chain
 from typing import NamedTuple
@@ -16,6 +16,7 @@ from qgis.core import (
     QgsFeatureRequest,
     QgsGeometry,
     QgsGeometryEngine,
+    QgsMapLayer,
     QgsProject,
     QgsRectangle,
     QgsSpatialIndex,
@@ -24,7 +25,17 @@ from qgis.core import (
 )
 
 from ..layers.layer_expressions import FeatureFilter
-from ..layers.layer_source import IN_MEMORY, begin_reading, deleted_in, error_of_gdal, has_features, is_empty
+from ..layers.layer_source import (
+    IN_MEMORY,
+    FileState,
+    begin_reading,
+    deleted_in,
+    error_of_gdal,
+    file_of,
+    file_state,
+    has_features,
+    is_empty,
+)
 from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
 from ..layers.site_transform import SiteToMapTransform, check_transform, line_of, transform_or_raise
 from ..ui.errors import MapTransformError
@@ -180,6 +191,7 @@ class LayerReading(NamedTuple):
     near: Near
     is_empty: bool
     is_complete: bool
+    file: FileState
 
 
 class LayerReader:
@@ -195,9 +207,11 @@ class LayerReader:
         self._provider = layer.providerType()
         self._stored, self._deleted = layer.source(), deleted_in(layer)
         self._has_features = False
+        self._path = file_of(layer)
 
     def read(self, go_on: Callable[[], bool]) -> LayerReading:
         """Return the features whose boxes meet those given, in the layer's CRS, while ``go_on`` says so."""
+        file = file_state(self._path)
         begin_reading()
         near = self._near(go_on)
         # Of a damaged file QGIS passes on what comes before the damage, and no error.
@@ -206,7 +220,7 @@ class LayerReader:
             self._has_features = has_features(self._features)
         if is_complete and not self._has_features and self._provider != IN_MEMORY:
             is_complete = is_empty(self._provider, self._stored, self._deleted)
-        return LayerReading(near, is_complete and not self._has_features, is_complete)
+        return LayerReading(near, is_complete and not self._has_features, is_complete, file)
 
     def _near(self, go_on: Callable[[], bool]) -> Near:
         if len(self._boxes) <= FEW:
@@ -249,9 +263,17 @@ class LayerReader:
 
 
 class LayerReadings:
-    """Reads layers in threads, of each layer one at a time."""
+    """Reads layers in threads, of each layer one at a time.
 
-    def __init__(self) -> None:
+    A layer whose file has been replaced since it was added to the project is opened again first: QGIS would
+    read on in the file of before. :meth:`remove` undoes the constructor.
+    """
+
+    def __init__(self, project: QgsProject) -> None:
+        self._project = project
+        self._files: dict[str, FileState] = {}
+        project.layersAdded.connect(self._note_files)
+        self._note_files(list(project.mapLayers().values()))
         self._threads: dict[str, ReadingThread[LayerReading]] = {}
         self.empty: set[str] = set()
         """Layers that held nothing the last time, by their ids."""
@@ -263,21 +285,56 @@ class LayerReadings:
         :raises ExpressionError: when the filter of the layer is no expression.
         """
         # Nothing is asked of the layer later: it may be gone when it has been read.
-        id, reader = layer.id(), LayerReader(layer, boxes)
-        try:
-            while (before := self._threads.get(id)) is not None and before.is_reading:
-                yield from before.wait_for_end()
-            self._threads[id] = thread = ReadingThread(reader)
-            thread.start()
-            reading = yield from thread.result()
-        except StalledError as error:
-            raise UnreadError(Unread.SILENT) from error
+        id = layer.id()
+        reading = yield from self._read(id, LayerReader(layer, boxes))
+        is_replaced = self._is_replaced(id, reading.file)
+        if reading.file is not None:
+            self._files[id] = reading.file
+        if is_replaced:
+            # This begins the check again where the layer is watched.
+            again = self._project.mapLayer(id)
+            if isinstance(again, QgsVectorLayer) and not again.isEditable():
+                again.dataProvider().reloadData()
+                reading = yield from self._read(id, LayerReader(again, boxes))
         if not reading.is_complete:
             raise UnreadError(Unread.GONE)
         self.empty.discard(id)
         if reading.is_empty:
             self.empty.add(id)
         return reading.near
+
+    def remove(self) -> None:
+        """Note no layer that is added any more."""
+        self._project.layersAdded.disconnect(self._note_files)
+
+    def _read(self, id: str, reader: LayerReader) -> Steps[LayerReading]:
+        try:
+            while (before := self._threads.get(id)) is not None and before.is_reading:
+                yield from before.wait_for_end()
+            self._threads[id] = thread = ReadingThread(reader)
+            thread.start()
+            return (yield from thread.result())
+        except StalledError as error:
+            raise UnreadError(Unread.SILENT) from error
+
+    def _is_replaced(self, id: str, file: FileState) -> bool:
+        before = self._files.get(id)
+        return file is not None and before is not None and before != file
+
+    def _note_files(self, layers: Sequence[QgsMapLayer]) -> None:
+        paths = {layer.id(): file_of(layer) for layer in layers}
+        ReadingThread(_FileStates({id: path for id, path in paths.items() if path}, self._files)).start()
+
+
+class _FileStates:
+    """Notes in ``states`` how the files of layers are, in a thread: a share may not answer."""
+
+    def __init__(self, paths: Mapping[str, str], states: dict[str, FileState]):
+        self._paths, self._states = paths, states
+
+    def read(self, go_on: Callable[[], bool]) -> None:
+        for id, path in self._paths.items():
+            self._states[id] = file_state(path)
 
 
 def engine_of(geometry: QgsGeometry, times: int) -> QgsGeometryEngine:

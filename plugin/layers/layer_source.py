@@ -24,6 +24,7 @@ from qgis.core import (
     QgsFeedback,
     QgsFields,
     QgsGeometry,
+    QgsMapLayer,
     QgsProcessingFeedback,
     QgsProviderRegistry,
     QgsVectorLayer,
@@ -199,6 +200,28 @@ def _opened(provider: str, stored: str) -> QgsVectorLayer:
     options = QgsVectorLayer.LayerOptions()
     options.loadDefaultStyle = False
     return QgsVectorLayer(stored, "", provider, options)
+
+
+FileState = tuple[int, ...] | None
+"""What tells a file from one that has taken its place; None where there is none."""
+
+
+def file_of(layer: QgsMapLayer) -> str:
+    """Return the path of the file that ``layer`` is read from, nothing where it is none."""
+    if not isinstance(layer, QgsVectorLayer) or layer.providerType() != "ogr":
+        return ""
+    return str(QgsProviderRegistry.instance().decodeUri("ogr", layer.source()).get("path") or "")
+
+
+def file_state(path: str) -> FileState:
+    """Return how the file ``path`` is, from a thread that may hang."""
+    try:
+        found = Path(path).stat()
+    except (OSError, ValueError):
+        return None
+    # A GeoPackage is written to by who only reads it.
+    changed = () if path.lower().endswith((".gpkg", ".sqlite")) else (found.st_mtime_ns,)
+    return found.st_dev, found.st_ino, found.st_size, *changed
 
 
 def begin_reading() -> None:

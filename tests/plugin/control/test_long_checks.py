@@ -457,6 +457,27 @@ def test_a_layer_damaged_in_the_middle_keeps_the_draft_here(hand, layer_of, save
     assert hand.complained("The layer Bays cannot be read, so what is in it was not looked at.")
 
 
+@pytest.mark.parametrize("form", ["gpkg", "fgb", "shp"])
+def test_keepouts_of_a_file_that_took_the_place_of_another_count(hand, layer_of, save_layer, tmp_path, form):
+    drawn = layer_of("Polygon", "Polygon ((100 50, 110 50, 110 60, 100 60, 100 50))", names=["Far"])
+    layer = save_layer(drawn, f"bays.{form}")
+    later = layer_of("Polygon", SQUARE, names=["Later bay"])
+    save_layer(later, f"later.{form}")
+    for one in (drawn, later):
+        QgsProject.instance().removeMapLayer(one.id())
+    layer.setCustomProperty("fleet/role", "keepout")
+    QgsProject.instance().addMapLayer(layer)
+    hand.take("cone").click((70, 55))
+    assert not hand.drafts.draft.findings.overridable
+    # As a program does that synchronises a folder.
+    for file in tmp_path.glob("later.*"):
+        if file.suffix[1:] in (form, "shx", "dbf"):
+            file.replace(tmp_path / f"bays{file.suffix}")
+    hand.key(ENTER)
+    assert hand.complained("enters the keepout Later bay.")
+    assert hand.nothing_sent()
+
+
 def test_a_draft_of_a_layer_that_hangs_is_not_made_and_nothing_waits_for_it(
     hand, postgis_server, monkeypatch
 ):
