@@ -2404,6 +2404,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no respon des de fa {seconds:g} s. Restabliu-ne el servidor o la unitat i torneu-ho a provar.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
         </message>
@@ -2717,8 +2722,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/road_surfaces.py" />
-            <source>Reading road surfaces</source>
-            <translation>S'estan llegint les superfícies de via</translation>
+            <source>the road surfaces are still being read ({layers}): try again soon</source>
+            <translation>les superfícies de via encara s'estan llegint ({layers}): torneu-ho a provar aviat</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/role_editor/preview.py" />
@@ -4326,11 +4331,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
-            <source>reading was cancelled</source>
-            <translation>s'ha cancel·lat la lectura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/watch.py" />
             <source>the road surfaces are being read</source>
             <translation>s'estan llegint les superfícies de via</translation>
         </message>
@@ -5874,13 +5874,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>Reading what cones must keep clear of</source>
-            <translation>Lectura d'allò de què els cons s'han de mantenir lluny</translation>
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>Els cons de la capa {layer} no s'han desat amb el projecte: {problem}. Exporteu la capa a un fitxer abans de tancar QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
-            <translation>Els cons de la capa {layer} no s'han desat amb el projecte: {problem}. Exporteu la capa a un fitxer abans de tancar QGIS.</translation>
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>La capa de cons ara és una altra: torneu a col·locar la disposició.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
@@ -5927,8 +5927,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>The layer of cones is another one now: place the layout again.</source>
-            <translation>La capa de cons ara és una altra: torneu a col·locar la disposició.</translation>
+            <source>The cones in the layer {layer} were not checked: {why}</source>
+            <translation>Els cons de la capa {layer} no s'han comprovat: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/layouts/layout_tool.py" />
+            <source>layers of road surfaces and obstacles have not been read within {seconds:g} s</source>
+            <translation>les capes de superfícies de via i d'obstacles no s'han llegit en {seconds:g} s</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/layouts/layout_tool.py" />

@@ -2404,6 +2404,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no responde desde hace {seconds:g} s. Restablezca su servidor o su unidad e inténtelo de nuevo.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
         </message>
@@ -2717,8 +2722,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/road_surfaces.py" />
-            <source>Reading road surfaces</source>
-            <translation>Leyendo superficies de vía</translation>
+            <source>the road surfaces are still being read ({layers}): try again soon</source>
+            <translation>las superficies de vía todavía se están leyendo ({layers}): inténtelo de nuevo pronto</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/role_editor/preview.py" />
@@ -4326,11 +4331,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
-            <source>reading was cancelled</source>
-            <translation>se canceló la lectura</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/watch.py" />
             <source>the road surfaces are being read</source>
             <translation>se están leyendo las superficies de vía</translation>
         </message>
@@ -5874,13 +5874,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>Reading what cones must keep clear of</source>
-            <translation>Lectura de aquello de lo que los conos deben mantenerse lejos</translation>
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>Los conos de la capa {layer} no se han guardado con el proyecto: {problem}. Exporte la capa a un archivo antes de cerrar QGIS.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
-            <translation>Los conos de la capa {layer} no se han guardado con el proyecto: {problem}. Exporte la capa a un archivo antes de cerrar QGIS.</translation>
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>La capa de conos ahora es otra: coloque de nuevo la disposición.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
@@ -5927,8 +5927,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>The layer of cones is another one now: place the layout again.</source>
-            <translation>La capa de conos ahora es otra: coloque de nuevo la disposición.</translation>
+            <source>The cones in the layer {layer} were not checked: {why}</source>
+            <translation>Los conos de la capa {layer} no se han comprobado: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/layouts/layout_tool.py" />
+            <source>layers of road surfaces and obstacles have not been read within {seconds:g} s</source>
+            <translation>las capas de superficies de vía y de obstáculos no se han leído en {seconds:g} s</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/layouts/layout_tool.py" />

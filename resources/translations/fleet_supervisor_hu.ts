@@ -2394,6 +2394,11 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>A(z) {layer} réteg {seconds:g} másodperce nem válaszol. Tegye újra elérhetővé a kiszolgálóját vagy a meghajtóját, és próbálja újra.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
         </message>
@@ -2706,8 +2711,8 @@
         </message>
         <message>
             <location filename="../../plugin/layers/road_surfaces.py" />
-            <source>Reading road surfaces</source>
-            <translation>Útfelületek olvasása</translation>
+            <source>the road surfaces are still being read ({layers}): try again soon</source>
+            <translation>az útfelületek beolvasása még tart ({layers}): próbálja újra hamarosan</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/layers/role_editor/preview.py" />
@@ -4302,11 +4307,6 @@
         </message>
         <message>
             <location filename="../../plugin/panel/alarms/watch.py" />
-            <source>reading was cancelled</source>
-            <translation>az olvasást megszakították</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/panel/alarms/watch.py" />
             <source>the road surfaces are being read</source>
             <translation>az útfelületek olvasása folyik</translation>
         </message>
@@ -5842,13 +5842,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>Reading what cones must keep clear of</source>
-            <translation>Annak beolvasása, amitől a bójáknak távol kell maradniuk</translation>
+            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
+            <translation>A(z) {layer} réteg bójái nem mentődtek a projekttel: {problem}. Exportálja a réteget fájlba, mielőtt bezárja a QGIS-t.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
-            <source>The cones of the layer {layer} are not saved with the project: {problem}. Export the layer to a file before you close QGIS.</source>
-            <translation>A(z) {layer} réteg bójái nem mentődtek a projekttel: {problem}. Exportálja a réteget fájlba, mielőtt bezárja a QGIS-t.</translation>
+            <source>The layer of cones is another one now: place the layout again.</source>
+            <translation>A bóják rétege most másik: helyezze el újra az elrendezést.</translation>
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_layer.py" />
@@ -5894,8 +5894,13 @@
         </message>
         <message>
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
-            <source>The layer of cones is another one now: place the layout again.</source>
-            <translation>A bóják rétege most másik: helyezze el újra az elrendezést.</translation>
+            <source>The cones in the layer {layer} were not checked: {why}</source>
+            <translation>A(z) {layer} réteg bójáit senki sem ellenőrizte: {why}</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/planning/layouts/layout_tool.py" />
+            <source>layers of road surfaces and obstacles have not been read within {seconds:g} s</source>
+            <translation>az útfelületek és akadályok rétegeit {seconds:g} másodperc alatt nem sikerült beolvasni</translation>
         </message>
         <message numerus="yes">
             <location filename="../../plugin/planning/layouts/layout_tool.py" />
