@@ -288,15 +288,14 @@ def _gdal() -> Any:
 T = TypeVar("T")
 
 
-class ThreadFeedback(QgsProcessingFeedback):
-    """Feedback of what reads in a thread: each question whether it is cancelled is a sign of progress."""
+def thread_feedback(go_on: Callable[[], bool]) -> QgsProcessingFeedback:
+    """Return the feedback of what reads in a thread: who asks whether it is cancelled makes progress."""
 
-    def __init__(self, go_on: Callable[[], bool]):
-        super().__init__(False)
-        self._go_on = go_on
+    class ThreadFeedback(QgsProcessingFeedback):
+        def isCanceled(self) -> bool:
+            return not go_on()
 
-    def isCanceled(self) -> bool:
-        return not self._go_on()
+    return ThreadFeedback(False)
 
 
 class OneAtATime:

@@ -28,7 +28,7 @@ from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
 from ..ui.scheduling import BackgroundReading
 from .crs import check_site_crs
-from .layer_source import LayerWatch, ObstacleSource, ThreadFeedback, obstacle_sources
+from .layer_source import LayerWatch, ObstacleSource, obstacle_sources, thread_feedback
 from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
 from .site_transform import SiteGeoreference, transform_points_or_nan
@@ -261,7 +261,7 @@ class _SurfaceReader:
         self._sources = sources
 
     def read(self, go_on: Callable[[], bool]) -> SurfaceMap | None:
-        return read_surface_map(self._sources, ThreadFeedback(go_on))
+        return read_surface_map(self._sources, thread_feedback(go_on))
 
 
 def key_of(layers: Sequence[QgsVectorLayer]) -> Key:

@@ -33,8 +33,8 @@ from ...layers.layer_source import (
     LayerWatch,
     ObstacleSource,
     OneAtATime,
-    ThreadFeedback,
     obstacle_sources,
+    thread_feedback,
 )
 from ...layers.road_layers import read_areas
 from ...layers.roles import OBSTACLE_ROLES, ROAD_SURFACE, LayerExpressions, layers_with_role, setup_of
@@ -390,7 +390,7 @@ class _GroundReader:
         self._roads, self._obstacles, self._site = list(roads), list(obstacles), site
 
     def read(self, go_on: Callable[[], bool]) -> LayoutGround | None:
-        feedback = ThreadFeedback(go_on)
+        feedback = thread_feedback(go_on)
         areas = read_areas(self._roads, self._site, ROAD_SURFACE, feedback).items
         obstacles = read_obstacles(self._obstacles, self._site, feedback)
         if feedback.isCanceled():
