@@ -40,7 +40,7 @@ from ..layers.roles import FURNITURE, KEEPOUT, OBSTACLE, ROAD_SURFACE, STAIRS
 from ..layers.site_transform import SiteToMapTransform, check_transform, line_of, transform_or_raise
 from ..ui.errors import MapTransformError
 from ..ui.language import tr
-from ..ui.scheduling import ReadingThread, StalledError, Steps
+from ..ui.scheduling import ReadingThread, ReadingTurns, StalledError, Steps
 from .pending_command import ROUTE, START, ApproachKind, Findings, PendingCommand, Point
 
 # Each is looked at by itself, so that after a change only what has changed is looked at again.
@@ -274,7 +274,7 @@ class LayerReadings:
         self._files: dict[str, FileState] = {}
         project.layersAdded.connect(self._note_files)
         self._note_files(list(project.mapLayers().values()))
-        self._threads: dict[str, ReadingThread[LayerReading]] = {}
+        self._turns: dict[str, ReadingTurns] = {}
         self.empty: set[str] = set()
         """Layers that held nothing the last time, by their ids."""
 
@@ -309,11 +309,7 @@ class LayerReadings:
 
     def _read(self, id: str, reader: LayerReader) -> Steps[LayerReading]:
         try:
-            while (before := self._threads.get(id)) is not None and before.is_reading:
-                yield from before.wait_for_end()
-            self._threads[id] = thread = ReadingThread(reader)
-            thread.start()
-            return (yield from thread.result())
+            return (yield from self._turns.setdefault(id, ReadingTurns()).read(reader))
         except StalledError as error:
             raise UnreadError(Unread.SILENT) from error
 

@@ -36,7 +36,7 @@ from qgis.PyQt.QtCore import QDateTime, QObject, Qt, pyqtSignal
 
 from ..ui.errors import LayerReadingError, LayerTypeError
 from ..ui.language import tr
-from ..ui.scheduling import STALLED_AFTER, Reader, ReadingThread, StalledError, Steps
+from ..ui.scheduling import STALLED_AFTER, Reader, ReadingTurns, StalledError, Steps
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
@@ -302,7 +302,7 @@ class OneAtATime:
     """Reads a layer for steps of the window's thread, in one thread after the other."""
 
     def __init__(self) -> None:
-        self._thread: ReadingThread[Any] | None = None
+        self._turns = ReadingTurns()
 
     def read(self, name: str, provider: str, reader: Reader[T]) -> Steps[T]:
         """Return what ``reader`` reads of the layer ``name``.
@@ -312,11 +312,7 @@ class OneAtATime:
         if provider == IN_MEMORY:
             return reader.read(lambda: True)
         try:
-            while self._thread is not None and self._thread.is_reading:
-                yield from self._thread.wait_for_end()
-            self._thread = ReadingThread(reader)
-            self._thread.start()
-            return (yield from self._thread.result())
+            return (yield from self._turns.read(reader))
         except StalledError as error:
             raise LayerReadingError(
                 tr(

@@ -278,6 +278,21 @@ class ReadingThread(threading.Thread, Generic[T]):
         return not self._is_cancelled
 
 
+class ReadingTurns:
+    """Has readers read for steps of the window's thread, in one thread after the other."""
+
+    def __init__(self) -> None:
+        self._thread: ReadingThread[Any] | None = None
+
+    def read(self, reader: Reader[T]) -> Steps[T]:
+        """Return what ``reader`` reads, once the one before has left its source; raises as a thread does."""
+        while self._thread is not None and self._thread.is_reading:
+            yield from self._thread.wait_for_end()
+        self._thread = thread = ReadingThread(reader)
+        thread.start()
+        return (yield from thread.result())
+
+
 _LOOK_EVERY_MS = 20
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import time
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -58,13 +59,15 @@ class ManualClock(Clock):
 LONGEST_PAUSE_S = 5.0
 """seconds; a loop that is busy for less has not stood still. A gateway gives a peer up after 10 s."""
 LOOK_EVERY_S = 0.5
+ABORTS_WITHIN_S = 0.2
+"""seconds in which an Abort is read on a connection on which all else is too old."""
 
 
 class StandstillWatch:
     """Tells whether this program has stood still since the watch was made.
 
-    It has, where more than ``longest_s`` have passed between two looks at :attr:`has_stood_still`: look there
-    every :data:`LOOK_EVERY_S`, and before anything is done that was received.
+    It has, where more than ``longest_s`` have passed between two calls of :meth:`check`: one is needed before
+    anything is done that was received, and :meth:`wait` makes the others.
     """
 
     def __init__(self, longest_s: float = LONGEST_PAUSE_S, clock: Clock = SYSTEM_CLOCK) -> None:
@@ -74,14 +77,18 @@ class StandstillWatch:
         self.seconds = 0.0
         """For how long it stood still; 0 where it did not."""
 
-    @property
-    def has_stood_still(self) -> bool:
-        """Whether it stood still; once that is so it stays so."""
+    def check(self) -> bool:
+        """Tell whether it stood still; once that is so it stays so."""
         since, self._looked_at = self._looked_at, self._clock.steady()
         passed = self._looked_at - since
         if passed > self._longest_s:
             self.seconds = max(self.seconds, passed)
         return self.seconds > 0.0
+
+    async def wait(self) -> None:
+        """Return once it has stood still."""
+        while not self.check():
+            await asyncio.sleep(LOOK_EVERY_S)
 
 
 # --- Noticing that this computer's clock was set, while the gateway goes by it ---

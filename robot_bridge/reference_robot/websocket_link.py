@@ -11,7 +11,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
-from ..core.clock import LONGEST_PAUSE_S, LOOK_EVERY_S, StandstillWatch
+from ..core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ..core.errors import AccessError, BridgeError
 from ..core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ..core.messages.base import MessageError, to_json
@@ -24,8 +24,6 @@ log = logging.getLogger(__name__)
 
 SAY_AGAIN = 1.0
 """seconds after which an observation that the gateway could not store is said once more."""
-ABORTS_WITHIN = 0.2
-"""seconds in which an Abort is read on a connection on which all else is too old."""
 REPLACED = 4001
 """Close code of a gateway to which another robot has connected under the same name."""
 Frame = str
@@ -114,29 +112,28 @@ class RobotWebSocketLink:
         self._standstill = StandstillWatch(self._longest_pause_s)
         tasks = [
             asyncio.create_task(self._send_all(connection)),
-            asyncio.create_task(self._look(connection, agent)),
+            asyncio.create_task(self._end_when_old(connection, agent)),
         ]
         try:
             async for frame in connection:
-                if self._standstill.has_stood_still:
+                if self._standstill.check():
                     agent.wait_for_gateway()
                 self._receive(agent, frame)
         finally:
             self._connected = False
             for task in tasks:
                 task.cancel()
-            if self._standstill.has_stood_still:
+            if self._standstill.check():
                 agent.wait_for_gateway()
 
-    async def _look(self, connection: ClientConnection, agent: Agent) -> None:
+    async def _end_when_old(self, connection: ClientConnection, agent: Agent) -> None:
         """End a connection on which what was received is too old to be done."""
-        while not self._standstill.has_stood_still:
-            await asyncio.sleep(LOOK_EVERY_S)
+        await self._standstill.wait()
         agent.wait_for_gateway()
         log.warning(
             "robot %s stood still for %.0f s: it waits for the gateway", self._robot, self._standstill.seconds
         )
-        await asyncio.sleep(ABORTS_WITHIN)
+        await asyncio.sleep(ABORTS_WITHIN_S)
         # Closed in good order it would seem to be switched off.
         connection.transport.abort()
 
@@ -163,7 +160,7 @@ class RobotWebSocketLink:
         if isinstance(message, jsonrpc.Reply):
             self._receive_reply(agent, message)
             return
-        if self._standstill.has_stood_still and message.method != Abort.__name__:
+        if self._standstill.check() and message.method != Abort.__name__:
             return
         # Nothing is said before the gateway's Start.
         self._connected = True

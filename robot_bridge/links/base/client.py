@@ -15,7 +15,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
 from websockets.frames import CloseCode
 
-from ...core.clock import LONGEST_PAUSE_S, LOOK_EVERY_S, StandstillWatch
+from ...core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ...core.errors import AccessError, BridgeError
 from ...core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ...core.logs import log_and_continue
@@ -50,8 +50,6 @@ SAY_AGAIN = 1.0
 """seconds after which is said once more what the gateway could not store."""
 MEMORY_EVERY = 2.0
 """seconds after which it is tried once more to write what a full disk did not take."""
-ABORTS_WITHIN = 0.2
-"""seconds in which an Abort is read on a connection on which all else is too old."""
 LARGEST_FRAME = 64 << 20
 
 
@@ -275,7 +273,9 @@ class LinkClient:
         self._outgoing.clear()
         self._pending_calls.clear()
         self._standstill = StandstillWatch(self._longest_pause_s)
-        tasks = [asyncio.create_task(work) for work in (self._write(connection), self._look(connection))]
+        tasks = [
+            asyncio.create_task(work) for work in (self._write(connection), self._end_when_old(connection))
+        ]
         try:
             async for frame in connection:
                 self._receive(frame)
@@ -284,17 +284,16 @@ class LinkClient:
                 task.cancel()
             await asyncio.gather(*tasks, return_exceptions=True)
 
-    async def _look(self, connection: ClientConnection) -> None:
+    async def _end_when_old(self, connection: ClientConnection) -> None:
         """End a connection on which what was received is too old to be done."""
-        while not self._standstill.has_stood_still:
-            await asyncio.sleep(LOOK_EVERY_S)
+        await self._standstill.wait()
         seconds = self._standstill.seconds
         log.warning(
             "link %s stood still for %.0f s: what came meanwhile is asked for again", self.name, seconds
         )
         for name in self._robots:
             self._commanding.drop(name, f"the link stood still for {seconds:.0f} s before it was begun")
-        await asyncio.sleep(ABORTS_WITHIN)
+        await asyncio.sleep(ABORTS_WITHIN_S)
         # Closed in good order it would seem that its robots were switched off.
         connection.transport.abort()
 
@@ -379,7 +378,7 @@ class LinkClient:
             log.warning("the gateway refuses: %s", reply.error)
 
     def _take_call(self, call: jsonrpc.Call) -> None:
-        if self._standstill.has_stood_still and call.method != Abort.__name__:
+        if self._standstill.check() and call.method != Abort.__name__:
             return
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
