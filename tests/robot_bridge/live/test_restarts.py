@@ -9,7 +9,7 @@ import math
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
-from tests.support.databases.older_state import OlderState
+from tests.support.databases.older_state import OlderState, abort_there
 
 
 @pytest.fixture
@@ -233,13 +233,6 @@ def note_of(bridge):
     return next((note for note in notes if note["database"] == id), None)
 
 
-def abort(desk, robot):
-    """Abort a robot that drives; fail unless it stands soon."""
-    desk.until(lambda: desk.robots.get(robot, {}).get("v", 0.0) > 0.1 and desk.robots[robot]["age"] < 1, 20)
-    desk.send("abort-0001", robot, "Abort")
-    desk.until(lambda: abs(desk.robots[robot]["v"]) < 0.02)
-
-
 # Whose program has the file of SQLite open itself finds that another one is there, and stores nothing in it.
 @pytest.mark.parametrize(
     ("noting_bridge", "robot"),
@@ -262,7 +255,7 @@ def test_an_abort_stops_a_robot_though_the_database_was_put_back_to_an_older_sta
     bridge.start_gateway()
 
     assert OLDER in bridge.output()
-    abort(watch(bridge), robot)
+    abort_there(watch(bridge), robot)
     # It is the same database for the next gateway.
     bridge.kill_gateway()
     bridge.start_gateway()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import os
 import shutil
 import sqlite3
@@ -12,8 +13,24 @@ from pathlib import Path
 from sqlalchemy import make_url
 
 from tests.support.databases.database_server import find_program
+from tests.support.operators import Desk
 
 TOOLS = {"postgresql": ("pg_dump", "pg_restore"), "mariadb": ("mariadb-dump", "mariadb")}
+
+
+def abort_there(desk: Desk, robot: str) -> None:
+    """Send a robot on that has met another database, and abort it; fail unless it stands soon."""
+
+    def speed() -> float:
+        found = desk.robots.get(robot, {})
+        return abs(found["v"]) if found.get("v") is not None and found["age"] < 1.0 else math.nan
+
+    # Its task is in no other database.
+    desk.until(lambda: speed() < 0.02, 20)
+    desk.send("target-there", robot, "SetPosEnd", x=180.0, y=23.0)
+    desk.until(lambda: speed() > 0.1, 20)
+    desk.send("abort-there", robot, "Abort")
+    desk.until(lambda: speed() < 0.02)
 
 
 class OlderState:

@@ -14,7 +14,7 @@ from websockets.exceptions import ConnectionClosed
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.gateway_pair import GatewayPair, desk_at
 from tests.support.databases.database_client import DatabaseClient
-from tests.support.databases.older_state import OlderState
+from tests.support.databases.older_state import OlderState, abort_there
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
 from tests.support.processes import free_port
@@ -613,14 +613,6 @@ def driven(pair, folder):
     return older
 
 
-def abort_at(bridge):
-    """Abort the robot, which drives; fail unless it stands soon."""
-    desk = desk_at(bridge)
-    desk.until(lambda: desk.robots.get("r1", {}).get("v", 0.0) > 0.1 and desk.robots["r1"]["age"] < 1, 20)
-    desk.send("abort-0001", "r1", "Abort")
-    desk.until(lambda: abs(desk.robots["r1"]["v"]) < 0.02)
-
-
 def test_an_abort_stops_a_robot_though_the_database_was_put_back_while_no_gateway_ran(noting_pair, tmp_path):
     pair, older = noting_pair, driven(noting_pair, tmp_path)
     for bridge in (pair.a, pair.b):
@@ -629,7 +621,7 @@ def test_an_abort_stops_a_robot_though_the_database_was_put_back_while_no_gatewa
     pair.b.start_gateway()
     pair.a.start_gateway()
     assert (pair.b.output() + pair.a.output()).count(OLDER) == 1
-    abort_at(pair.b)
+    abort_there(desk_at(pair.b), "r1")
 
 
 def test_gateways_end_whose_database_is_put_back_to_an_older_state_meanwhile(noting_pair, tmp_path):
@@ -640,7 +632,7 @@ def test_gateways_end_whose_database_is_put_back_to_an_older_state_meanwhile(not
         assert "was put back to an older state while this gateway served it" in bridge.output()
     pair.b.start_gateway()
     assert OLDER in pair.b.output()
-    abort_at(pair.b)
+    abort_there(desk_at(pair.b), "r1")
 
 
 def test_a_gateway_that_serves_an_older_database_and_knows_nothing_of_that_ends(noting_pair, tmp_path):
@@ -657,4 +649,4 @@ def test_a_gateway_that_serves_an_older_database_and_knows_nothing_of_that_ends(
     assert OLDER in pair.a.output()
     assert "Served by b, too: see that each ends and starts again" in pair.a.output()
     assert pair.b.gateway.wait(BUSY * 20) == 1
-    abort_at(pair.a)
+    abort_there(desk_at(pair.a), "r1")
