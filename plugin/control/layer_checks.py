@@ -25,7 +25,7 @@ from qgis.core import (
 )
 
 from ..layers.layer_expressions import FeatureFilter
-from ..layers.layer_source import (
+from ..layers.reading import (
     IN_MEMORY,
     FileState,
     begin_reading,

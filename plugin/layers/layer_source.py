@@ -10,7 +10,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from pathlib import Path
-from typing import Any, NamedTuple, TypeVar
+from typing import NamedTuple
 
 from qgis.core import (
     QgsAbstractFeatureSource,
@@ -24,8 +24,6 @@ from qgis.core import (
     QgsFeedback,
     QgsFields,
     QgsGeometry,
-    QgsMapLayer,
-    QgsProcessingFeedback,
     QgsProviderRegistry,
     QgsVectorLayer,
     QgsVectorLayerFeatureSource,
@@ -34,11 +32,19 @@ from qgis.core import (
 from qgis.PyQt import sip
 from qgis.PyQt.QtCore import QDateTime, QObject, Qt, pyqtSignal
 
-from ..ui.errors import LayerReadingError, LayerTypeError
+from ..ui.errors import LayerTypeError
 from ..ui.language import tr
-from ..ui.scheduling import STALLED_AFTER, Reader, ReadingTurns, StalledError, Steps
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
+from .reading import (
+    IN_MEMORY,
+    begin_reading,
+    deleted_in,
+    error_of_gdal,
+    has_features,
+    is_empty,
+    open_again,
+)
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
 from .site_transform import LayerToSiteTransform
 
@@ -69,9 +75,6 @@ class ObstacleSource:
     deleted: int = 0
 
 
-IN_MEMORY = "memory"
-"""The provider whose features are at hand at once."""
-LayerFeatureSource = QgsAbstractFeatureSource | QgsVectorLayer
 Setups = Callable[[QgsVectorLayer], LayerSetup]
 """Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
 
@@ -151,12 +154,6 @@ def _source(
     )
 
 
-def deleted_in(layer: QgsVectorLayer) -> int:
-    """Return how many of the stored features of ``layer`` are deleted by changes that are not saved."""
-    changes = layer.editBuffer()
-    return 0 if changes is None else len(changes.deletedFeatureIds())
-
-
 def _unique(names: Sequence[str]) -> list[str]:
     """Return ``names`` with a number after each one that was there before."""
     taken: set[str] = set()
@@ -171,63 +168,12 @@ def _unique(names: Sequence[str]) -> list[str]:
     return unique
 
 
-# --- Whether a layer can still be read: QGIS keeps one as it was opened, and tells of no file that is gone
-
-
-def has_features(features: LayerFeatureSource) -> bool:
-    """Tell whether anything can be read; from any thread."""
-    request = QgsFeatureRequest().setLimit(1).setFlags(QgsFeatureRequest.Flag.NoGeometry).setNoAttributes()
-    return any(True for _ in features.getFeatures(request))
-
-
-def is_empty(provider: str, stored: str, deleted: int = 0) -> bool:
-    """Tell whether a layer of which nothing can be read has nothing but what was ``deleted``.
-
-    One whose file or database is gone, or damaged, since it was opened is valid, has its count, and reads as
-    an empty one. It is opened once more, from any thread: one that was emptied by another program since then
-    says so.
-    """
-    layer = _opened(provider, stored)
-    return layer.isValid() and layer.featureCount() <= deleted
+# --- Whether a layer could be read: QGIS tells of no file that is gone
 
 
 def count_stored(source: ObstacleSource) -> int:
     """Return how many features are stored, below 0 where nobody knows; from any thread, and it may hang."""
-    return source.count if source.count >= 0 else _opened(source.provider, source.stored).featureCount()
-
-
-def _opened(provider: str, stored: str) -> QgsVectorLayer:
-    options = QgsVectorLayer.LayerOptions()
-    options.loadDefaultStyle = False
-    return QgsVectorLayer(stored, "", provider, options)
-
-
-FileState = tuple[int, ...] | None
-"""What tells a file from one that has taken its place; None where there is none."""
-
-
-def file_of(layer: QgsMapLayer) -> str:
-    """Return the path of the file that ``layer`` is read from, nothing where it is none."""
-    if not isinstance(layer, QgsVectorLayer) or layer.providerType() != "ogr":
-        return ""
-    return str(QgsProviderRegistry.instance().decodeUri("ogr", layer.source()).get("path") or "")
-
-
-def file_state(path: str) -> FileState:
-    """Return how the file ``path`` is, from a thread that may hang."""
-    try:
-        found = Path(path).stat()
-    except (OSError, ValueError):
-        return None
-    # A GeoPackage is written to by who only reads it.
-    changed = () if path.lower().endswith((".gpkg", ".sqlite")) else (found.st_mtime_ns,)
-    return found.st_dev, found.st_ino, found.st_size, *changed
-
-
-def begin_reading() -> None:
-    """Forget what GDAL found wrong in this thread before a layer is read, for :func:`check_readable`."""
-    if (gdal := _gdal()) is not None:
-        gdal.ErrorReset()
+    return source.count if source.count >= 0 else open_again(source.provider, source.stored).featureCount()
 
 
 def check_readable(source: ObstacleSource) -> None:
@@ -264,64 +210,6 @@ def _half_read(name: str, error: str) -> LayerTypeError:
             error=error,
         )
     )
-
-
-def error_of_gdal() -> str:
-    """Return what went wrong last in this thread since :func:`begin_reading`, nothing where nothing did."""
-    gdal = _gdal()
-    failed = gdal is not None and gdal.GetLastErrorType() >= gdal.CE_Failure
-    return str(gdal.GetLastErrorMsg() or "GDAL") if failed else ""
-
-
-def _gdal() -> Any:
-    """Return GDAL by which QGIS reads files, None where its Python bindings are missing."""
-    try:
-        from osgeo import gdal
-    except ImportError:
-        return None
-    return gdal
-
-
-# --- Reading beside the window's thread, which waits for no layer ---
-
-
-T = TypeVar("T")
-
-
-def thread_feedback(go_on: Callable[[], bool]) -> QgsProcessingFeedback:
-    """Return the feedback of what reads in a thread: who asks whether it is cancelled makes progress."""
-
-    class ThreadFeedback(QgsProcessingFeedback):
-        def isCanceled(self) -> bool:
-            return not go_on()
-
-    return ThreadFeedback(False)
-
-
-class OneAtATime:
-    """Reads a layer for steps of the window's thread, in one thread after the other."""
-
-    def __init__(self) -> None:
-        self._turns = ReadingTurns()
-
-    def read(self, name: str, provider: str, reader: Reader[T]) -> Steps[T]:
-        """Return what ``reader`` reads of the layer ``name``.
-
-        :raises LayerReadingError: when nothing has come from it for as long as anybody waits.
-        """
-        if provider == IN_MEMORY:
-            return reader.read(lambda: True)
-        try:
-            return (yield from self._turns.read(reader))
-        except StalledError as error:
-            raise LayerReadingError(
-                tr(
-                    "The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back "
-                    "and try again.",
-                    layer=name,
-                    seconds=STALLED_AFTER,
-                )
-            ) from error
 
 
 # --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---

@@ -33,10 +33,12 @@ from .layer_source import (
     FeatureWarnings,
     ObstacleSource,
     SomeFeatures,
-    begin_reading,
     check_readable,
     count_stored,
     without_geometry,
+)
+from .reading import (
+    begin_reading,
 )
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds

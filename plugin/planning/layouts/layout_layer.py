@@ -29,11 +29,13 @@ from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, NamedGeometr
 from ...control.messages import MessageBar
 from ...layers.crs import check_site_crs
 from ...layers.layer_source import (
-    IN_MEMORY,
     LayerWatch,
     ObstacleSource,
-    OneAtATime,
     obstacle_sources,
+)
+from ...layers.reading import (
+    IN_MEMORY,
+    OneAtATime,
     thread_feedback,
 )
 from ...layers.road_layers import read_areas
