@@ -2404,11 +2404,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
-            <translation>La capa {layer} no respon des de fa {seconds:g} s. Restabliu-ne el servidor o la unitat i torneu-ho a provar.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no es pot obrir ({source}): repareu-ne l'origen de dades o ometeu-la.</translation>
         </message>
@@ -2679,6 +2674,11 @@
             <location filename="../../plugin/layers/publishing/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} no es pot escriure a {folder}: {error}. Comproveu els permisos de la carpeta i l'espai lliure.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/reading.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no respon des de fa {seconds:g} s. Restabliu-ne el servidor o la unitat i torneu-ho a provar.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/road_layers.py" />

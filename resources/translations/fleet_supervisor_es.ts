@@ -2404,11 +2404,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
-            <translation>La capa {layer} no responde desde hace {seconds:g} s. Restablezca su servidor o su unidad e inténtelo de nuevo.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>La capa {name} no se puede abrir ({source}): repare su origen de datos u omítala.</translation>
         </message>
@@ -2679,6 +2674,11 @@
             <location filename="../../plugin/layers/publishing/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} no se puede escribir en {folder}: {error}. Compruebe los permisos de la carpeta y el espacio libre.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/reading.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>La capa {layer} no responde desde hace {seconds:g} s. Restablezca su servidor o su unidad e inténtelo de nuevo.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/road_layers.py" />

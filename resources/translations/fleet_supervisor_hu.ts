@@ -2394,11 +2394,6 @@
         </message>
         <message>
             <location filename="../../plugin/layers/layer_source.py" />
-            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
-            <translation>A(z) {layer} réteg {seconds:g} másodperce nem válaszol. Tegye újra elérhetővé a kiszolgálóját vagy a meghajtóját, és próbálja újra.</translation>
-        </message>
-        <message>
-            <location filename="../../plugin/layers/layer_source.py" />
             <source>The layer {name} cannot be opened ({source}): repair its data source or leave it out.</source>
             <translation>A(z) {name} réteg nem nyitható meg ({source}): javítsa ki az adatforrását, vagy hagyja ki.</translation>
         </message>
@@ -2668,6 +2663,11 @@
             <location filename="../../plugin/layers/publishing/site_file.py" />
             <source>{file} cannot be written in {folder}: {error}. Check the folder's rights and the free space.</source>
             <translation>{file} nem írható ide: {folder}: {error}. Ellenőrizze a mappa jogait és a szabad helyet.</translation>
+        </message>
+        <message>
+            <location filename="../../plugin/layers/reading.py" />
+            <source>The layer {layer} has not answered for {seconds:g} s. Bring its server or drive back and try again.</source>
+            <translation>A(z) {layer} réteg {seconds:g} másodperce nem válaszol. Tegye újra elérhetővé a kiszolgálóját vagy a meghajtóját, és próbálja újra.</translation>
         </message>
         <message>
             <location filename="../../plugin/layers/road_layers.py" />
