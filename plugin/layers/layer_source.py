@@ -36,15 +36,7 @@ from ..ui.errors import LayerTypeError
 from ..ui.language import tr
 from .crs import stated_crs
 from .layer_expressions import FeatureFilter
-from .reading import (
-    IN_MEMORY,
-    begin_reading,
-    deleted_in,
-    error_of_gdal,
-    has_features,
-    is_empty,
-    open_again,
-)
+from .reading import IN_MEMORY, begin_reading, deleted_in, error_of_gdal, has_features, is_empty, open_again
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
 from .site_transform import LayerToSiteTransform
 

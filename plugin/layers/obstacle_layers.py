@@ -37,9 +37,7 @@ from .layer_source import (
     count_stored,
     without_geometry,
 )
-from .reading import (
-    begin_reading,
-)
+from .reading import begin_reading
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
 

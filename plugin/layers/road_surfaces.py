@@ -28,14 +28,8 @@ from ..ui.errors import FleetError, SiteCrsError
 from ..ui.language import tr
 from ..ui.scheduling import BackgroundReading
 from .crs import check_site_crs
-from .layer_source import (
-    LayerWatch,
-    ObstacleSource,
-    obstacle_sources,
-)
-from .reading import (
-    thread_feedback,
-)
+from .layer_source import LayerWatch, ObstacleSource, obstacle_sources
+from .reading import thread_feedback
 from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
 from .site_transform import SiteGeoreference, transform_points_or_nan

@@ -26,9 +26,7 @@ from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..gateway_client.fleet_state import RequestResult
 from ..gateway_client.state_words import part_in_words
-from ..layers.reading import (
-    OneAtATime,
-)
+from ..layers.reading import OneAtATime
 from ..ui.errors import FleetError, MapTransformError
 from ..ui.language import tr
 from ..ui.scheduling import WAITING, CooperativeTask, Steps

@@ -29,9 +29,7 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..gateway_client.robot_states import STATES, RobotArrays
 from ..layers.crs import stated_crs
-from ..layers.reading import (
-    OneAtATime,
-)
+from ..layers.reading import OneAtATime
 from ..layers.site_transform import SiteGeoreference
 from ..processing.common.cone_layers import PointRow, point_rows
 from ..ui.errors import FleetError

@@ -35,7 +35,7 @@ class FrameError(ValueError):
 class Call:
     """A request, or a notification where ``id`` is None.
 
-    ``deadline`` is as it came: a number where it says until when the request is to be carried out.
+    ``deadline`` is as it came: a number where it is the time by which the request has to be begun.
     """
 
     method: str

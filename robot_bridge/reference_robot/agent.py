@@ -293,7 +293,7 @@ class Agent:
             self._greet_in = GREET_AGAIN
 
     def _count_ids_of(self, database: str | None) -> None:
-        """Stop, and forget what was done, when ids begin anew: its task is in no other database."""
+        """Stop, and forget what was done, when ids begin again: its task is in no other database."""
         if database != self._database:
             if self._database is not None:
                 self._halt()

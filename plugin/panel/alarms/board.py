@@ -306,8 +306,8 @@ class AlarmBoard:
         holds = now.doubted & self._rows[kind].on
         rises, _ = self._doubted.update(holds, ~now.doubted, moment, 0.0, 0.0)
         held = [(row, self._alarms.get((kind, now.names[row], ""))) for row in rises.tolist()]
-        anew = [row for row, alarm in held if alarm is not None and not alarm.unsure]
-        return [self._begin(kind, now, row, at) for row in anew]
+        begun_again = [row for row, alarm in held if alarm is not None and not alarm.unsure]
+        return [self._begin(kind, now, row, at) for row in begun_again]
 
     def _look_at_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
         one, other, apart = rules.too_close(now, self._limits)

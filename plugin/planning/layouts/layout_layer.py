@@ -28,16 +28,8 @@ from qgis.PyQt.QtCore import QObject, pyqtSignal
 from ....robot_bridge.core.layouts.layout import Cone, ConeFinding, NamedGeometry, find_misplaced_cones
 from ...control.messages import MessageBar
 from ...layers.crs import check_site_crs
-from ...layers.layer_source import (
-    LayerWatch,
-    ObstacleSource,
-    obstacle_sources,
-)
-from ...layers.reading import (
-    IN_MEMORY,
-    OneAtATime,
-    thread_feedback,
-)
+from ...layers.layer_source import LayerWatch, ObstacleSource, obstacle_sources
+from ...layers.reading import IN_MEMORY, OneAtATime, thread_feedback
 from ...layers.road_layers import read_areas
 from ...layers.roles import OBSTACLE_ROLES, ROAD_SURFACE, LayerExpressions, layers_with_role, setup_of
 from ...layers.site_transform import SiteGeoreference

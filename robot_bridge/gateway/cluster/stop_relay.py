@@ -31,7 +31,7 @@ COUNTS_HOLD_S = 3.0
 """seconds of silence after which what a gateway said of its robots is not counted any more; it beats each."""
 MOST_NAMES = 50
 LONGEST_NAMES = 1200
-"""bytes of the names of each kind that another gateway is told: a notification of PostgreSQL has few."""
+"""bytes of the names of each kind in a message to other gateways: a notification of PostgreSQL has few."""
 _NAMED_ONE_BY_ONE = ("waiting", "refused", "moving", "unheard")
 _COUNTED_BEYOND = ("moving", "unheard")
 """kinds of robots of which an EmergencyReport says how many it does not name."""
@@ -247,7 +247,7 @@ class EmergencyStopRelay:
 
 
 def _fitting(names: Sequence[str]) -> list[str]:
-    """Return as many of ``names`` as another gateway can be told, the first of them."""
+    """Return the first of ``names``, as many as fit into a message to another gateway."""
     found, left = [], LONGEST_NAMES
     for name in names[:MOST_NAMES]:
         left -= len(name.encode()) + 2

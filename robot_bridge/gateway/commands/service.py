@@ -138,7 +138,7 @@ class CommandService(CommandReader):
         ``checked_at`` is of :func:`.steady_time`.
 
         A process that stood still in between may find that another gateway has the robot by now, or that an
-        operator has given the command up: what is to be read of that is read before the message comes again.
+        operator has given the command up: that is read before the message comes again.
         """
         return self._fence.may_command(robot) and steady_time() - checked_at < CHECK_VALID_S
 

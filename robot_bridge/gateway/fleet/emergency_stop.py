@@ -55,7 +55,7 @@ ANSWERS_TOGETHER = 0.05
 """seconds for which answers of robots wait for one another before operators are told: to count thousands at
 each answer of one of them would take all the time in which the robots are to be heard."""
 REPEATED_S = 1.0
-"""seconds after which operators are told of a stop in force again: who hears nothing knows nothing."""
+"""seconds after which a stop in force is reported to operators again: who hears nothing knows nothing."""
 NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
 

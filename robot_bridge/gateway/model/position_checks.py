@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, NamedTuple, Protocol
 
 from ...core.messages.base import SPEED
@@ -201,6 +201,68 @@ class StampAge:
     def forget(self) -> None:
         """Measure from the next stamp on: one of the two clocks was set."""
         self.least = math.inf
+
+
+# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+
+
+@dataclass
+class PoseOrder:
+    """The stamps of a robot's newest pose, by its own clocks, and the link that it came on."""
+
+    fix_t: float | None = None
+    t: float | None = None
+    link: str = ""
+    delay: float = 0.0
+    """seconds by which the newest pose was older than when it came in, 0 where it has no stamp."""
+    _late: LatePoses | None = None
+    _by_fix: StampAge = field(default_factory=StampAge)
+    _by_t: StampAge = field(default_factory=StampAge)
+
+    def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
+        """Tell whether a pose with these stamps counts, and take it for the newest if so.
+
+        ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
+        or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
+        without any stamp counts as it comes, and a late one where the robot's clock must have been set back.
+        """
+        if fix_t is not None or (t is not None and self.t is not None and t < self.t):
+            stamp = self._late_by(fix_t, t)
+            if stamp is not None:
+                if not self._set_back(stamp, link, now):
+                    return False
+                self.clock_was_set()
+        if fix_t is not None:
+            self.delay = self._by_fix.measure(fix_t, now)
+        else:
+            self.delay = 0.0 if t is None else self._by_t.measure(t, now)
+        self.fix_t = self.fix_t if fix_t is None else fix_t
+        self.t = self.t if t is None else t
+        self.link = link
+        self._late = None
+        return True
+
+    def restarted(self) -> None:
+        """Forget the robot's own clock: a robot that started again may count from nought."""
+        self.t = self._late = None
+        self.clock_was_set()
+
+    def clock_was_set(self) -> None:
+        """Forget how the robot's clocks and the gateway's differ: one of them was set."""
+        self._by_fix.forget()
+        self._by_t.forget()
+
+    def _late_by(self, fix_t: float | None, t: float | None) -> float | None:
+        """Return the stamp by which a pose is late, or None for one that is not."""
+        if fix_t is not None and self.fix_t is not None and fix_t != self.fix_t:
+            return fix_t if fix_t < self.fix_t else None
+        return t if t is not None and self.t is not None and t < self.t else None
+
+    def _set_back(self, stamp: float, link: str, now: float) -> bool:
+        if self._late is None or now < self._late.since:
+            self._late = LatePoses(now, now, stamp)
+            return False
+        return self._late.show_set_back(stamp, now, same_link=link == self.link)
 
 
 # --- Course and speed over ground, for robots whose GPS says only where they are ---

@@ -197,7 +197,7 @@ class _Held:
 
 @dataclass(frozen=True)
 class _Former:
-    """The newest goal of an earlier process that has ended, told at ``at`` unless something is under way."""
+    """The newest goal of an earlier process that has ended, reported at ``at`` unless something goes on."""
 
     message: int
     status: GoalStatus

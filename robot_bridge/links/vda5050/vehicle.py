@@ -71,7 +71,7 @@ class VehicleController:
         self._next_alive = self._next_poll = self._next_unpause = self._next_clear = -math.inf
         self._last_status: str | None = None
         self._last_pose: SendPos | None = None
-        """The pose that was told last, as the vehicle's message had it."""
+        """The pose that was reported last, as the vehicle's message had it."""
 
     @property
     def is_known(self) -> bool:

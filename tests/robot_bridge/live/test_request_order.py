@@ -208,6 +208,7 @@ def test_what_lay_in_a_buffer_beyond_its_deadline_is_not_done_unless_it_stops_ro
         desk.say_until(deadline, 1, "send", command=late, robot=other.name, **TARGET)
         desk.say_until(deadline, 2, "abort", command=new("abort"), robot=robot.name)
         desk.say_until(deadline, 3, "pause_queue", robot=other.name)
+        # Until the deadline is over, with all of it in the buffer.
         time.sleep(1.0)
     finally:
         bridge.gateway.send_signal(signal.SIGCONT)
@@ -228,6 +229,7 @@ def test_what_has_its_turn_after_its_deadline_is_not_done(bridge, desk, robot):
         hog.execute("begin immediate")
         desk.say(1, "send", command=new("target"), robot=robot.name, **TARGET)
         desk.say_until(deadline, 2, "send", command=new("target"), robot=robot.name, **TARGET)
+        # Until the deadline is over, with the first one begun.
         time.sleep(1.0)
         hog.execute("rollback")
     desk.order(1, 2)

@@ -6,8 +6,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from robot_bridge.gateway.model.position_checks import CLOCK_SET_BACK_AFTER, LONGEST_DELAY, StampAge
-from robot_bridge.gateway.model.robots import PoseOrder
+from robot_bridge.gateway.model.position_checks import (
+    CLOCK_SET_BACK_AFTER,
+    LONGEST_DELAY,
+    PoseOrder,
+    StampAge,
+)
 
 
 @pytest.fixture
