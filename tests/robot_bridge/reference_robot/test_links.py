@@ -209,6 +209,7 @@ async def test_a_robot_that_stood_still_does_nothing_that_lay_on_its_connection_
         # From here on the robot's loop stands, as a program that is held.
         gateway.is_told.set()
         assert gateway.has_told.wait(10)
+        # Longer than the robot may stand still and do what it has received.
         time.sleep(2 * PAUSE)
         while gateway.greeted < 2:
             await asyncio.sleep(0.02)

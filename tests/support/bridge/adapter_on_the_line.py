@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import threading
+import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -91,12 +92,13 @@ class LinkOnTheLine:
         return asyncio.run_coroutine_threadsafe(work(), self._loop).result(20)
 
     @contextlib.contextmanager
-    def standing_still(self) -> Iterator[None]:
-        """Have it do nothing until the block ends, as a program that is held."""
-        goes_on = threading.Event()
+    def standing_still(self, seconds: float) -> Iterator[None]:
+        """Have it do nothing until the block ends, for ``seconds`` at least, as a program that is held."""
+        goes_on, until = threading.Event(), time.monotonic() + seconds
         self._loop.call_soon_threadsafe(goes_on.wait)
         try:
             yield
+            time.sleep(max(0.0, until - time.monotonic()))
         finally:
             goes_on.set()
 

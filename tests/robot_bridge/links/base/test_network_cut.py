@@ -120,15 +120,13 @@ def hasty_link(line, tmp_path):
 
 def stand_still(desk, link, line, name, *, abort):
     """Have a link stand still, and its connection die, with a target in its buffer; with an Abort behind."""
-    with link.standing_still():
-        began = time.monotonic()
+    with link.standing_still(2 * PAUSE):
         desk.send(f"go-{name}", name, "SetPosEnd", x=60.0, y=8.0)
         desk.wait_for_step(f"go-{name}", "delivered")
         line.cut()
         if abort:
             desk.send(f"stop-{name}", name, "Abort")
             desk.listen(0.2)
-        time.sleep(max(0.0, began + 2 * PAUSE - time.monotonic()))
 
 
 def test_a_link_that_stood_still_begins_no_target_that_was_aborted_meanwhile(bridge, line, hasty_link):
@@ -168,13 +166,11 @@ def test_an_abort_that_lay_on_the_connection_of_a_link_that_stood_still_is_done(
     link.do("add", name, ["targets"])
     link.do("position", name, SendPos(20.0, 8.0, 0.0, 0.0))
     desk.wait_for_robots(name)
-    with link.standing_still():
-        began = time.monotonic()
+    with link.standing_still(2 * PAUSE):
         desk.send(f"stop-{name}", name, "Abort")
         desk.wait_for_step(f"stop-{name}", "delivered")
         desk.listen(0.2)
         line.cut()
-        time.sleep(max(0.0, began + 2 * PAUSE - time.monotonic()))
     # Nothing comes through the line, which is cut: it was there already.
     wait_until(lambda: link.adapter.stops == [(name, False)])
     line.mend(reset=True)
