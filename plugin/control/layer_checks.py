@@ -265,8 +265,8 @@ class LayerReader:
 class LayerReadings:
     """Reads layers in threads, of each layer one at a time.
 
-    A layer whose file has been replaced since it was added to the project is opened again first: QGIS would
-    read on in the file of before. :meth:`remove` undoes the constructor.
+    A layer whose file has been replaced since it was added to the project, or is back after it was gone, is
+    opened again first: QGIS may read on in the file of before. :meth:`remove` undoes the constructor.
     """
 
     def __init__(self, project: QgsProject) -> None:
@@ -288,8 +288,7 @@ class LayerReadings:
         id = layer.id()
         reading = yield from self._read(id, LayerReader(layer, boxes))
         is_replaced = self._is_replaced(id, reading.file)
-        if reading.file is not None:
-            self._files[id] = reading.file
+        self._files[id] = reading.file
         if is_replaced:
             # This begins the check again where the layer is watched.
             again = self._project.mapLayer(id)
@@ -314,8 +313,7 @@ class LayerReadings:
             raise UnreadError(Unread.SILENT) from error
 
     def _is_replaced(self, id: str, file: FileState) -> bool:
-        before = self._files.get(id)
-        return file is not None and before is not None and before != file
+        return file is not None and self._files.get(id, file) != file
 
     def _note_files(self, layers: Sequence[QgsMapLayer]) -> None:
         paths = {layer.id(): file_of(layer) for layer in layers}

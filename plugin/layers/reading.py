@@ -69,7 +69,9 @@ def file_of(layer: QgsMapLayer) -> str:
 
 
 def file_state(path: str) -> FileState:
-    """Return how the file ``path`` is, from a thread that may hang."""
+    """Return how the file ``path`` is, from a thread that may hang; None without a path, too."""
+    if not path:
+        return None
     try:
         found = Path(path).stat()
     except (OSError, ValueError):

@@ -134,6 +134,10 @@ class Operator(OperatorAtDesk):
         finally:
             self._window.setUpdatesEnabled(True)
 
+    def wait_for_picture(self, what, condition, seconds):
+        """Wait for what is painted: the window is painted all the time."""
+        return super().wait(what, condition, BUSY * seconds)
+
     def connect_to(self, loop, robots, *, declare_paths=True):
         """Connect, wait for the robots, and look at the whole site."""
         self.connect(f"{loop.address}/desk", "anna")

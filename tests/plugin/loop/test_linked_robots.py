@@ -165,12 +165,12 @@ def test_a_robot_that_leaps_is_unsure_on_the_map_in_the_list_and_among_the_alarm
     try:
         say(20.0)
         operator.connect_to(loop, [ROBOT], declare_paths=False)
-        operator.wait("it fresh", lambda: is_shown(20.0, "fresh", False), 20)
-        operator.wait("it unsure", lambda: is_shown(5e6, "unsure", True), 20)
+        operator.wait_for_picture("it fresh", lambda: is_shown(20.0, "fresh", False), 20)
+        operator.wait_for_picture("it unsure", lambda: is_shown(5e6, "unsure", True), 20)
         operator.wait("the alarm", lambda: say(5e6) or [state for _, state in alarms()] == ["new"], 20)
         ((text, _),) = alarms()
         assert text.startswith("linked may not be where it is shown: ") and "km outside site" in text
-        operator.wait("it fresh again", lambda: is_shown(20.1, "fresh", False), 20)
+        operator.wait_for_picture("it fresh again", lambda: is_shown(20.1, "fresh", False), 20)
         operator.wait("the end", lambda: say(20.1) or [state for _, state in alarms()] == ["over"], 20)
     finally:
         robot.close()
