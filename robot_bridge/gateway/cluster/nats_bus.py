@@ -23,7 +23,7 @@ from .bus import (
     Receive,
     own_subject,
 )
-from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server, wait_until_processed
+from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server, ping, wait_until_processed
 
 log = logging.getLogger(__name__)
 
@@ -383,7 +383,7 @@ async def disconnection(client: Any, lost: asyncio.Event) -> None:
         if quiet >= QUIET_LOOKS:
             quiet = 0
             try:
-                await client.flush(PONG_S)
+                await ping(client, PONG_S)
             except Exception:
                 # Whatever it is: it is not certain that others are heard.
                 if client.stats["in_msgs"] == heard:

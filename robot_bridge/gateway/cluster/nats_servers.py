@@ -157,14 +157,32 @@ class NatsServers:
             raise BridgeError(f"{where}: {_advised(faults, prefix)}")
 
 
+async def ping(client: Any, seconds: float) -> None:
+    """Return when the server of ``client`` answers.
+
+    In place of nats-py's ``flush``: where nobody waits for its answer any more that answer ends the task by
+    which the client reads, and without that task it waits for no answer.
+
+    :raises TimeoutError: when it does not within so many seconds.
+    """
+    answered = asyncio.get_running_loop().create_future()
+    await client._send_ping(answered)
+    # Whoever gives up the wait leaves the future as it is.
+    await asyncio.wait({answered}, timeout=seconds)
+    if not answered.done():
+        raise TimeoutError
+
+
 async def wait_until_processed(client: Any) -> None:
     """Return when the server has processed all that ``client`` was asked to send it before.
 
-    nats-py writes the ping of ``flush`` ahead of what still waits for the turn of its writing task. By the
-    answer that task has had its turn, and the second ping comes last.
+    nats-py writes a ping ahead of what still waits for the turn of its writing task. By the answer that task
+    has had its turn, and the second ping comes last.
+
+    :raises TimeoutError: when the server does not answer.
     """
     for _ in range(2):
-        await client.flush(FLUSH_S)
+        await ping(client, FLUSH_S)
 
 
 async def _probe_rights(client: Any, subjects: Iterable[str], hear: Any) -> None:

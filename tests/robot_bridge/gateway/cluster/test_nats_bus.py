@@ -17,7 +17,7 @@ from robot_bridge.gateway.cluster.bus import EVERYBODY, STOP, own_subject
 from robot_bridge.gateway.cluster.cluster import ClusterSettings
 from robot_bridge.gateway.cluster.messages import LARGEST, Exchange
 from robot_bridge.gateway.cluster.nats_bus import NatsBus, disconnection
-from robot_bridge.gateway.cluster.nats_servers import check_server
+from robot_bridge.gateway.cluster.nats_servers import NatsServers, check_server, ping
 from tests.support.faults.proxy import Proxy
 from tests.support.patience import BUSY, until
 
@@ -319,15 +319,16 @@ class Connection:
         self._looks += 1
         return {"in_msgs": self._looks * self._coming}
 
-    async def flush(self, _seconds):
+    async def _send_ping(self, answered):
         self.asked += 1
-        if not self._answers:
-            raise TimeoutError
+        if self._answers:
+            answered.set_result(True)
 
 
 @pytest.fixture
 def looks(monkeypatch):
     monkeypatch.setattr(nats_bus, "CONNECTED_LOOK_S", 0.001)
+    monkeypatch.setattr(nats_bus, "PONG_S", 0.1)
 
 
 async def test_a_connection_by_which_nothing_comes_is_asked_and_lost_when_it_does_not_answer(looks):
@@ -345,6 +346,38 @@ async def test_one_that_answers_or_by_which_messages_come_is_not_lost(looks, com
     assert not waiting.done() and (connection.asked > 0) is answers
     lost.set()
     await waiting
+
+
+async def test_a_late_answer_that_nobody_waits_for_does_not_make_a_connection_deaf(nats, caplog):
+    client = await NatsServers([nats.url]).connect("test", None)
+    nats.freeze()
+    try:
+        with pytest.raises(TimeoutError):
+            await ping(client, 0.1)
+    finally:
+        nats.wake()
+    await ping(client, BUSY * 5)
+    given_up = asyncio.create_task(ping(client, BUSY * 5))
+    await asyncio.sleep(0)
+    given_up.cancel()
+    await ping(client, BUSY * 5)
+    assert not client._reading_task.done() and not caplog.records
+    await client.close()
+
+
+async def test_a_client_that_reads_no_more_is_connected_again(nats):
+    """As where it stumbles over what it reads; it calls itself connected."""
+    heard = []
+    bus = NatsBus([nats.url], "a", "fleet.f8")
+    task = asyncio.create_task(bus.run(lambda *message: heard.append(message)))
+    await until(lambda: bus.connected)
+    deaf = bus._connection.client
+    deaf._reading_task.cancel()
+    await until(lambda: bus._connection.client not in (None, deaf))
+    bus.publish(EVERYBODY, b"a wake")
+    await until(lambda: heard == [(EVERYBODY, b"a wake")])
+    task.cancel()
+    await asyncio.gather(task, return_exceptions=True)
 
 
 async def test_a_server_that_stands_still_is_noticed(nats):
