@@ -113,8 +113,15 @@ class OwnedRobots:
 
         A robot whose fence is another is both: somebody has had it in between.
         """
+        if self._fences == stored:
+            # As most often; a tenth of the time of what follows.
+            return set(), set()
         lost = {robot for robot, fence in self._fences.items() if stored.get(robot) != fence}
         return lost, {robot for robot, fence in stored.items() if self._fences.get(robot) != fence}
+
+    def missing(self, robots: Iterable[str]) -> set[str]:
+        """Return those of ``robots`` that this gateway has not."""
+        return set(robots).difference(self._fences)
 
     def forget(self, robots: Iterable[str]) -> None:
         """Have these robots no more."""

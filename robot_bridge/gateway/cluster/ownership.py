@@ -160,7 +160,7 @@ class Ownership:
 
         Those that this one has got since are not among them.
         """
-        others = {robot for robot in robots if robot not in self._robots} - self._being_claimed
+        others = self._robots.missing(robots) - self._being_claimed
         owners = {robot: self._owners[robot].gw for robot in others if robot in self._owners}
         return {robot: gateway for robot, gateway in owners.items() if gateway != self._membership.name}
 

@@ -136,7 +136,7 @@ class Takeover:
                 self._robots.let_go(robot, gateway)
                 self._unasked.add(gateway)
         # Lost while they were let in, and known as this gateway's again by that.
-        for robot, gateway in self._ownership.had_elsewhere(one.name for one in self._robots.own()).items():
+        for robot, gateway in self._ownership.had_elsewhere(self._robots.own_names()).items():
             self._drop(robot, gateway)
         # What those said of these robots before this gateway knew that they have them was not taken in.
         for gateway in sorted(self._unasked):

@@ -415,7 +415,9 @@ class ViewWatch:
         self._is_dense = len(rows) > view.most * (DENSE_UNTIL if self._is_dense else 1.0)
         alarmed, alarms = places.alarmed(view.alarms)
         one_by_one = [] if self._is_dense else [places.names[row] for row in rows]
-        self._chosen, self._selection = list(dict.fromkeys([*view.always, *alarmed, *one_by_one])), None
+        chosen = list(dict.fromkeys([*view.always, *alarmed, *one_by_one]))
+        if chosen != self._chosen:
+            self._chosen, self._selection = chosen, None
         return FleetView(
             robots=len(places.names),
             **places.counts,

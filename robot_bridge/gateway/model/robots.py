@@ -150,6 +150,10 @@ class Robots:
         """Return the names of all robots, sorted."""
         return sorted([*self._robots, *self._other_columns.names()])
 
+    def own_names(self) -> list[str]:
+        """Return the names of those that this gateway has."""
+        return list(self._robots)
+
     def commanded(self) -> list[str]:
         """Return the names of those that this gateway has and that are not only seen, sorted."""
         return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
