@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import functools
 import json
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -118,15 +119,34 @@ _RIGHT: Mapping[str, st.SearchStrategy[Any]] = {
 }
 
 
+def as_often(strategy: st.SearchStrategy[Any], times: int) -> st.SearchStrategy[Any]:
+    """Return a choice that counts as ``times`` others beside it.
+
+    Of one that is named twice Hypothesis drops the second. To make it twice takes Hypothesis seconds: it goes
+    through all that a choice is made of before the first example.
+    """
+    return st.one_of([strategy.map(_same) for _ in range(times)])
+
+
+def _same(value: Any) -> Any:
+    return value
+
+
+@functools.cache
+def _right_value(name: str) -> st.SearchStrategy[str]:
+    return _RIGHT.get(name, _leaf).map(json.dumps)
+
+
+@functools.cache
 def _values_of(name: str) -> st.SearchStrategy[str]:
-    right = _RIGHT.get(name, _leaf).map(json.dumps)
-    return right | right | right | json_texts
+    return _right_value(name) | json_texts
 
 
+@functools.cache
 def _params_of(cls: type[Any]) -> st.SearchStrategy[str]:
     names = [field.name for field in dataclasses.fields(cls)]
     values = st.fixed_dictionaries({}, optional={name: _values_of(name) for name in names})
-    every = st.fixed_dictionaries({name: _RIGHT.get(name, _leaf).map(json.dumps) for name in names})
+    every = st.fixed_dictionaries({name: _right_value(name) for name in names})
     return (values | every).map(_object)
 
 
@@ -137,31 +157,27 @@ def _object(values: Mapping[str, str]) -> str:
 def calls(methods: Mapping[str, type[Any]]) -> st.SearchStrategy[tuple[str, str]]:
     """Return methods and the text of their params, each method as often as any other."""
     return st.one_of(
-        [
-            st.tuples(st.just(name), _params_of(cls) | _params_of(cls) | _params_of(cls) | json_texts)
-            for name, cls in methods.items()
-        ]
+        [st.tuples(st.just(name), as_often(_params_of(cls), 3) | json_texts) for name, cls in methods.items()]
     )
 
 
 def frames(methods: Mapping[str, type[Any]]) -> st.SearchStrategy[str]:
     """Return frames of a WebSocket: calls, notifications, answers to what nobody asked, and less."""
     id_text = st.integers(0, 300).map(str) | json_texts
+    one = calls(methods)
     call = st.builds(
         lambda call, id: f'{{"jsonrpc": "2.0", "method": "{call[0]}", "params": {call[1]}, "id": {id}}}',
-        calls(methods),
+        one,
         id_text,
     )
-    notice = calls(methods).map(
-        lambda call: f'{{"jsonrpc": "2.0", "method": "{call[0]}", "params": {call[1]}}}'
-    )
+    notice = one.map(lambda call: f'{{"jsonrpc": "2.0", "method": "{call[0]}", "params": {call[1]}}}')
     reply = st.builds(
         lambda id, kind, value: f'{{"jsonrpc": "2.0", "id": {id}, "{kind}": {value}}}',
         id_text,
         st.sampled_from(["result", "error"]),
         json_texts,
     )
-    return call | call | call | notice | reply | json_texts
+    return as_often(call, 3) | notice | reply | json_texts
 
 
 def _of_robots(cls: type[Any]) -> type[Any]:
@@ -202,5 +218,5 @@ _linked_reply = st.builds(
     st.sampled_from(["result", "error"]),
     json_texts,
 )
-link_frames = frames(_LINKED) | frames(_LINKED) | tables | _linked_reply
+link_frames = as_often(frames(_LINKED), 2) | tables | _linked_reply
 """What a link may send: calls about its robots and others', about itself, tables, answers."""

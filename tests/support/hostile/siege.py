@@ -31,7 +31,7 @@ from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.database_server import add_accounts
 from tests.support.fleet import serve
 from tests.support.hostile.fuzzing import Conversation, desk_frames, robot_frames, rr_rows
-from tests.support.hostile.hostile_values import calls, frames, link_frames
+from tests.support.hostile.hostile_values import as_often, calls, frames, link_frames
 from tests.support.operators import Desk
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
@@ -68,14 +68,13 @@ rows = st.one_of(
     ),
 )
 """What a robot's own account may write into rr: op, params and payload."""
+_of_robots = as_often(frames(REQUESTS), 2) | robot_frames
+_of_desks = as_often(frames(DESK_REQUESTS), 2) | desk_frames
 _cases = [
-    st.tuples(st.just("ws"), frames(REQUESTS) | frames(REQUESTS) | robot_frames),
-    st.tuples(st.just("link"), link_frames | link_frames | robot_frames),
+    st.tuples(st.just("ws"), _of_robots),
+    st.tuples(st.just("link"), link_frames | robot_frames),
     st.tuples(st.just("sql"), rows),
-]
-_cases += [
-    st.tuples(st.just(role.value), frames(DESK_REQUESTS) | frames(DESK_REQUESTS) | desk_frames)
-    for role in Role
+    *[st.tuples(st.just(role.value), _of_desks) for role in Role],
 ]
 
 
