@@ -12,10 +12,12 @@ import pytest
 
 from tests.support.errors import StageError
 from tests.support.faults import breaking
-from tests.support.faults.runs import broken_on_server, broken_on_small_disk
+from tests.support.faults.runs import ROBOTS, broken_on_server, broken_on_small_disk
 from tests.support.faults.yard import GATEWAY_KILLED, ROBOTS_KILLED
 
 CUT_S = 3.0
+FEW = ROBOTS // 2
+"""robots of a run that is not for a release; each drives, tells and is audited as often."""
 LONGEST_S = 120.0
 """seconds for what should have been done beside the faults, or soon after them."""
 
@@ -26,6 +28,12 @@ def seed():
     seed = random.randrange(10**6)
     print(f"seed {seed}")
     return seed
+
+
+@pytest.fixture
+def robots(request):
+    """How many robots there are."""
+    return ROBOTS if request.config.getoption("--release") else FEW
 
 
 def go_on_until_reached(yard, commands):
@@ -48,7 +56,7 @@ def kept_all(findings, reached, **faults):
     assert counts["... stored"] >= 100
 
 
-def test_on_sqlite_a_gateway_and_robots_are_killed_and_the_disk_is_full(tmp_path, seed):
+def test_on_sqlite_a_gateway_and_robots_are_killed_and_the_disk_is_full(tmp_path, seed, robots):
     def break_it(yard, disk):
         for kills in (3, 2):
             breaking.kill_robots(yard, 1, rest=0.0)
@@ -57,7 +65,7 @@ def test_on_sqlite_a_gateway_and_robots_are_killed_and_the_disk_is_full(tmp_path
         go_on_until_reached(yard, 100)
 
     try:
-        findings = broken_on_small_disk(tmp_path, seed, break_it)
+        findings = broken_on_small_disk(tmp_path, seed, break_it, robots)
     except StageError as error:
         if "the right to mount" not in str(error):
             raise
@@ -77,14 +85,14 @@ def test_on_sqlite_a_gateway_and_robots_are_killed_and_the_disk_is_full(tmp_path
         ),
     ],
 )
-def test_a_server_is_killed_and_the_network_to_it_is_cut(kind, cut, tmp_path, seed):
+def test_a_server_is_killed_and_the_network_to_it_is_cut(kind, cut, tmp_path, seed, robots):
     def break_it(yard):
         breaking.kill_server(yard, 2, longest=2.0)
         cut(yard, CUT_S)
         go_on_until_reached(yard, 50)
 
     try:
-        findings = broken_on_server(kind, tmp_path, seed, break_it)
+        findings = broken_on_server(kind, tmp_path, seed, break_it, robots)
     except StageError as error:
         if "not on this machine" not in str(error):
             raise

@@ -8,7 +8,6 @@ import json
 import random
 import re
 import subprocess
-import sys
 import threading
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -23,7 +22,7 @@ from robot_bridge.gateway.storage.database import run_once
 from tests.support.databases.database_server import DatabaseServer
 from tests.support.errors import StageError
 from tests.support.faults.audit import Deaths, Findings, judged, load_stored
-from tests.support.faults.crew import Plan
+from tests.support.faults.crew import CREW, Plan
 from tests.support.faults.desk import Ledger, SendingDesk
 from tests.support.faults.yard import BETWEEN_ROWS, FIRST_ROW, GATEWAY_KILLED, Fault
 from tests.support.fleet import SITE
@@ -32,7 +31,6 @@ from tests.support.operators import open_desk
 from tests.support.patience import BUSY, START
 from tests.support.processes import Processes, free_port
 from tests.support.wire import RefusedError
-from tools.plugin_files import ROOT
 
 AGAIN = "messages that came again under their id"
 NATS_KILLED, DATABASE_KILLED = "NATS server killed", "PostgreSQL killed"
@@ -318,8 +316,7 @@ class ClusterYard:
             robots[name] = (url, (5.0, rows[name]))
         plan = self._folder / "crew.json"
         plan.write_text(json.dumps(asdict(Plan(robots, str(self._file), 1, False))), encoding="utf-8")
-        command = [sys.executable, "-m", "tests.support.faults.crew", str(plan)]
-        self._crew = self._processes.start("crew", command, env={"PYTHONPATH": str(ROOT)})
+        self._crew = self._processes.start_forked(CREW, "crew", [plan])
         for number in range(DESKS):
             own = {name: rows[name] for name in self.names[number::DESKS]}
             turns = itertools.cycle([*self.addresses[number:], *self.addresses[:number]])

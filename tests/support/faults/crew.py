@@ -1,4 +1,4 @@
-"""Robots, a thread each: ``python -m tests.support.faults.crew FILE`` runs them until it is ended.
+"""Robots, a thread each: the program :data:`CREW` with a file as its word runs them until it is ended.
 
 The file holds a :class:`Plan` as JSON.
 """
@@ -13,7 +13,19 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.support.faults.mind import Journal, Mind, entries
+from tests.support.forked_programs import Program
 from tests.support.robots.robot_lives import MindOverSql, MindOverWebSocket
+
+CREW = Program(
+    (
+        "tests.support.faults.crew",
+        # What is imported only where it is needed.
+        "encodings.idna",
+        "psycopg",
+        "pymysql",
+        "websockets.sync.client",
+    )
+)
 
 
 @dataclass(frozen=True)
@@ -47,5 +59,6 @@ def run(plan: Plan) -> None:
         thread.join()
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Run the robots of the file that the command names."""
     run(Plan(**json.loads(Path(sys.argv[1]).read_text(encoding="utf-8"))))

@@ -1,4 +1,4 @@
-"""A yard of twenty robots on each kind of database, from nothing to the audit."""
+"""A yard of robots, twenty if nothing else is asked for, on each kind of database, to the audit."""
 
 from __future__ import annotations
 
@@ -24,14 +24,18 @@ def broken_on_sqlite(folder: Path, seed: int, break_it: Callable[[Yard], None]) 
     return _broken(Yard(folder, sqlite_place(folder, ROBOTS), seed), break_it)
 
 
-def broken_on_small_disk(folder: Path, seed: int, break_it: Callable[[Yard, Disk], None]) -> Findings:
+def broken_on_small_disk(
+    folder: Path, seed: int, break_it: Callable[[Yard, Disk], None], robots: int = ROBOTS
+) -> Findings:
     """As :func:`broken_on_sqlite`, with the database on a disk that can be filled."""
     with Disk(folder / "disk") as disk:
-        place = sqlite_place(disk.folder, ROBOTS)
+        place = sqlite_place(disk.folder, robots)
         return _broken(Yard(folder, place, seed), lambda yard: break_it(yard, disk))
 
 
-def broken_on_server(kind: str, folder: Path, seed: int, break_it: Callable[[Yard], None]) -> Findings:
+def broken_on_server(
+    kind: str, folder: Path, seed: int, break_it: Callable[[Yard], None], robots: int = ROBOTS
+) -> Findings:
     """As :func:`broken_on_sqlite`, on a new server that waits for the disk at every commit.
 
     The network between it and the gateway can be cut. Raises StageError where no such server is installed.
@@ -39,7 +43,7 @@ def broken_on_server(kind: str, folder: Path, seed: int, break_it: Callable[[Yar
     server = SERVERS[kind](durable=True)
     server.require_programs()
     with server, Proxy(server.port) as network:
-        return _broken(Yard(folder, server_place(server, network, ROBOTS), seed), break_it)
+        return _broken(Yard(folder, server_place(server, network, robots), seed), break_it)
 
 
 def _broken(yard: Yard, break_it: Callable[[Yard], None]) -> Findings:

@@ -1,4 +1,4 @@
-"""Everything at once: a database, a gateway on it, twenty robots, and desks that send them commands."""
+"""Everything at once: a database, a gateway on it, robots, and desks that send them commands."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ import json
 import random
 import shutil
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, field
@@ -21,7 +20,7 @@ from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.schema import trajectories
 from tests.support.databases.database_server import DatabaseServer, add_accounts
 from tests.support.errors import StageError
-from tests.support.faults.crew import Plan
+from tests.support.faults.crew import CREW, Plan
 from tests.support.faults.desk import Ledger, SendingDesk
 from tests.support.faults.mind import entries
 from tests.support.faults.proxy import Proxy
@@ -29,7 +28,6 @@ from tests.support.fleet import SITE, serve
 from tests.support.operators import ask
 from tests.support.patience import BUSY
 from tests.support.processes import Processes
-from tools.plugin_files import ROOT
 
 EVERY_POSITION = """
 [trajectories]
@@ -160,8 +158,7 @@ class Yard:
         plan.write_text(
             json.dumps(asdict(Plan(crew.robots, str(crew.journal), crew.life, remembers))), encoding="utf-8"
         )
-        command = [sys.executable, "-m", "tests.support.faults.crew", plan]
-        crew.process = self._processes.start(name, command, env={"PYTHONPATH": str(ROOT)})
+        crew.process = self._processes.start_forked(CREW, name, [plan])
 
     def robot_ends(self) -> dict[str, list[Death]]:
         """Return for each robot when it was killed."""

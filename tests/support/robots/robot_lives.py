@@ -24,7 +24,7 @@ RETRY_AFTER = 0.3
 AGAIN_AFTER = 1.0
 """seconds after which a refused request is said again, under the same source."""
 SAY_READY_AGAIN_AFTER = 1.0
-LOOK_EVERY = 0.05
+LOOK_EVERY = 0.1
 """seconds between two looks at SA."""
 
 
