@@ -30,7 +30,8 @@ def desk(bridge):
 
 
 @pytest.fixture(scope="module")
-def yard(bridge, modules, tmp_path_factory):
+def standing_yard(bridge, modules, tmp_path_factory):
+    """Broker and adapter of this module, which its tests kill and start again."""
     from tests.support.processes import Processes
 
     folder = tmp_path_factory.mktemp("yard")
@@ -41,6 +42,13 @@ def yard(bridge, modules, tmp_path_factory):
         yield yard
         yard.end()
         assert "Traceback" not in yard.output("adapter"), yard.output("adapter")
+
+
+@pytest.fixture
+def yard(standing_yard):
+    """The same with vehicles of one test: all that published on would be worked for until the last test."""
+    yield standing_yard
+    standing_yard.end_vehicles()
 
 
 @pytest.fixture

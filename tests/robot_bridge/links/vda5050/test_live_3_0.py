@@ -26,7 +26,7 @@ NUMBERS = itertools.count(1)
 
 
 @pytest.fixture(scope="module")
-def yard(bridge, root, tmp_path_factory):
+def standing_yard(bridge, root, tmp_path_factory):
     require_broker()
     guide = (root / "docs" / "links-vda5050.md").read_text(encoding="utf-8")
     block = re.search(r"## Version 3\.0\n(.*?)\n\n[A-Z]", guide, re.DOTALL)[1]
