@@ -23,12 +23,14 @@ from robot_bridge.reference_robot.localisation.settings import (
     LaserSettings,
     OdometrySettings,
     ReferenceRobotError,
+    SearchSettings,
     WorldSettings,
 )
 from robot_bridge.reference_robot.localisation.world import changed, walls_of
 
 LASER = LaserSettings(reach=15.0, beams=60, short=0.3)
-SETTINGS = FilterSettings(least=300, most=3000)
+# The yard is small: where the robot may be is found among fewer places, tried less often around.
+SETTINGS = FilterSettings(least=300, most=3000, search=SearchSettings(kept=150, tries=8))
 CIRCLE = [
     (14.5 + 3.5 * math.sin(s), 6.0 - 2.5 * math.cos(s), math.atan2(2.5 * math.sin(s), 3.5 * math.cos(s)))
     for s in np.linspace(0, 2 * math.pi, 60)
@@ -198,9 +200,15 @@ def along_a_corridor(wheels, seed, settings=SETTINGS, end=140):
     return np.array(errors), np.array([one.accuracy for one in beliefs]), beliefs
 
 
-def test_between_plain_walls_its_accuracy_grows_along_them_and_covers_what_it_is_off():
+SEEDS = pytest.mark.parametrize(
+    "seeds", [(1, 2), pytest.param((3, 4), marks=pytest.mark.again("seeds 1, 2"))]
+)
+
+
+@SEEDS
+def test_between_plain_walls_its_accuracy_grows_along_them_and_covers_what_it_is_off(seeds):
     # Wheels that are wrong by 1 % all along, as a standard deviation, and nothing that shows it.
-    drives = [along_a_corridor(OdometrySettings(drift_deg=0.0), seed) for seed in range(1, 5)]
+    drives = [along_a_corridor(OdometrySettings(drift_deg=0.0), seed) for seed in seeds]
     for errors, accuracy, beliefs in drives:
         assert accuracy[-1] > 0.4 and accuracy[-1] > 2 * accuracy[len(accuracy) // 4]
         along, across = np.sqrt(np.diag(beliefs[-1].covariance)[:2])
