@@ -55,10 +55,19 @@ missing_servers() {
     ls /usr/share/postgresql/*/extension/postgis.control >/dev/null 2>&1 || echo postgresql-postgis
     has qgis_mapserver || echo qgis-server
     has nginx || [ -x /usr/sbin/nginx ] || echo nginx
-    has chromium || has google-chrome || echo chromium
+    has chromium-headless-shell || has chromium || has google-chrome || browser
     has debootstrap || [ -x /usr/sbin/debootstrap ] || echo debootstrap
     has mosquitto || [ -x /usr/sbin/mosquitto ] || echo mosquitto
     ls /usr/lib/*/faketime/libfaketime.so.1 >/dev/null 2>&1 || echo libfaketime
+}
+
+# The Chromium without a desktop's windows, where the distribution has it: the tests' pages cost a third less.
+browser() {
+    if apt-cache show chromium-headless-shell >/dev/null 2>&1; then
+        echo chromium-headless-shell
+    else
+        echo chromium
+    fi
 }
 
 as_root() {

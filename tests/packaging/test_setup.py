@@ -89,15 +89,19 @@ def test_only_what_is_missing_is_installed(machine, tmp_path):
     assert calls.read_text().splitlines()[0].split()[-2:] == ["--no-install-recommends", "xvfb"]
 
 
-def test_database_servers_are_installed_for_the_tests_and_nothing_waits_for_them(machine, tmp_path):
+@pytest.mark.parametrize(
+    ("known", "browser"), [("exit 0", "chromium-headless-shell"), ("exit 100", "chromium")]
+)
+def test_servers_are_installed_for_the_tests_and_nothing_waits_for_them(machine, tmp_path, known, browser):
     calls = tmp_path / "calls"
     there = {"python3": '[ "$1" != -m ] || { echo on to the environment >&2; exit 1; }', "Xvfb": ""}
     there |= {"qgis.bin": "", "qgis_process.bin": "", "id": "echo 0", "ls": "exit 2"}
     there |= {"apt-get": f'echo "$@" >> {calls}; exit 100', "mariadbd": "", "mosquitto": ""}
+    there |= {"apt-cache": known}
     done = machine(there)
     asked = [line.split() for line in calls.read_text().splitlines()]
     assert [line[0] for line in asked] == ["install", "update", "install"]
-    wanted = ["postgresql", "postgresql-postgis", "qgis-server", "chromium", "libfaketime"]
+    wanted = ["postgresql", "postgresql-postgis", "qgis-server", browser, "libfaketime"]
     assert asked[0][-5:] == wanted
     assert f"not installed: {' '.join(wanted)}; the tests that need them will be" in done.stdout
     assert "on to the environment" in done.stderr

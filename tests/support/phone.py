@@ -17,6 +17,8 @@ PHONE: dict[str, Any] = {
     "locale": "en-GB",
 }
 """Options of a context of playwright's."""
+PROGRAMS = ("chromium-headless-shell", "chromium", "google-chrome")
+"""The best first: that without a desktop's windows opens a page for two thirds of the processor time."""
 
 
 @contextmanager
@@ -27,9 +29,9 @@ def chromium() -> Iterator[Any]:
     """
     from playwright.sync_api import sync_playwright
 
-    program = shutil.which("chromium") or shutil.which("google-chrome")
+    program = next(filter(None, map(shutil.which, PROGRAMS)), None)
     if program is None:
-        raise StageError("no Chromium is installed: apt-get install chromium")
+        raise StageError("no Chromium is installed: apt-get install chromium-headless-shell, or chromium")
     with sync_playwright() as started:
         # In a container of root's there is no sandbox; to do in software what a GPU would takes longer.
         args = ["--no-sandbox", "--disable-gpu"]
