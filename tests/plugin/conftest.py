@@ -19,6 +19,7 @@ from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, 
 from fleet_supervisor.robot_bridge.core.messages.positions import RobotReport
 from fleet_supervisor.robot_bridge.core.messages.safety import EmergencyReport, RobotState
 from qgis.core import (
+    QgsApplication,
     QgsCoordinateReferenceSystem,
     QgsCoordinateTransformContext,
     QgsFeature,
@@ -397,8 +398,23 @@ def let_deleted_go() -> None:
     QApplication.processEvents()
 
 
+@pytest.fixture(scope="module")
+def registered_provider(qgis_app):
+    """The provider of algorithms, for all windows of a module: to make it takes a sixth of a plugin's start.
+
+    A plugin that is loaded beside it uses it, as where two copies of the plugin are loaded.
+    """
+    from fleet_supervisor.plugin.plugin import FleetProvider
+
+    made = FleetProvider()
+    registry = QgsApplication.processingRegistry()
+    assert registry.addProvider(made)
+    yield made
+    assert registry.removeProvider(made)
+
+
 @pytest.fixture
-def plugin(iface):
+def plugin(iface, registered_provider):
     from fleet_supervisor.plugin.plugin import FleetPlugin
 
     loaded = FleetPlugin(iface)

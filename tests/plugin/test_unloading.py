@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 import time
 
+import pytest
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from qgis.core import QgsApplication, QgsProject, QgsVectorLayer
 from qgis.PyQt.QtWidgets import QAction, QLineEdit
@@ -12,6 +13,11 @@ from qgis.PyQt.QtWidgets import QAction, QLineEdit
 from tests.support.left_behind import connected_to, left_behind
 
 PANELS = ("fleet_plan_panel", "fleet_observations", "fleet_replay")
+
+
+@pytest.fixture(scope="module")
+def registered_provider():
+    """None: each plugin here registers its own."""
 
 
 def connected(iface, gateway, wait):

@@ -11,12 +11,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from fleet_supervisor.plugin.plugin import FleetProvider
 from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
 from fleet_supervisor.robot_bridge.core.robotmap.model import RobotMap
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
 from qgis.core import (
-    QgsApplication,
     QgsCoordinateReferenceSystem,
     QgsProcessingContext,
     QgsProcessingFeedback,
@@ -90,13 +88,9 @@ def cancels_at(qgis_app):
 
 
 @pytest.fixture(scope="module")
-def provider(qgis_app, qgis_processing):
-    """The provider, registered as the plugin registers it; tests of the plugin itself may come after."""
-    made = FleetProvider()
-    registry = QgsApplication.processingRegistry()
-    assert registry.addProvider(made)
-    yield made
-    assert registry.removeProvider(made)
+def provider(qgis_processing, registered_provider):
+    """The provider, registered as the plugin registers it, and what runs its algorithms."""
+    return registered_provider
 
 
 @pytest.fixture
