@@ -151,7 +151,7 @@ def street(make_layer):
     squares = [
         (f"Polygon(({x} {y}, {x + 9} {y}, {x + 9} {y + 9}, {x} {y + 9}, {x} {y}))", 4.0)
         for x in range(0, 360, 9)
-        for y in range(0, 600, 20)
+        for y in range(0, 300, 20)
     ]
     return make_layer("houses", "Polygon", features=squares)
 
@@ -162,7 +162,7 @@ EVERYTHING = {"DISSOLVE": True, "CHAIN": True, "TOLERANCE": 0.05, "SHORTEST": 0.
 def test_the_progress_goes_on_while_obstacles_are_reduced(export, street, listener):
     told = []
     listener.progressChanged.connect(told.append)
-    export(street, feedback=listener, EXTENT="0,400,0,600", **EVERYTHING)
+    export(street, feedback=listener, EXTENT="0,400,0,300", **EVERYTHING)
     assert told == sorted(told) and told[-1] == 100
     assert len([percent for percent in told if 50 <= percent < 100]) > 10
 
@@ -173,7 +173,7 @@ def test_a_cancel_while_obstacles_are_reduced_ends_it_there_and_writes_nothing(
 ):
     feedback, told = cancels_at(percent), []
     feedback.progressChanged.connect(told.append)
-    done = export(street, feedback=feedback, EXTENT="0,400,0,600", **EVERYTHING)
+    done = export(street, feedback=feedback, EXTENT="0,400,0,300", **EVERYTHING)
     assert done.results == {} and not done.file.exists()
     assert percent <= told[-1] < percent + 10
 
@@ -183,7 +183,7 @@ def test_a_cancel_while_tiles_are_reduced_writes_none(provider, street, cancels_
 
     context = QgsProcessingContext()
     context.setProject(QgsProject())
-    everything = {"OBSTACLES": [street], "EXTENT": "0,400,0,600", "INDEX": "memory:", **EVERYTHING}
+    everything = {"OBSTACLES": [street], "EXTENT": "0,400,0,300", "INDEX": "memory:", **EVERYTHING}
     everything["OUTPUT"] = str(tmp_path / "out")
     results = processing.run(
         "fleet:exportrobotmaptiles",
@@ -355,13 +355,15 @@ def test_the_profile_of_the_campus_knows_what_hangs_above_the_robots_plane(
     counts = []
     for low, high in ((0.3, 1), (0.3, 1000)):
         words = [f"OBSTACLES={name}" for name in ("buildings", "walls", "furniture")]
-        words += ["CENTER=48,48", "WIDTH=104", "HEIGHT=104", "PROFILE=upc_campus_nord"]
+        # Of a part: the ground beneath each thing takes a while to find.
+        words += ["CENTER=48,48", "WIDTH=30", "HEIGHT=30", "PROFILE=upc_campus_nord"]
         words += [f"PLANE_LOW={low}", f"PLANE_HIGH={high}", f"OUTPUT={tmp_path / 'map.txt'}"]
         done = by_words("run", "fleet:exportrobotmap", f"--PROJECT_PATH={campus_project}", "--", *words)
         assert done.status == 0, done.said
         assert done.result("WARNING_COUNT") == 0
         counts.append(done.result("OBSTACLE_COUNT"))
-    assert 100 < counts[1] - counts[0] < 300
+    assert counts[0] > 100
+    assert 5 < counts[1] - counts[0] < 15
 
 
 def test_the_campus_dissolved_and_chained_is_half_as_large(export_campus):

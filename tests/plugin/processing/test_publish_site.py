@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import base64
-import json
 import sqlite3
 from contextlib import closing
 from dataclasses import dataclass
@@ -14,9 +12,7 @@ import pytest
 from fleet_supervisor.plugin.layers.layer_source import obstacle_sources
 from fleet_supervisor.plugin.layers.roles import LayerExpressions, LayerSetup, keep_setup
 from fleet_supervisor.robot_bridge.core.errors import LayerError
-from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text
-from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
-from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text, write_text
+from fleet_supervisor.robot_bridge.core.robotmap.text_format import write_text
 from fleet_supervisor.robot_bridge.core.sites.site import read_site
 from qgis.core import (
     QgsExpressionContext,
@@ -26,10 +22,6 @@ from qgis.core import (
     QgsProject,
     QgsVectorLayer,
 )
-from websockets.sync.client import connect
-
-from tests.support.patience import START
-from tests.support.processes import Processes
 
 RING = "Polygon((0 0, 20 0, 20 10, 0 10, 0 0), (5 3, 9 3, 9 7, 5 7, 5 3))"
 ROAD = "LineString(0 15, 50 15)"
@@ -352,64 +344,6 @@ def test_what_a_robot_is_told_of_estimated_heights_and_ramps_outlives_publishing
     assert text.count("src=house:1,h=est;") == 2
     assert ";wall;src=wall:1;" in text
     assert ";ramp;src=ramp:1,n=0,-0.4472,0.8944;" in text
-
-
-def shapes(robot_map):
-    """Return what a map says, whatever its obstacles are numbered."""
-    return sorted(
-        (
-            o.semantics,
-            sorted(o.ext.items()),
-            int(o.shape_type),
-            o.height.tolist(),
-            o.a.tolist(),
-            o.b.tolist(),
-        )
-        for o in robot_map.obstacles
-    )
-
-
-@pytest.fixture(scope="module")
-def by_process(qgis_process, root, tmp_path_factory):
-    """The sample site published by ``qgis_process`` without the packages of this environment."""
-    folder = tmp_path_factory.mktemp("published") / "site"
-    project = root / "resources" / "sample_site" / "sample_site.qgz"
-    words = (f"--PROJECT_PATH={project}", "--", "BOUNDS=640420,640620,5193480,5193640", f"FOLDER={folder}")
-    done = qgis_process("run", "fleet:publishsite", *words, packages=False)
-    assert done.status == 0, done.said
-    return done, folder
-
-
-def test_a_stock_qgis_publishes_what_a_gateway_serves(by_process, tmp_path):
-    _, folder = by_process
-    words = ["serve", "--site", folder, "--port", "0", "--database", f"sqlite:///{tmp_path / 'fleet.db'}"]
-    with Processes(tmp_path / "logs") as processes:
-        processes.start_bridge("gateway", words)
-        address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", START).group(1)
-        with connect(f"{address}/robot", max_size=None) as robot:
-            robot.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 7}}))
-            calls = (json.loads(robot.recv(10)) for _ in range(5))
-            call = next(frame for frame in calls if frame.get("method") == "SetMap")
-    served = read_text(decode_text(base64.b64decode(call["params"]["map"])))
-    assert served.meta["id"] == "sample" and served.meta["version"] == "1"
-    assert shapes(served) == shapes(read_site(folder).whole_map())
-
-
-def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(by_process, by_words, root, tmp_path):
-    _, folder = by_process
-    project = root / "resources" / "sample_site" / "sample_site.qgz"
-    layers = ("Buildings", "Walls", "Columns", "Litter bins", "Benches", "Stairs", "Ramp")
-    words = [f"OBSTACLES={name}" for name in layers]
-    words += ["EXTENT=640420,640620,5193480,5193640", f"OUTPUT={tmp_path / 'map.txt'}"]
-    done = by_words("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *words)
-    assert done.status == 0, done.said
-    exported = read_text((tmp_path / "map.txt").read_text())
-    published = read_site(folder).whole_map()
-    assert len(shapes(published)) > 40
-    (ramp,) = [o for o in published.obstacles if o.shape_type == ShapeType.RAMP]
-    assert ramp.ext["n"] == "0.083,0,0.9965"
-    assert shapes(exported) == shapes(published)
-    assert exported.border == published.border
 
 
 def test_helsinki_is_published_by_its_profile_with_every_loss_named(publish, data):

@@ -5,6 +5,7 @@ All in one ``qgis_process`` that has no display and sees nothing of this environ
 
 from __future__ import annotations
 
+import base64
 import json
 import re
 
@@ -13,10 +14,15 @@ import pyogrio.raw
 import pytest
 import shapely
 from fleet_supervisor.robot_bridge.core.assignment.plan import check_plan, plan_from_json
-from fleet_supervisor.robot_bridge.core.robotmap.binary import encode
+from fleet_supervisor.robot_bridge.core.robotmap.binary import decode_text, encode
+from fleet_supervisor.robot_bridge.core.robotmap.model import ShapeType
 from fleet_supervisor.robot_bridge.core.robotmap.text_format import read_text
+from fleet_supervisor.robot_bridge.core.sites.site import read_site
+from websockets.sync.client import connect
 
 from tests.plugin.processing.conftest import Finished
+from tests.support.patience import START
+from tests.support.processes import Processes
 
 UTM = "EPSG:32633"
 SURFACES = {
@@ -121,6 +127,8 @@ def runs(root, data, folder) -> dict[str, list[str]]:
                    f"OUTPUT={folder}/report.pdf"],
         "degrees": ["run", "native:reprojectlayer", "--", f"INPUT={folder / 'places.gpkg'}",
                     "TARGET_CRS=EPSG:4326", f"OUTPUT={folder}/degrees.gpkg"],
+        "publish": ["run", "fleet:publishsite", sample, "--", "BOUNDS=640420,640620,5193480,5193640",
+                    f"FOLDER={folder}/site"],
         "expression": ["run", "native:fieldcalculator", sample, "--", f"INPUT={folder}/degrees.gpkg",
                        "FIELD_NAME=ground", "FIELD_TYPE=2", "FORMULA=road_surface($x, $y)",
                        f"OUTPUT={folder}/ground.gpkg"],
@@ -232,3 +240,58 @@ def test_placed_cones_become_a_report(fine, folder):
     done = fine("report")
     assert (done.result("CONE_COUNT"), done.result("WITHIN_COUNT")) == (2, 1)
     assert (folder / "report.pdf").read_bytes().startswith(b"%PDF-")
+
+
+def shapes(robot_map):
+    """Return what a map says, whatever its obstacles are numbered."""
+    return sorted(
+        (
+            o.semantics,
+            sorted(o.ext.items()),
+            int(o.shape_type),
+            o.height.tolist(),
+            o.a.tolist(),
+            o.b.tolist(),
+        )
+        for o in robot_map.obstacles
+    )
+
+
+def test_a_published_site_is_what_a_gateway_serves(fine, folder, tmp_path):
+    fine("publish")
+    words = [
+        "serve",
+        "--site",
+        folder / "site",
+        "--port",
+        "0",
+        "--database",
+        f"sqlite:///{tmp_path / 'fleet.db'}",
+    ]
+    with Processes(tmp_path / "logs") as processes:
+        processes.start_bridge("gateway", words)
+        address = processes.wait_for_line("gateway", r"listening on (ws://\S+:\d+)", START).group(1)
+        with connect(f"{address}/robot", max_size=None) as robot:
+            robot.send(json.dumps({"jsonrpc": "2.0", "id": 1, "method": "Ready", "params": {"magic": 7}}))
+            calls = (json.loads(robot.recv(10)) for _ in range(5))
+            call = next(frame for frame in calls if frame.get("method") == "SetMap")
+    served = read_text(decode_text(base64.b64decode(call["params"]["map"])))
+    assert served.meta["id"] == "sample" and served.meta["version"] == "1"
+    assert shapes(served) == shapes(read_site(folder / "site").whole_map())
+
+
+def test_the_map_of_a_publication_is_the_map_exported_from_the_layers(fine, folder, by_words, root, tmp_path):
+    fine("publish")
+    project = root / "resources" / "sample_site" / "sample_site.qgz"
+    layers = ("Buildings", "Walls", "Columns", "Litter bins", "Benches", "Stairs", "Ramp")
+    words = [f"OBSTACLES={name}" for name in layers]
+    words += ["EXTENT=640420,640620,5193480,5193640", f"OUTPUT={tmp_path / 'map.txt'}"]
+    done = by_words("run", "fleet:exportrobotmap", f"--PROJECT_PATH={project}", "--", *words)
+    assert done.status == 0, done.said
+    exported = read_text((tmp_path / "map.txt").read_text())
+    published = read_site(folder / "site").whole_map()
+    assert len(shapes(published)) > 40
+    (ramp,) = [o for o in published.obstacles if o.shape_type == ShapeType.RAMP]
+    assert ramp.ext["n"] == "0.083,0,0.9965"
+    assert shapes(exported) == shapes(published)
+    assert exported.border == published.border
