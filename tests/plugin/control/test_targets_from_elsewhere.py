@@ -278,20 +278,17 @@ def test_a_selected_line_is_a_route_that_can_be_changed(hand, layer_of):
     assert hand.points[1] == pytest.approx((70, 25), abs=0.3)
 
 
-@pytest.mark.parametrize(
-    ("kind", "wkts", "text"),
-    [
+def test_what_cannot_be_taken_is_named(hand, layer_of):
+    for kind, wkts, text in (
         ("Polygon", ["Polygon ((1 1, 9 1, 9 9, 1 1))"], "holds polygons: take a layer of points"),
         ("LineString", ["LineString (1 1, 2 2)"] * 2, "A route is one line, and 2 of the layer"),
         ("MultiLineString", ["MultiLineString ((1 1, 2 2), (5 5, 6 6))"], "has 2 parts"),
         ("Point", [], "has no feature with a place to go to"),
         ("Point", ["Point (1 1)"] * 1001, "has 1001 features and a queue takes 1000"),
-    ],
-)
-def test_what_cannot_be_taken_is_named(hand, layer_of, kind, wkts, text):
-    take_from(hand, layer_of(kind, *wkts))
-    assert hand.points is None
-    assert hand.complained(text)
+    ):
+        take_from(hand, layer_of(kind, *wkts))
+        assert hand.points is None
+        assert hand.complained(text)
 
 
 def test_without_a_robot_or_a_layer_it_says_what_is_wanting(hand, layer_of):

@@ -150,15 +150,15 @@ DOCKS = ("fleet_observation_dock", "fleet_plan_dock", "fleet_replay_dock")
 PANELS = ("fleet_alarm_panel", *DOCKS)
 
 
-@pytest.mark.parametrize("name", PANELS)
-def test_panels_leave_alt_and_letters_to_the_menus_of_qgis(plugin, iface, name):
+def test_panels_leave_alt_and_letters_to_the_menus_of_qgis(plugin, iface):
     """Qt would do neither: of two parts of one window with one letter it only shows the first."""
-    panel = iface.findChild(QWidget, name)
-    if name in DOCKS:
-        panel.build()
-    buttons = [one for one in panel.findChildren(QAbstractButton) if one.text()]
-    assert buttons
-    assert [one.text() for one in buttons if letter_of(one.text())] == []
+    for name in PANELS:
+        panel = iface.findChild(QWidget, name)
+        if name in DOCKS:
+            panel.build()
+        buttons = [one for one in panel.findChildren(QAbstractButton) if one.text()]
+        assert buttons, name
+        assert [one.text() for one in buttons if letter_of(one.text())] == [], name
 
 
 def test_the_fleet_panel_has_one_letter_which_leads_into_it(plugin):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from qgis.core import QgsSettings
 from qgis.PyQt.QtCore import Qt
 from qgis.PyQt.QtTest import QTest
@@ -22,14 +21,16 @@ def test_typing_an_address_and_pressing_connect_shows_the_site(plugin, gateway, 
     assert gateway.requests_of("hello") == [{"operator": "anna", "protocol": 1}]
 
 
-@pytest.mark.parametrize("name", ["fleet_url", "fleet_operator", "fleet_token", "fleet_ca_file"])
-def test_enter_in_any_field_of_the_gateway_connects(plugin, gateway, wait, name):
+def test_enter_in_any_field_of_the_gateway_connects(plugin, gateway, wait):
     panel = plugin.window.dock.connection_panel
     panel.findChild(QLineEdit, "fleet_url").setText(gateway.url)
     panel.findChild(QLineEdit, "fleet_operator").setText("anna")
-    found = panel.findChild(QWidget, name)
-    QTest.keyClick(found if isinstance(found, QLineEdit) else found.lineEdit(), Qt.Key.Key_Return)
-    wait(lambda: "Yard" in state_line(plugin.window), what="the site's name")
+    for name in ("fleet_url", "fleet_operator", "fleet_token", "fleet_ca_file"):
+        found = panel.findChild(QWidget, name)
+        QTest.keyClick(found if isinstance(found, QLineEdit) else found.lineEdit(), Qt.Key.Key_Return)
+        wait(lambda: "Yard" in state_line(plugin.window), what=f"the site's name, by {name}")
+        plugin.window.actions.connect.trigger()
+        wait(lambda: "Yard" not in state_line(plugin.window), what="the end of the link")
 
 
 def test_while_there_is_a_link_the_fields_make_room_for_the_robots(plugin, gateway, wait):
