@@ -92,19 +92,16 @@ def test_a_rectangle_selects_those_in_it_and_is_seen_while_it_is_drawn(desk, ifa
     assert not [b for b in iface.canvas.viewport().findChildren(QRubberBand) if b.isVisible()]
 
 
-@pytest.mark.parametrize(
-    ("held", "left"),
-    [
+def test_rectangles_combine_with_what_is_selected_as_in_qgis(desk, iface):
+    for held, left in (
         (SHIFT, ("r1", "r2", "r3", "r4")),
         (CONTROL, ("r1",)),
         (SHIFT | CONTROL, ("r2",)),
         (NONE, ("r2", "r3", "r4")),
-    ],
-)
-def test_rectangles_combine_with_what_is_selected_as_in_qgis(desk, iface, held, left):
-    desk.selection.select_all(["r1", "r2"])
-    drag(iface, (30, 60), (90, 40), held)
-    assert desk.selection.robots == left
+    ):
+        desk.selection.select_all(["r1", "r2"])
+        drag(iface, (30, 60), (90, 40), held)
+        assert desk.selection.robots == left
 
 
 def test_a_rectangle_is_one_of_the_screen_when_the_map_is_rotated(desk, iface, wait):

@@ -210,24 +210,17 @@ def test_each_path_has_a_way_to_it_of_its_own(off, book):
     assert off(50.0, 0.0) is None
 
 
-@pytest.mark.parametrize(
-    ("crs", "text"),
-    [
+def test_positions_are_shown_in_the_crs_of_choice_and_that_is_kept(table, at_desk):
+    site, earth = (QgsCoordinateReferenceSystem(crs) for crs in ("EPSG:32633", "EPSG:4326"))
+    point = QgsCoordinateTransform(site, earth, QgsProject.instance()).transform(QgsPointXY(488050, 5190040))
+    for crs, text in (
         ("EPSG:32633", "488050.00, 5190040.00"),
-        ("EPSG:4326", ""),
+        ("EPSG:4326", f"{point.y():.7f}, {point.x():.7f}"),
         ("", "50.00, 40.00"),
-    ],
-)
-def test_positions_are_shown_in_the_crs_of_choice_and_that_is_kept(table, at_desk, crs, text):
-    table.positions.choose(QgsCoordinateReferenceSystem(crs))
-    shown = column(table, "Position")[1]
-    if crs == "EPSG:4326":
-        site = QgsCoordinateReferenceSystem("EPSG:32633")
-        way = QgsCoordinateTransform(site, QgsCoordinateReferenceSystem(crs), QgsProject.instance())
-        point = way.transform(QgsPointXY(488050, 5190040))
-        text = f"{point.y():.7f}, {point.x():.7f}"
-    assert shown == text
-    assert QgsSettings().value("fleet_supervisor/position_crs") == crs
+    ):
+        table.positions.choose(QgsCoordinateReferenceSystem(crs))
+        assert column(table, "Position")[1] == text
+        assert QgsSettings().value("fleet_supervisor/position_crs") == crs
 
 
 # --- in which order ---

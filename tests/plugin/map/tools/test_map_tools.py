@@ -192,14 +192,16 @@ def test_a_target_in_a_keepout_is_refused_by_name(cone, iface, gateway):
     assert gateway.requests_of("send") == []
 
 
-@pytest.mark.parametrize(
-    ("text", "refused"), [("\"name\" = 'Pond'", False), ("\"name\" <> 'Pond'", True), ("to_int('a')", True)]
-)
-def test_only_what_the_filter_of_a_layer_keeps_is_a_keepout(cone, iface, text, refused):
+def test_only_what_the_filter_of_a_layer_keeps_is_a_keepout(cone, iface):
     layer = layer_with_role("keepout", 60, 50, 80, 60, name="Loading bay")
-    layer.setCustomProperty("fleet/filter", text)
-    iface.click(70, 55)
-    assert ("Not to be sent" in drawn(cone)) is refused
+    for text, refused in (
+        ("\"name\" <> 'Pond'", True),
+        ("\"name\" = 'Pond'", False),
+        ("to_int('a')", True),
+    ):
+        layer.setCustomProperty("fleet/filter", text)
+        iface.click(70, 55)
+        assert ("Not to be sent" in drawn(cone)) is refused, text
 
 
 WRONG_FILTER = "The filter expression '1 +' for the layer the keepouts is not one"
