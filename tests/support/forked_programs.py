@@ -59,6 +59,7 @@ BRIDGE = Program(
         "alembic.context",
         "cbor2",
         "encodings.idna",
+        "nats.aio.client",
         "psycopg",
         "pydantic",
         "pymysql",

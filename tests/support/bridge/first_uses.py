@@ -5,9 +5,9 @@ None of it depends on the site, the database or the options of a gateway.
 
 from __future__ import annotations
 
-from robot_bridge.core.sites.settings import read_settings
+from robot_bridge.core.sites.site import read_site
 from robot_bridge.gateway.monitoring import gateway_version
 from tests.support.fleet import SITE
 
-read_settings(SITE / "site.toml")
+read_site(SITE)
 gateway_version()
