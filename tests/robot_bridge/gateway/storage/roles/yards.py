@@ -121,9 +121,15 @@ class Yard:
         for table in ("rr", "sa"):
             self.sql(f"delete from {table}")
 
-    def content(self) -> dict[str, list[tuple[Any, ...]]]:
-        """Return every row of every table, and the names of the tables."""
-        return {name: self.sql(f"select * from {name}") for name in metadata.tables if name != "audit"}
+    def content(self) -> list[tuple[Any, ...]]:
+        """Return every row of every table but the audit log, each as a text; on MariaDB a sum of each table.
+
+        In one statement: hundreds of attempts are looked at so, before and after.
+        """
+        names = [name for name in metadata.tables if name != "audit"]
+        if self.kind == "mariadb":
+            return self.sql(f"checksum table {', '.join(names)}")
+        return self.sql(" union all ".join(f"select '{name}', t::text from {name} t" for name in names))
 
 
 class Session:
