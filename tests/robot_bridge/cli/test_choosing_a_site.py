@@ -22,12 +22,12 @@ def publish(folder, sample, **changes):
     write_site(folder, settings, site.outlines, site.centrelines, site.surfaces, site.keepouts)
 
 
-@pytest.fixture
-def sites(tmp_path, sample_site):
+@pytest.fixture(scope="module")
+def published(tmp_path_factory, sample_site):
     """A folder of sites: two with one frame, one with another, one that cannot be read, and no site."""
-    folder = tmp_path / "sites"
+    folder = tmp_path_factory.mktemp("published")
     for name in ("north", "elsewhere", "empty"):
-        (folder / name).mkdir(parents=True)
+        (folder / name).mkdir()
     for name in ("site.toml", "site.gpkg"):
         shutil.copy(sample_site / name, folder / "north")
     publish(folder / "south", sample_site, id="south", name="South field")
@@ -35,6 +35,12 @@ def sites(tmp_path, sample_site):
     shutil.copytree(folder / "south", folder / "wrong")
     (folder / "wrong" / "site.gpkg").write_bytes(b"no GeoPackage")
     return folder
+
+
+@pytest.fixture
+def sites(published, tmp_path):
+    """A copy of these sites that the test may change."""
+    return shutil.copytree(published, tmp_path / "sites")
 
 
 @pytest.fixture
