@@ -207,6 +207,7 @@ IN_TURN = (
     "robot_bridge/gateway/plans",
     "robot_bridge/gateway/queues",
     "robot_bridge/gateway/storage/databases/test_bridge_on_each.py",
+    "robot_bridge/gateway/storage/databases/test_operations_on_each.py",
     "robot_bridge/gateway/traffic",
     "robot_bridge/gateway/trajectories",
     "robot_bridge/live",
