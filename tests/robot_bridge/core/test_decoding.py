@@ -179,6 +179,8 @@ def dotted(node):
 
 
 def decoders_in(text):
+    if not any(module in text for module in MODULES):
+        return
     for node in ast.walk(ast.parse(text)):
         if isinstance(node, ast.Attribute) and node.attr in DECODERS:
             name = dotted(node)

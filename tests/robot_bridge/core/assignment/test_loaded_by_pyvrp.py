@@ -122,9 +122,9 @@ OBJECTIVES = pytest.mark.parametrize("objective", [BALANCED, LEAST_DISTANCE])
 
 @OBJECTIVES
 @pytest.mark.parametrize("finish", [STAY, TO_START, TO_STORE])
-def test_no_other_plan_is_better(finish: str, objective: str) -> None:
-    for seed in range(2):
-        assert_is_best(loaded(seed, finish, 5, 4, stores=2 * (finish == TO_STORE)), objective, NOTHING)
+@pytest.mark.parametrize("seed", [0, pytest.param(1, marks=pytest.mark.again("seed 0"))])
+def test_no_other_plan_is_better(finish: str, objective: str, seed: int) -> None:
+    assert_is_best(loaded(seed, finish, 5, 4, stores=2 * (finish == TO_STORE)), objective, NOTHING)
 
 
 @OBJECTIVES
@@ -158,9 +158,9 @@ def second_stage(seed: int) -> tuple[AssignmentJob, list[Schedule], float]:
 
 
 @OBJECTIVES
-def test_a_later_stage_goes_on_when_and_where_the_robots_are(objective: str) -> None:
-    for seed in range(3):
-        assert_is_best(second_stage(seed)[0], objective, *second_stage(seed)[1:])
+@pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.again("seed 0")) for k in (1, 2))])
+def test_a_later_stage_goes_on_when_and_where_the_robots_are(objective: str, seed: int) -> None:
+    assert_is_best(second_stage(seed)[0], objective, *second_stage(seed)[1:])
 
 
 @OBJECTIVES
@@ -177,7 +177,7 @@ def test_what_was_driven_in_earlier_stages_is_gone_from_the_battery(objective: s
     ("objective", "cones", "room"),
     [
         pytest.param(BALANCED, 32, 12, marks=pytest.mark.again("test_no_other_plan_is_better")),
-        (LEAST_DISTANCE, 20, 8),
+        (LEAST_DISTANCE, 14, 6),
     ],
 )
 def test_it_is_better_than_a_preview_and_says_who_found_it(objective: str, cones: int, room: int) -> None:

@@ -17,7 +17,9 @@ from robot_bridge.core.assignment.job import (
 from robot_bridge.core.assignment.plan import ConePlan, check_plan
 from robot_bridge.core.assignment.solver import PREVIEW, Objective, assign
 
-CASES = range(4)
+CASES = pytest.mark.parametrize(
+    "seeds", [(0, 1), pytest.param((2, 3), marks=pytest.mark.again("seeds 0, 1"))]
+)
 
 
 def previewed(job: AssignmentJob, objective: str = "distance") -> ConePlan:
@@ -52,7 +54,7 @@ def shortest(job: AssignmentJob) -> float:
         [whole],
         [whole],
     )
-    best = pyvrp.solve(data, MaxIterations(1000), collect_stats=False).best
+    best = pyvrp.solve(data, MaxIterations(500), collect_stats=False).best
     assert best.is_feasible()
     return float(best.distance()) / 10
 
@@ -69,9 +71,10 @@ def loaded(seed: int, finish: str, cones: int = 20, robots: int = 4, room: int =
     )
 
 
+@CASES
 @pytest.mark.parametrize("finish", [STAY, TO_START])
-def test_without_a_store_it_is_nearly_the_shortest(finish: str) -> None:
-    jobs = [loaded(seed, finish) for seed in CASES]
+def test_without_a_store_it_is_nearly_the_shortest(finish: str, seeds: tuple[int, int]) -> None:
+    jobs = [loaded(seed, finish) for seed in seeds]
     ratios = [previewed(job).metres / shortest(job) for job in jobs]
     assert np.mean(ratios) < 1.15
     assert max(ratios) < 1.3
@@ -86,10 +89,11 @@ def test_without_a_store_the_robot_beside_the_cones_places_them(objective: str) 
     assert plan.metres == pytest.approx(3.0)
 
 
-def test_with_a_store_it_is_not_much_longer_than_by_pyvrp() -> None:
+@CASES
+def test_with_a_store_it_is_not_much_longer_than_by_pyvrp(seeds: tuple[int, int]) -> None:
     pytest.importorskip("pyvrp")
     ratios = []
-    for seed in range(3):
+    for seed in seeds:
         places = np.random.default_rng(seed).uniform(0, 100, (12, 2)).tolist()
         targets = tuple(ConeTarget(f"c{k}", *place) for k, place in enumerate(places))
         job = AssignmentJob(targets, (PlanRobot("R", 50.0, 50.0, 4),), (Store("s", 50.0, 50.0),))
