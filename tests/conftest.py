@@ -81,9 +81,11 @@ hear_signals()
 
 # How long something takes on a busy machine says nothing of whether it is right.
 settings.register_profile("any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow])
-# make test-core shows in a minute that nothing is broken; make test looks for the rare example.
+# make test-core shows in a minute that nothing is broken; make test looks for the rare example, by others in
+# each run, and make test-release for twice as many.
 settings.register_profile("core", settings.get_profile("any machine"), max_examples=30)
-settings.load_profile("any machine")
+settings.register_profile("each run", settings.get_profile("any machine"), max_examples=50)
+settings.load_profile("each run")
 
 
 # --- make test-core: what needs neither QGIS nor database servers nor a display, nor programs of its own ---
@@ -164,6 +166,8 @@ def pytest_configure(config):
         # Whoever imports it all the same fails.
         sys.modules["qgis"] = sys.modules["osgeo"] = None
         settings.load_profile("core")
+    elif config.getoption("--release"):
+        settings.load_profile("any machine")
     file_by_file.begin(config, deal_out)
 
 
