@@ -18,6 +18,7 @@ from robot_bridge.core.sites.site import read_site
 from tests.support.errors import StageError
 from tests.support.fleet import SITE, account, start_gateway, start_robots
 from tests.support.forked_programs import write_shell_command
+from tests.support.patience import BUSY
 from tests.support.processes import Processes
 from tests.support.program import ended
 from tests.support.qgis import Profile, virtual_screen
@@ -38,7 +39,7 @@ FAILED = FOLDER / "failed.png"
 SIZE = (1280, 800)
 SPEED = 2.5
 """m/s: fast enough that nobody waits long."""
-OPENING_S = 120.0
+OPENING_S = BUSY * 120
 
 
 def run(walk: Walk, pictures: Path) -> None:
