@@ -127,7 +127,7 @@ def test_ctrl_and_the_wheel_zoom_as_with_every_tool(slalom, iface):
     assert iface.canvas.scale() != scale
 
 
-def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface):
+def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface, wait):
     pixel = iface.canvas.mapUnitsPerPixel()
     iface.hover(40, 50)
     iface.click(40, 50)
@@ -139,6 +139,7 @@ def test_a_click_places_it_into_a_layer_and_another_one_beside_it(slalom, iface)
     made = cones()
     assert len(made) == 14
     assert made["slalom-2-3"] == pytest.approx((80, 54, 180), abs=2 * pixel)
+    wait(lambda: len(iface.said) == 2, what="the checks")
     assert iface.said == [("7 cones are in the layer Cones.", False)] * 2
 
 
