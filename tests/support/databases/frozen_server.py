@@ -11,18 +11,23 @@ from pathlib import Path
 from tests.support.databases.database_server import DatabaseServer
 
 
-def tree_of(pid: int) -> list[int]:
-    """Return a process and all that it has started."""
-    children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
-    return [pid, *(found for child in children for found in tree_of(int(child)))]
+def stop_tree(pid: int) -> list[int]:
+    """Stop a process and all that it has started; return those that were there.
+
+    Each is stopped before its children are listed: it starts no others meanwhile. A child may have ended.
+    """
+    try:
+        os.kill(pid, signal.SIGSTOP)
+        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
+    except (ProcessLookupError, FileNotFoundError):
+        return []
+    return [pid, *(found for child in children for found in stop_tree(int(child)))]
 
 
 @contextlib.contextmanager
 def frozen(server: DatabaseServer) -> Iterator[None]:
     """A server that does nothing, while its computer keeps its connections open."""
-    processes = tree_of(server.pid)
-    for pid in processes:
-        os.kill(pid, signal.SIGSTOP)
+    processes = stop_tree(server.pid)
     try:
         yield
     finally:
