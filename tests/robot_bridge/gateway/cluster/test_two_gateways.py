@@ -566,7 +566,9 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
         # Robots on SQL do not connect, and would not know that the ids of messages begin again.
         starts = second.sql("select params from sa where robot = 'on-sql' and op = 'Start'")
         assert [json.loads(params)["database"] for (params,) in starts] == [ids[1]["id"]] * is_noticed
-        said = "a copy of another one" if is_noticed else "gateway a serves a copy of this fleet's database"
+        said = (
+            "is a copy of another one" if is_noticed else "gateway a serves a copy of this fleet's database"
+        )
         # A stop of a gateway of the same name is this one's own until it is known for a copy's.
         for one in [second] if is_noticed else [first, second]:
             wait_until(lambda one=one, said=said: said in one.output())
@@ -599,6 +601,8 @@ def noting_pair(start_bridge, site, postgresql_server, new_database, tmp_path):
 
 def driven(pair, folder):
     """Have a robot at b drive that was sent on since the state of the database that is returned."""
+    # Where a is the robot learns when it connects; a gateway says where it is within a second of its start.
+    wait_until(lambda: len(pair.b.desk().hello["gateways"]) == 2)
     pair.b.start_robot("r1", (20.0, 20.0, 0.0), options=["--speed", "0.5"])
     desk = desk_at(pair.b)
     desk.wait_for_robots("r1")
