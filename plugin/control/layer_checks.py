@@ -317,7 +317,7 @@ class LayerReadings:
 
     def _note_files(self, layers: Sequence[QgsMapLayer]) -> None:
         paths = {layer.id(): file_of(layer) for layer in layers}
-        ReadingThread(_FileStates({id: path for id, path in paths.items() if path}, self._files)).start()
+        ReadingThread(_FileStates(paths, self._files)).start()
 
 
 class _FileStates:

@@ -119,7 +119,7 @@ class OwnedRobots:
         lost = {robot for robot, fence in self._fences.items() if stored.get(robot) != fence}
         return lost, {robot for robot, fence in stored.items() if self._fences.get(robot) != fence}
 
-    def missing(self, robots: Iterable[str]) -> set[str]:
+    def others(self, robots: Iterable[str]) -> set[str]:
         """Return those of ``robots`` that this gateway has not."""
         return set(robots).difference(self._fences)
 

@@ -160,7 +160,7 @@ class Ownership:
 
         Those that this one has got since are not among them.
         """
-        others = self._robots.missing(robots) - self._being_claimed
+        others = self._robots.others(robots) - self._being_claimed
         owners = {robot: self._owners[robot].gw for robot in others if robot in self._owners}
         return {robot: gateway for robot, gateway in owners.items() if gateway != self._membership.name}
 

@@ -98,6 +98,7 @@ class LinkOnTheLine:
         self._loop.call_soon_threadsafe(goes_on.wait)
         try:
             yield
+            # How long it stood is what it judges by when it goes on.
             time.sleep(max(0.0, until - time.monotonic()))
         finally:
             goes_on.set()

@@ -184,7 +184,7 @@ class DatabaseServer(abc.ABC):
         # A stopped process starts no other one while they are listed. One left alive may wait for ever for
         # a lock of one that died, and keep the next server from the memory that they share.
         self._process.send_signal(signal.SIGSTOP)
-        workers = _children(self._process.pid)
+        workers = children_of(self._process.pid)
         self._process.kill()
         for worker in workers:
             _kill(worker)
@@ -287,7 +287,8 @@ def find_program(name: str, *folders: str) -> str:
     return found
 
 
-def _children(pid: int) -> list[int]:
+def children_of(pid: int) -> list[int]:
+    """Return the processes that a process has started and that have not ended."""
     listed = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii")
     return [int(child) for child in listed.split()]
 

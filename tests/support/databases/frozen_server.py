@@ -6,9 +6,8 @@ import contextlib
 import os
 import signal
 from collections.abc import Iterator
-from pathlib import Path
 
-from tests.support.databases.database_server import DatabaseServer
+from tests.support.databases.database_server import DatabaseServer, children_of
 
 
 def stop_tree(pid: int) -> list[int]:
@@ -18,10 +17,10 @@ def stop_tree(pid: int) -> list[int]:
     """
     try:
         os.kill(pid, signal.SIGSTOP)
-        children = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
+        children = children_of(pid)
     except (ProcessLookupError, FileNotFoundError):
         return []
-    return [pid, *(found for child in children for found in stop_tree(int(child)))]
+    return [pid, *(found for child in children for found in stop_tree(child))]
 
 
 @contextlib.contextmanager

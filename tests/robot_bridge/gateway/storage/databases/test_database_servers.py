@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.databases.database_server import children_of
 from tests.support.processes import is_running
 
 ROOT = Path(__file__).resolve().parents[5]
@@ -37,10 +38,6 @@ def server(kind, request):
 
 def name_of(url: str) -> str:
     return url.rsplit("/", 1)[1]
-
-
-def children_of(pid):
-    return Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="ascii").split()
 
 
 @BOTH
