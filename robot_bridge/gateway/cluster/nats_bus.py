@@ -91,6 +91,8 @@ class NatsConnection:
         try:
             check_server(client)
             await self._subscribe(client, receive)
+            if is_cancelled():
+                raise asyncio.CancelledError
             self.client = client
             if was_lost:
                 log.warning("bus %s: %s is connected again", self._servers.where, self._name)
@@ -119,7 +121,7 @@ class NatsConnection:
             self._said.add(reason)
         except asyncio.CancelledError:
             # The library cancels tasks and futures of its own, which is no reason to end this one.
-            if (task := asyncio.current_task()) is None or task.cancelling():
+            if is_cancelled():
                 raise
             self._say("the client was cancelled")
 
@@ -345,6 +347,16 @@ class NatsBus:
         while True:
             subject, content = await self._outgoing.next()
             await client.publish(f"{self._prefix}.{subject}", content)
+
+
+def is_cancelled() -> bool:
+    """Tell whether the running task was cancelled, even if nobody raised that.
+
+    The client waits by ``asyncio.wait_for``, which in Python 3.11 returns as if nothing were the matter when
+    the server answers in the same turn of the loop. Such a task would never end.
+    """
+    task = asyncio.current_task()
+    return task is None or task.cancelling() > 0
 
 
 def write_at_once(client: Any, subject: str, content: bytes) -> bool:

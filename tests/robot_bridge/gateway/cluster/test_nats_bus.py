@@ -152,6 +152,35 @@ async def test_a_client_that_fails_is_taken_for_lost_and_another_one_connects(na
         await asyncio.gather(running, return_exceptions=True)
 
 
+@pytest.mark.parametrize("answer", [1, 2])
+@pytest.mark.parametrize("turns", range(6))
+async def test_a_bus_that_is_ended_as_the_server_answers_ends(nats, answer, turns):
+    """However many turns of the loop lie between: a gateway may be ended when it has just begun."""
+    answers = 0
+
+    async def forward(reader, writer, is_server):
+        nonlocal answers
+        while content := await reader.read(4096):
+            writer.write(content)
+            answers += is_server
+            if is_server and answers == answer:
+                for _ in range(turns):
+                    await asyncio.sleep(0)
+                running.cancel()
+
+    async def relay(reader, writer):
+        of_server = await asyncio.open_connection("127.0.0.1", urlsplit(nats.url).port)
+        both = forward(reader, of_server[1], False), forward(of_server[0], writer, True)
+        await asyncio.gather(*both, return_exceptions=True)
+
+    async with await asyncio.start_server(relay, "127.0.0.1", 0) as listening:
+        url = f"nats://127.0.0.1:{listening.sockets[0].getsockname()[1]}"
+        running = asyncio.create_task(NatsBus([url], "a", "fleet.f9").run(lambda *_: None))
+        async with asyncio.timeout(20 * BUSY):
+            await asyncio.gather(running, return_exceptions=True)
+        assert running.cancelled()
+
+
 async def test_a_server_that_is_not_there_is_named():
     with pytest.raises(BridgeError, match=r"^bus 127.0.0.1:1: .*check that NATS runs there"):
         await NatsBus(["nats://127.0.0.1:1"], "a", "fleet.f").check()
