@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from ..core.messages import links
-from ..core.messages.administration import PROTOCOL_VERSION
+from ..core.messages.administration import PROTOCOL_VERSION, Gateways
 from ..core.messages.base import DESK_REQUESTS, ROBOT_NAME, Done
 from ..core.messages.links import Playback, PlaybackReport
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
@@ -128,6 +128,8 @@ _RESULTS: dict[str, type] = {
     "statusResult": Done,
     "get_areasResult": links.SiteAreas,
 }
+_GATEWAYS: dict[str, type] = {Gateways.method: Gateways}
+"""What links and robots are told where several gateways serve the fleet."""
 _STOP = "AbortOfAll"
 _PLAYBACK_RESULT = f"{Playback.method}Result"
 _ROBOT: Schema = {
@@ -155,7 +157,7 @@ def link_documents() -> dict[str, Schema]:
         f"link-gateway/{cls.__name__}.json": schema_of(cls)
         for cls in (Start, links.Released, links.AbortOfAll)
     }
-    sent_documents[f"link-gateway/{Playback.method}.json"] = schema_of(Playback)
+    sent_documents |= {f"link-gateway/{cls.method}.json": schema_of(cls) for cls in (Playback, Gateways)}
     received_documents[f"link/{_PLAYBACK_RESULT}.json"] = schema_of(PlaybackReport)
     sent_documents |= {f"link-gateway/{name}.json": schema_of(cls) for name, cls in _RESULTS.items()}
     return {**received_documents, **sent_documents}
@@ -184,7 +186,7 @@ def link_schemas(template: str) -> dict[str, Schema]:
 def link_channel() -> Schema:
     """Return the endpoint with its messages."""
     positions = {links.LinkPositions.method: links.LinkPositions}
-    extra = {"Start": Start, "Released": links.Released}
+    extra = {"Start": Start, "Released": links.Released, **_GATEWAYS}
     messages = {
         **calls(CALLS),
         **calls(ROBOT_CALLS, OF_ROBOT),
@@ -216,6 +218,7 @@ def link_operations() -> Schema:
         "link.Start": operation("send", "link", ["Start"]),
         "link.Released": operation("send", "link", ["Released"]),
         f"link.{Playback.method}": operation("send", "link", [Playback.method], (_PLAYBACK_RESULT, "error")),
+        f"link.{Gateways.method}": operation("send", "link", [Gateways.method]),
         f"link.{_STOP}": operation("send", "link", [_STOP], acknowledged),
     }
 
@@ -270,7 +273,13 @@ def asyncapi() -> dict[str, Any]:
 
 
 def _robot_channel(requests: Mapping[str, type], answers: Mapping[str, type]) -> Schema:
-    messages = {**calls(requests), **calls(answers), "OpAck": result(OpAck), "error": error()}
+    messages = {
+        **calls(requests),
+        **calls(answers),
+        "OpAck": result(OpAck),
+        "error": error(),
+        **news(_GATEWAYS),
+    }
     query = {"robot": "The robot's name; without one it is given one."}
     return channel("/robot", "A robot's connection.", messages, query)
 
@@ -345,6 +354,7 @@ def _robot_operations(requests: Mapping[str, type], answers: Mapping[str, type])
     return {
         **{f"robot.{op}": operation("receive", "robot", [op], _ACKNOWLEDGED) for op in requests},
         **{f"gateway.{op}": operation("send", "robot", [op], _ACKNOWLEDGED) for op in answers},
+        f"gateway.{Gateways.method}": operation("send", "robot", [Gateways.method]),
     }
 
 
@@ -375,6 +385,7 @@ def documents() -> dict[str, str]:
     """
     files = {f"robot/{op}.json": schema_of(cls, closed=True) for op, cls in REQUESTS.items()}
     files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}
+    files[f"gateway/{Gateways.method}.json"] = schema_of(Gateways)
     files |= {f"desk/{method}.json": schema_of(cls, closed=True) for method, cls in DESK_REQUESTS.items()}
     files |= {f"result/{method}.json": schema_of(cls.result) for method, cls in DESK_REQUESTS.items()}
     files |= {f"news/{method}.json": schema_of(cls) for method, cls in NOTIFICATIONS.items()}

@@ -98,7 +98,7 @@ NOTIFICATIONS: dict[str, type] = {
     "stopping": Stopping,
     "suspensions": Suspensions,
     "links": Links,
-    "gateways": Gateways,
+    Gateways.method: Gateways,
     "closures": Closures,
     "replanned": ReplannedRobot,
     "conflicts": Conflicts,

@@ -14,6 +14,7 @@ from websockets.frames import CloseCode
 from ..core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ..core.errors import AccessError, BridgeError
 from ..core.gateway_addresses import ClientCredentials, GatewayAddresses
+from ..core.messages.administration import Gateways
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Abort, Observed, OpAck, Ready, Request, Start
 from ..protocol import jsonrpc
@@ -161,6 +162,10 @@ class RobotWebSocketLink:
             self._receive_reply(agent, message)
             return
         if self._standstill.check() and message.method != Abort.__name__:
+            return
+        if message.method == Gateways.method:
+            params = message.params if isinstance(message.params, dict) else {}
+            self._addresses.learn(params.get("gateways"))
             return
         # Nothing is said before the gateway's Start.
         self._connected = True

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, ClassVar
 
 from . import base
 from .base import DeskRequest, MessageError, Role, known_fields
@@ -61,14 +61,15 @@ class HelloResult:
 
 @dataclass(frozen=True)
 class Gateways:
-    """Where operators reach the gateways of a fleet that several serve.
+    """Where operators, robots or links reach the gateways of a fleet that several serve.
 
     ``gateway`` is the name of the one that tells it; ``gateways`` are the URLs of all, its own first, of at
-    most 256 characters each: at any of them an operator may connect when this one does not answer.
+    most 256 characters each: at any of them the other side may connect when this one does not answer.
     """
 
     gateway: str
     gateways: list[str]
+    method: ClassVar[str] = "gateways"
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gateways", base.usable_addresses(self.gateways) or [])

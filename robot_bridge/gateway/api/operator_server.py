@@ -39,7 +39,8 @@ from ...core.messages.robots import Abort
 from ...core.messages.safety import EmergencyStop
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_desk_request, error_code
-from ..auth.authorisation import AuthGate
+from ..auth.accounts import TokenKind
+from ..auth.authorisation import PATHS, AuthGate
 from ..auth.client_connection import ClientConnection
 from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
@@ -387,7 +388,7 @@ class OperatorSession:
             self.notify("suspensions", "", to_json(suspensions))
         if (links := self._fleet.links.report()).links:
             self.notify("links", "", to_json(links))
-        gateways = self._fleet.gateways_of_operators()
+        gateways = self._fleet.gateways_at(PATHS[TokenKind.OPERATOR])
         return {
             "protocol": PROTOCOL_VERSION,
             "site": to_json(self._fleet.site.report),

@@ -14,6 +14,7 @@ from websockets.frames import CloseCode
 
 from ...core.errors import BridgeError, DataRefusedError, NotReadyError, StoreError
 from ...core.logs import Key
+from ...core.messages.administration import Gateways
 from ...core.messages.base import LARGEST_MESSAGE, MessageError, to_json
 from ...core.messages.robots import REQUESTS, OpAck, Ready, Request, SendPos
 from ...protocol import jsonrpc
@@ -130,6 +131,13 @@ class RobotSession:
     async def answers(self) -> bool:
         """Tell whether the robot is there, as far as its channel knows."""
         return await self._channel.answers()
+
+    def announce_gateways(self) -> None:
+        """Send the robot where the gateways of the fleet are; before its Ready, Start and OpAck say so."""
+        gateways = self._fleet.gateways_at(self._channel.endpoint)
+        if gateways is not None and self._admitted and not self._has_ended:
+            self._told_gateways = gateways.gateways
+            self._begin(self._channel.send(self._channel.call(Gateways.method, to_json(gateways))))
 
     # --- what comes in ------------------------------------------------------------------------------------
 

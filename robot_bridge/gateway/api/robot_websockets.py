@@ -17,6 +17,7 @@ from ...core.errors import BridgeError, BusyError, ForbiddenError, NotReadyError
 from ...core.json_decoder import DecodingError
 from ...core.logs import log_and_continue
 from ...core.messages import links
+from ...core.messages.administration import Gateways
 from ...core.messages.base import (
     LARGEST_MESSAGE,
     MessageError,
@@ -35,7 +36,7 @@ from ..auth.authorisation import ANY_LINK, PATHS, AuthGate
 from ..auth.client_connection import ClientConnection
 from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
-from ..model.events import RobotLeft
+from ..model.events import GatewaysChanged, RobotLeft
 from ..model.robots import RobotPose
 from .delivery import while_connected
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
@@ -50,6 +51,8 @@ log = logging.getLogger(__name__)
 
 ANSWER_WITHIN = 5.0
 """seconds that a link has to answer what it is asked for itself."""
+AT_ONCE = 50
+"""connections to which is sent where the gateways are before others have their turn."""
 MOST_CALLS = 20
 """questions to a link that wait for its answer."""
 
@@ -138,6 +141,12 @@ class LinkConnection:
         frame = jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))
         if not self.send_at_once(frame):
             self._begin(self.send(frame))
+
+    def announce_gateways(self) -> None:
+        """Send where the gateways of the fleet are to a link that has said hello."""
+        gateways = self._fleet.gateways_at(PATHS[TokenKind.LINK])
+        if gateways is not None and self.kind is not None:
+            self._begin(self.send(jsonrpc.call(Gateways.method, to_json(gateways))))
 
     def update(self) -> None:
         """Let go the robots that it may not speak for any more."""
@@ -377,6 +386,8 @@ class WebSocketInterface:
         fleet.emergency.reach(self._stop_all)
         fleet.orders.reach(self.abort)
         fleet.events.subscribe(RobotLeft, self._let_go)
+        fleet.events.subscribe(GatewaysChanged, self._announce_gateways)
+        self._announcing: asyncio.Task[None] | None = None
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
@@ -442,6 +453,21 @@ class WebSocketInterface:
             self._holders.release(session)
             reason = f"gateway {event.gateway} has this robot now; connect and say Ready again"
             session.replace(reason, again=True)
+
+    def _announce_gateways(self, _: GatewaysChanged) -> None:
+        """Begin to send links and robots where the gateways are, in place of what was being sent of that."""
+        if self._announcing is not None:
+            self._announcing.cancel()
+        self._announcing = asyncio.create_task(self._send_gateways())
+
+    async def _send_gateways(self) -> None:
+        connections: list[LinkConnection | RobotSession] = [*self._links, *self._sessions]
+        for number, connection in enumerate(connections, 1):
+            with log_and_continue(log, "sending where the gateways of the fleet are"):
+                connection.announce_gateways()
+            if number % AT_ONCE == 0:
+                # Thousands of robots would hold up what is sent meanwhile.
+                await asyncio.sleep(0)
 
     def _free_name(self) -> str:
         taken = {*self._fleet.robots.names(), *self._names}

@@ -90,6 +90,7 @@ class Fleet:
         self._clock = clock
         self.cluster = cluster
         self._announced_gateways: Gateways | None = None
+        self._announced_addresses: frozenset[str] = frozenset()
         self.listeners = events.Listeners()
         """the operators' sessions, told what happens."""
         self.events = events.EventBus()
@@ -271,19 +272,25 @@ class Fleet:
         addresses = self.cluster.membership.addresses()[:MOST_GATEWAYS]
         return [f"{address}{endpoint}" for address in addresses] or None
 
-    def gateways_of_operators(self) -> Gateways | None:
-        """Return where operators reach the gateways of the fleet, None where one serves it alone."""
+    def gateways_at(self, endpoint: str) -> Gateways | None:
+        """Return the gateways of the fleet by their URLs of ``endpoint``, None where one serves it alone."""
         if self.cluster is None:
             return None
-        urls = self.gateway_urls(PATHS[TokenKind.OPERATOR])
-        return Gateways(self.cluster.membership.name, urls or [])
+        return Gateways(self.cluster.membership.name, self.gateway_urls(endpoint) or [])
 
     async def announce_gateways(self) -> None:
-        """Tell operators where the gateways of the fleet are, unless they have been told so."""
-        gateways = self.gateways_of_operators()
-        if gateways is not None and gateways != self._announced_gateways:
-            self._announced_gateways = gateways
-            self.listeners.announce("gateways", "", to_json(gateways))
+        """Announce where the gateways of the fleet are, where that has changed.
+
+        Operators go by their order as well; robots and links draw one of their own.
+        """
+        gateways = self.gateways_at(PATHS[TokenKind.OPERATOR])
+        if gateways is None or gateways == self._announced_gateways:
+            return
+        self._announced_gateways = gateways
+        self.listeners.announce(Gateways.method, "", to_json(gateways))
+        if (addresses := frozenset(gateways.gateways)) != self._announced_addresses:
+            self._announced_addresses = addresses
+            self.events.publish(events.GatewaysChanged(addresses))
 
     async def receive(
         self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False

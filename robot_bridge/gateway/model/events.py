@@ -191,6 +191,16 @@ class StopBegun:
 
 
 @dataclass(frozen=True)
+class GatewaysChanged:
+    """The fleet is served by ``gateways``, addresses of which one is new or one is left out."""
+
+    gateways: frozenset[str]
+
+    def __str__(self) -> str:
+        return f"the {len(self.gateways)} gateways of the fleet"
+
+
+@dataclass(frozen=True)
 class SiteChosen:
     """A supervisor chose at this gateway which site is served; that is stored."""
 

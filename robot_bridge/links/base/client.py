@@ -382,8 +382,9 @@ class LinkClient:
             return
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
+        # In Start, and in a notification when they have changed.
+        self._addresses.learn(params.get("gateways"))
         if call.method == Start.__name__:
-            self._addresses.learn(params.get("gateways"))
             hello = to_json(LinkHello(LINK_PROTOCOL, self._adapter.kind))
             self._call(LinkHello.method, hello, self._welcomed)
         elif call.method == Playback.method:

@@ -113,13 +113,13 @@ def test_the_parser_refuses_it_where_a_message_is_missing(parsed):
 def test_it_has_an_operation_for_every_message_of_all_endpoints():
     assert set(asyncapi()["operations"]) == {
         *(f"robot.{op}" for op in REQUESTS if op != "OpAck"),
-        *(f"gateway.{op}" for op in ANSWERS if op != "OpAck"),
+        *(f"gateway.{op}" for op in (*ANSWERS, "gateways") if op != "OpAck"),
         *(f"desk.{method}" for method in DESK_REQUESTS),
         *(f"news.{method}" for method in NOTIFICATIONS),
         *(f"link.robot.{op}" for op in REQUESTS if op != "OpAck"),
         *(f"link.gateway.{op}" for op in ANSWERS if op not in ("OpAck", "Start")),
         *(f"link.{name}" for name in ("hello", "status", "get_areas", "positions")),
-        *(f"link.{name}" for name in ("Start", "Released", "AbortOfAll", "playback")),
+        *(f"link.{name}" for name in ("Start", "gateways", "Released", "AbortOfAll", "playback")),
     }
 
 

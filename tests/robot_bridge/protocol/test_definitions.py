@@ -46,7 +46,7 @@ def test_there_is_one_for_every_message():
     paths = set(documents()) - OTHERS
     assert paths == {
         *(f"robot/{op}.json" for op in REQUESTS),
-        *(f"gateway/{op}.json" for op in ANSWERS),
+        *(f"gateway/{op}.json" for op in (*ANSWERS, "gateways")),
         *(f"desk/{method}.json" for method in DESK_REQUESTS),
         *(f"result/{method}.json" for method in DESK_REQUESTS),
         *(f"news/{method}.json" for method in NOTIFICATIONS),

@@ -220,17 +220,20 @@ def told_gateways(bridge, name):
 
 
 def test_robots_and_adapters_go_on_at_another_gateway_by_themselves(pair, name, tmp_path):
-    """They were given the address of one, and that says which others there are."""
+    """They were given the address of one, and that says when another one comes."""
     both = [bridge.address for bridge in (pair.a, pair.b)]
-    for bridge, known in ((pair.a, both), (pair.b, both[::-1])):
-        urls = [f"{one}/robot" for one in known]
-        wait_until(lambda bridge=bridge, urls=urls: told_gateways(bridge, f"{name}-probe") == urls)
+    pair.b.end()
+    wait_until(lambda: told_gateways(pair.a, f"{name}-probe") == [f"{both[0]}/robot"])
     phones = tmp_path / f"{name}.toml"
     tracker = f'[tracker]\nhttp = "127.0.0.1:{free_port()}"\n[tracker.names]\n845213 = "phone"'
     phones.write_text(f'[gateway]\nurl = "{both[0]}/link"\n{tracker}\n', encoding="utf-8")
     started = [pair.a.start_robot(name, (20.0, 8.0, 0.0)), pair.a.start_link("tracker", phones)]
-    at_a, desk = desk_at(pair.a), desk_at(pair.b)
+    at_a = desk_at(pair.a)
+    at_a.wait_for_robots(name)
     at_a.until(lambda: phones.stem in str(at_a.links))
+    pair.b.start_gateway()
+    at_a.until(lambda: len(at_a.gateways) == 2)
+    desk = desk_at(pair.b)
     desk.wait_for_robots(name)
     assert desk.robots[name]["link"] == "gateway a"
     pair.a.kill_gateway()
@@ -514,13 +517,16 @@ def test_two_gateways_need_no_further_server(start_bridge, site, new_database, t
     stop(desk, name)
     assert robot.wait_for("Abort")["params"]["emergency"]
     desk.until(lambda: desk.emergency.get("gateways", {}).get("reached") == 2)
-    # Gateways that come and go are told of with the next acknowledgement.
-    here = pair.robot(pair.b, f"{name}-b")
     gateways = [f"{pair.b.address}/robot", f"{pair.a.address}/robot"]
     wait_until(lambda: told_gateways(pair.b, f"{name}-probe") == gateways)
+    here = pair.robot(pair.b, f"{name}-b")
     # The desk of the gateway that takes its leave goes on at the other: its robots are free at once.
-    pair.a.end()
-    wait_until(lambda: here.ask("Stopped").get("gateways") == gateways[:1])
+    end_gateway(pair.a)
+    alone = {"gateway": "b", "gateways": gateways[:1]}
+    here.until(lambda: alone in [call.get("params") for call in here.calls])
+    # Who passes over what it does not know finds it in acknowledgements.
+    pair.a.start_gateway()
+    wait_until(lambda: here.ask("Stopped").get("gateways") == gateways)
     assert "gateways" not in here.ask("Stopped")
     wait_until(lambda: pair.b.sql("select gw from robot_owners where robot = ?", name) == [("b",)])
 
@@ -601,8 +607,6 @@ def noting_pair(start_bridge, site, postgresql_server, new_database, tmp_path):
 
 def driven(pair, folder):
     """Have a robot at b drive that was sent on since the state of the database that is returned."""
-    # Where a is the robot learns when it connects; a gateway says where it is within a second of its start.
-    wait_until(lambda: len(pair.b.desk().hello["gateways"]) == 2)
     pair.b.start_robot("r1", (20.0, 20.0, 0.0), options=["--speed", "0.5"])
     desk = desk_at(pair.b)
     desk.wait_for_robots("r1")
