@@ -13,7 +13,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from tests.support.errors import StageError
-from tests.support.processes import dying_with_this, free_port
+from tests.support.processes import dying_with_this, free_port, freeze
 from tools.plugin_files import ROOT
 
 
@@ -87,7 +87,7 @@ class NatsServer:
     def freeze(self) -> None:
         """Let it stand still, as on a computer that hangs."""
         assert self._process is not None
-        self._process.send_signal(signal.SIGSTOP)
+        freeze(self._process.pid)
 
     def wake(self) -> None:
         """Let it go on."""

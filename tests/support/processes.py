@@ -138,7 +138,7 @@ class Processes:
     @contextmanager
     def halted(self, name: str) -> Iterator[None]:
         """Let process ``name`` stand still inside the block, as one that has no time."""
-        self._running[name].send_signal(signal.SIGSTOP)
+        freeze(self._running[name].pid)
         try:
             yield
         finally:
@@ -174,11 +174,27 @@ def free_port() -> int:
 
 def is_running(pid: int) -> bool:
     """Whether a process is there and has not ended; one that nobody has waited for yet has."""
+    return _state(Path(f"/proc/{pid}")) not in "ZX"
+
+
+def freeze(pid: int) -> None:
+    """Let a process stand still: all its threads do when this returns. ``SIGCONT`` wakes it.
+
+    :raises ProcessLookupError: when it has ended.
+    """
+    os.kill(pid, signal.SIGSTOP)
+    # Each thread stops when it is given time next, and does something until then.
+    while any(_state(thread) not in "TtXZ" for thread in Path(f"/proc/{pid}/task").glob("[0-9]*")):
+        time.sleep(0.001)
+
+
+def _state(process: Path) -> str:
+    """Return the state of a process or a thread by its folder, as ``ps`` names it; X where it is gone."""
     try:
-        stat = Path(f"/proc/{pid}/stat").read_text(encoding="ascii", errors="replace")
+        stat = (process / "stat").read_text(encoding="ascii", errors="replace")
     except (FileNotFoundError, ProcessLookupError):
-        return False
-    return stat.rpartition(")")[2].split()[0] not in "ZX"
+        return "X"
+    return stat.rpartition(")")[2].split()[0]
 
 
 def left_running(folder: Path) -> set[int]:

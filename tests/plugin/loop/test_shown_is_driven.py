@@ -19,6 +19,7 @@ from qgis.PyQt.QtWidgets import QApplication, QLabel
 from shapely.geometry import Point, Polygon
 
 from tests.support.operators import ask
+from tests.support.processes import freeze
 
 POSE, GOAL = (60, 22, 0), (70.26, 42.57)
 ANGLES = [math.tau * k / 48 for k in range(48)]
@@ -136,7 +137,7 @@ def test_a_target_that_was_not_answered_is_not_driven_to_at_a_gateway_of_another
     operator.click_site(*GOAL)
     operator.wait_for_draft("the target")
     operator.wait("the way to it", lambda: knows_way(operator) and draft(operator).is_checked, 20)
-    loop.gateway.send_signal(signal.SIGSTOP)
+    freeze(loop.gateway.pid)
     asked = len(operator.desk.orders)
     operator.desk.sending.send()
     operator.wait("the order on its way", lambda: len(operator.desk.orders) == asked + 1, 10)

@@ -26,7 +26,7 @@ from robot_bridge.gateway.site_updates import SiteCopy, SiteCopyError
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.bridge.command_line import run_command
 from tests.support.patience import BUSY, START
-from tests.support.processes import Processes
+from tests.support.processes import Processes, freeze
 
 
 @pytest.fixture(scope="module")
@@ -218,7 +218,7 @@ async def test_a_server_that_is_frozen_holds_up_no_stop(address, tmp_path, postg
     copy = SiteCopy(read_site_address(address), tmp_path)
     await copy.refresh()
     backend = copy._connection.info.backend_pid
-    os.kill(backend, signal.SIGSTOP)
+    freeze(backend)
     try:
         looking = asyncio.create_task(copy.refresh())
         while copy._connection.info.transaction_status != TransactionStatus.ACTIVE:

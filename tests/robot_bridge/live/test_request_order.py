@@ -13,6 +13,7 @@ import time
 import pytest
 
 from tests.support.operators import Desk
+from tests.support.processes import freeze
 
 NUMBERS = itertools.count(1)
 SLOW = 24
@@ -203,7 +204,7 @@ TARGET = {"op": "SetPosEnd", "params": {"x": 30.0, "y": 20.0}}
 def test_what_lay_in_a_buffer_beyond_its_deadline_is_not_done_unless_it_stops_robots(bridge, desk, robot):
     other, late = plugged_in(bridge, desk), new("target")
     deadline = desk.ask("hello", {"operator": "Ada"})["now"] + 0.5
-    bridge.gateway.send_signal(signal.SIGSTOP)
+    freeze(bridge.gateway.pid)
     try:
         desk.say_until(deadline, 1, "send", command=late, robot=other.name, **TARGET)
         desk.say_until(deadline, 2, "abort", command=new("abort"), robot=robot.name)

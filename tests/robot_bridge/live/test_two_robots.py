@@ -9,6 +9,7 @@ import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
+from tests.support.processes import freeze
 from tests.support.robots.robot_wires import WIRES
 
 LINKS = pytest.mark.parametrize("sql", [False, True], ids=["websocket", "sql"])
@@ -65,7 +66,7 @@ def test_a_robot_that_was_killed_and_started_again_keeps_its_name_and_its_task(b
 def test_a_robot_that_hangs_gives_way_after_a_second(bridge, desk):
     robot = bridge.start_robot("frozen", (20.0, 20.0, 0.0), options=["--rate", "50"])
     desk.wait_for_robots("frozen")
-    robot.send_signal(signal.SIGSTOP)
+    freeze(robot.pid)
     try:
         began = time.monotonic()
         newcomer = WIRES["websocket"](bridge, "frozen")

@@ -23,7 +23,7 @@ from sqlalchemy import URL, Connection, make_url
 from robot_bridge.gateway.storage.database import run_once
 from robot_bridge.gateway.storage.roles.choice import role_manager_on
 from tests.support.errors import StageError
-from tests.support.processes import free_port
+from tests.support.processes import free_port, freeze
 
 OWNER = "fleet"
 """The account that owns every new database; it is no superuser and may make no accounts."""
@@ -183,7 +183,7 @@ class DatabaseServer(abc.ABC):
         assert self._process is not None
         # A stopped process starts no other one while they are listed. One left alive may wait for ever for
         # a lock of one that died, and keep the next server from the memory that they share.
-        self._process.send_signal(signal.SIGSTOP)
+        freeze(self._process.pid)
         workers = children_of(self._process.pid)
         self._process.kill()
         for worker in workers:

@@ -8,6 +8,7 @@ import signal
 from collections.abc import Iterator
 
 from tests.support.databases.database_server import DatabaseServer, children_of
+from tests.support.processes import freeze
 
 
 def stop_tree(pid: int) -> list[int]:
@@ -16,7 +17,7 @@ def stop_tree(pid: int) -> list[int]:
     Each is stopped before its children are listed: it starts no others meanwhile. A child may have ended.
     """
     try:
-        os.kill(pid, signal.SIGSTOP)
+        freeze(pid)
         children = children_of(pid)
     except (ProcessLookupError, FileNotFoundError):
         return []

@@ -53,6 +53,7 @@ from robot_bridge.gateway.cluster.messages import (
 from robot_bridge.gateway.cluster.nats_bus import NatsBus
 from robot_bridge.gateway.storage.database import read_address
 from tests.support.patience import BUSY, until
+from tests.support.processes import freeze
 
 KEY = b"k" * 32
 CALL = StopCall("a", "stop-1", 1000.0, "Ada", "a child on the road")
@@ -345,7 +346,7 @@ async def test_a_bus_ends_while_the_server_hangs(postgresql_server, fleet_url):
     task = asyncio.create_task(bus.run(lambda *_: None))
     await until(lambda: bus.connected)
     pid = bus._stopping.info.backend_pid
-    os.kill(pid, signal.SIGSTOP)
+    freeze(pid)
     try:
         assert bus.publish(STOP, b"a stop")
         await asyncio.sleep(0.1)

@@ -17,7 +17,7 @@ from tests.support.databases.database_client import DatabaseClient
 from tests.support.databases.older_state import OlderState, abort_there
 from tests.support.errors import StageError
 from tests.support.patience import BUSY
-from tests.support.processes import free_port
+from tests.support.processes import free_port, freeze
 from tests.support.wire import RefusedError
 
 NUMBERS = itertools.count(1)
@@ -65,7 +65,7 @@ def stop_between_transactions(bridge):
         "and state like 'idle in transaction%' and now() - state_change > interval '0.2 seconds'"
     )
     for _ in range(20):
-        bridge.gateway.send_signal(signal.SIGSTOP)
+        freeze(bridge.gateway.pid)
         # As long as a transaction has to be open to be taken for one that was stopped.
         time.sleep(0.3)
         if bridge.sql(open_for_long) == [(0,)]:

@@ -10,6 +10,7 @@ import pytest
 
 from tests.support.bridge.bridge_programs import wait_until
 from tests.support.patience import BUSY
+from tests.support.processes import freeze
 
 SLOW = BUSY * 15_000
 AHEAD = "Date.now = (now => () => now() + 3.2e10)(Date.now)"
@@ -285,7 +286,7 @@ def test_a_robot_that_stood_and_is_not_heard_any_more_is_named(phone, desk):
     page = phone("operator")
     page.locator("#stop").tap()
     text_is(page, "#stop-state", r"3 of 3 robots have answered, 3 stand\.$")
-    desk.processes["r3"].send_signal(signal.SIGSTOP)
+    freeze(desk.processes["r3"].pid)
     try:
         text_is(page, "#stop-state", r"3 robots have answered, 2 stand\. Not heard now, may move: r3$")
     finally:
@@ -339,13 +340,13 @@ def test_the_stop_is_pressed_with_a_second_thumb_while_the_first_holds_the_map(p
 
 def test_a_stop_without_an_answer_says_so_and_is_sent_until_there_is_one(phone, desk, bridge):
     page = phone("operator")
-    bridge.gateway.send_signal(19)
+    freeze(bridge.gateway.pid)
     try:
         page.locator("#stop").tap()
         text_is(page, "#stop-state", "NOT CONFIRMED for .*own stop buttons")
         text_is(page, "#banners", "does not answer")
     finally:
-        bridge.gateway.send_signal(18)
+        bridge.gateway.send_signal(signal.SIGCONT)
     text_is(page, "#stop-state", "^STOP IN FORCE")
     stops = bridge.sql(
         "select count(*) from emergency_stops where \"by\" = 'Operator' and cleared_at is null"

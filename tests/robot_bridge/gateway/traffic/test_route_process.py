@@ -18,6 +18,7 @@ from robot_bridge.core.roads.network import build_network, centrelines
 from robot_bridge.core.roads.routes import Restrictions, Router
 from robot_bridge.gateway.traffic import route_process
 from robot_bridge.gateway.traffic.route_process import ProcessEngines
+from tests.support.processes import freeze
 
 pytest.importorskip("routingkit_cch", reason="the package has wheels for x86_64 alone")
 ROUTINGKIT, SCIPY = ContractionEngines.name, "SciPy"
@@ -222,7 +223,7 @@ def test_a_process_that_reads_nothing_is_killed(router, monkeypatch, caplog) -> 
     edges(router)
     wait_for(lambda: is_ready(router))
     child = engines_of(router)._child
-    os.kill(child.process.pid, signal.SIGSTOP)
+    freeze(child.process.pid)
     with pytest.raises(LookupError), child.lock:
         child.send(bytes(1 << 24))
     wait_for(lambda: "because it did not read a message" in caplog.text)

@@ -18,6 +18,7 @@ from tests.robot_bridge.links.vda5050.driving import (
     wait_under_way,
 )
 from tests.support.bridge.bridge_programs import wait_until
+from tests.support.processes import freeze
 
 
 def test_a_target_is_reached(desk, vehicle):
@@ -83,7 +84,7 @@ def test_a_vehicle_that_does_not_answer_to_an_abort_is_said(desk, yard):
     vehicle = begin(yard, desk, speed=SLOW)
     send(desk, vehicle, x=90.0, y=8.0)
     wait_under_way(desk, vehicle)
-    yard.running[vehicle].send_signal(signal.SIGSTOP)
+    freeze(yard.running[vehicle].pid)
     abort = send(desk, vehicle, "Abort")
     desk.wait_for_step(abort, "failed")
     assert "DOES NOT ANSWER cancelOrder: stop it at the vehicle" in reason(desk, abort)
