@@ -23,7 +23,7 @@ from .bus import (
     Receive,
     own_subject,
 )
-from .nats_servers import FLUSH_S, NatsServers, advice_on, check_server, ping, wait_until_processed
+from .nats_servers import ANSWER_S, NatsServers, advice_on, check_server, ping, wait_until_processed
 
 log = logging.getLogger(__name__)
 
@@ -101,7 +101,7 @@ class NatsConnection:
         finally:
             self.client = None
             with contextlib.suppress(Exception):
-                async with asyncio.timeout(FLUSH_S):
+                async with asyncio.timeout(ANSWER_S):
                     await client.close()
         raise OSError("the connection is lost")
 

@@ -14,7 +14,7 @@ from .bus import RIGHTS_PROBE
 from .messages import LARGEST
 
 OLDEST_NATS = (2, 10, 26)
-CONNECT_S, FLUSH_S = 2.0, 2.0
+CONNECT_S, ANSWER_S = 2.0, 2.0
 NO_TLS = "the server does not ask for TLS, and was sent nothing"
 MOST_FAULTS = 3
 """refusals of the server that are named."""
@@ -143,7 +143,7 @@ class NatsServers:
             check_server(client)
             await _probe_rights(client, [f"{prefix}.{subject}" for subject in subjects], hear)
             if not faults:
-                async with asyncio.timeout(FLUSH_S):
+                async with asyncio.timeout(ANSWER_S):
                     await returned.wait()
         except BridgeError as error:
             raise BridgeError(f"{where}: {error}") from None
@@ -182,7 +182,7 @@ async def wait_until_processed(client: Any) -> None:
     :raises TimeoutError: when the server does not answer.
     """
     for _ in range(2):
-        await ping(client, FLUSH_S)
+        await ping(client, ANSWER_S)
 
 
 async def _probe_rights(client: Any, subjects: Iterable[str], hear: Any) -> None:
