@@ -1,23 +1,15 @@
-"""Client of the gateway's ``/link``: it reconnects, and has nothing done twice."""
+"""Client of the gateway's ``/link``: the robots that it speaks for, and nothing done twice."""
 
 from __future__ import annotations
 
 import asyncio
-import itertools
 import logging
-from collections import deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any
-from urllib.parse import quote
 
 import msgspec
-from websockets.asyncio.client import ClientConnection, connect
-from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidStatus, InvalidURI
-from websockets.frames import CloseCode
 
-from ...core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
-from ...core.errors import AccessError, BridgeError
-from ...core.gateway_addresses import ClientCredentials, GatewayAddresses
+from ...core.clock import LONGEST_PAUSE_S
 from ...core.logs import log_and_continue
 from ...core.messages.administration import SiteReport, site_report
 from ...core.messages.base import MessageError, check_robot_name, to_json
@@ -36,28 +28,26 @@ from ...core.sites.frame import SiteFrame
 from ...protocol import jsonrpc
 from ...protocol.codec import decode_answer, params_of
 from .adapter import Adapter, summary
-from .errors import CommandRefusedError, FrameChangedError, LinkError
+from .errors import CommandRefusedError, FrameChangedError
 from .frames import LinkFrame
+from .link_websocket import LinkWebSocket
 from .linked_robots import Commanding, Kept, LinkedRobot, frame_of, gps_call
 from .memory import LinkMemory
 from .settings import LinkSettings
 
 log = logging.getLogger(__name__)
 
-TOGETHER = 0.05
-"""seconds within which positions are told in one frame."""
 SAY_AGAIN = 1.0
 """seconds after which is said once more what the gateway could not store."""
 MEMORY_EVERY = 2.0
 """seconds after which it is tried once more to write what a full disk did not take."""
-LARGEST_FRAME = 64 << 20
 
 
 class LinkClient:
-    """A connection to the gateway that comes back: the :class:`.adapter.Link` of an adapter.
+    """The robots that an adapter speaks for at the gateway: its :class:`.adapter.Link`.
 
     Of what lay on a connection while this program stood still for ``longest_pause_s`` seconds only an Abort
-    is done: nobody may want the rest any more. What is still wanted comes again on the next one.
+    is done: see :class:`.link_websocket.LinkWebSocket`.
     """
 
     def __init__(
@@ -71,24 +61,11 @@ class LinkClient:
         self._settings = settings
         self._adapter = adapter
         self._memory = memory
-        folder, gateway = settings.folder, settings.gateway
-        self._credentials = ClientCredentials(
-            None if gateway.token_file is None else folder / gateway.token_file,
-            None if gateway.ca is None else folder / gateway.ca,
-        )
-        self._addresses = GatewayAddresses(gateway.url, has_token=gateway.token_file is not None)
+        self._connection = LinkWebSocket(settings, longest_pause_s)
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = self._new_commanding()
         self._calming: dict[str, asyncio.Task[None]] = {}
         """What stops robots that are adrift."""
-        self._ids = itertools.count(1)
-        self._pending_calls: dict[int, Callable[[jsonrpc.Reply], None]] = {}
-        self._urgent: deque[str] = deque()
-        self._outgoing: deque[str] = deque()
-        self._wake = asyncio.Event()
-        self._waking: asyncio.TimerHandle | None = None
-        self._longest_pause_s = longest_pause_s
-        self._standstill = StandstillWatch(longest_pause_s)
         self._is_welcome = False
         self._status = LinkStatus(ok=True)
         self._reported_fault: str | None = None
@@ -180,12 +157,12 @@ class LinkClient:
         """Tell where ``robot`` is."""
         known = self._robots[robot]
         known.place(position)
-        self._wake_soon()
+        self._connection.write_soon()
 
     def alive(self, robot: str) -> None:
         """Tell that ``robot`` is there."""
         self._robots[robot].is_alive = True
-        self._wake_soon()
+        self._connection.write_soon()
 
     def stopped(self, robot: str) -> None:
         """Tell that ``robot`` stands and has nothing to do."""
@@ -237,87 +214,24 @@ class LinkClient:
         """Carry messages until cancelled; raises LinkError for what a person has to put right."""
         watching = asyncio.create_task(self._watch_memory())
         try:
-            await self._connect_for_ever()
+            await self._connection.run(self)
         finally:
             watching.cancel()
 
-    async def _connect_for_ever(self) -> None:
-        while True:
-            url, ends = f"{self._addresses.current}?link={quote(self.name)}", False
-            try:
-                options = {**self._credentials.options(url), **self._addresses.options()}
-                async with connect(url, max_size=LARGEST_FRAME, **options) as connection:
-                    await self._carry(connection)
-                reason = "the gateway closed the connection"
-            except (InvalidURI, AccessError) as error:
-                if self._addresses.is_given:
-                    raise self._to_put_right(error) from None
-                reason = str(error)
-            except ConnectionClosed as error:
-                reason = str(error)
-                ends = error.rcvd is not None and error.rcvd.code == CloseCode.SERVICE_RESTART
-            except (OSError, InvalidHandshake) as error:
-                reason = _reason(error)
-            self._lose()
-            wait = self._addresses.next_wait(ends=ends)
-            log.warning("%s: %s; trying again in %.1f s at %s", url, reason, wait, self._addresses.current)
-            await asyncio.sleep(wait)
-
-    def _to_put_right(self, error: InvalidURI | AccessError) -> BridgeError:
-        if isinstance(error, BridgeError):
-            return error
-        return LinkError(f"{self._settings.file}: gateway.url: {error}")
-
-    async def _carry(self, connection: ClientConnection) -> None:
-        self._urgent.clear()
-        self._outgoing.clear()
-        self._pending_calls.clear()
-        self._standstill = StandstillWatch(self._longest_pause_s)
-        tasks = [
-            asyncio.create_task(work) for work in (self._write(connection), self._end_when_old(connection))
-        ]
-        try:
-            async for frame in connection:
-                self._receive(frame)
-        finally:
-            for task in tasks:
-                task.cancel()
-            await asyncio.gather(*tasks, return_exceptions=True)
-
-    async def _end_when_old(self, connection: ClientConnection) -> None:
-        """End a connection on which what was received is too old to be done."""
-        await self._standstill.wait()
-        seconds = self._standstill.seconds
-        log.warning(
-            "link %s stood still for %.0f s: what came meanwhile is asked for again", self.name, seconds
-        )
-        for name in self._robots:
-            self._commanding.drop(name, f"the link stood still for {seconds:.0f} s before it was begun")
-        await asyncio.sleep(ABORTS_WITHIN_S)
-        # Closed in good order it would seem that its robots were switched off.
-        connection.transport.abort()
-
-    def _lose(self) -> None:
+    def lose(self) -> None:
+        """Go by a connection that is lost: no robot is let in until the next one."""
         self._is_welcome = False
         self._refused.clear()
         for robot in self._robots.values():
             robot.lose()
 
-    async def _write(self, connection: ClientConnection) -> None:
-        try:
-            while True:
-                await self._wake.wait()
-                self._wake.clear()
-                while self._urgent or self._outgoing:
-                    await connection.send((self._urgent or self._outgoing).popleft())
-                # Made when they can be sent: of what waited for a slow line only the newest is told.
-                for frame in self._news():
-                    await connection.send(frame)
-        except ConnectionClosed:
-            return
+    def pass_over(self, seconds: float) -> None:
+        """Drop what was not begun: this program stood still for so many ``seconds``."""
+        for name in self._robots:
+            self._commanding.drop(name, f"the link stood still for {seconds:.0f} s before it was begun")
 
-    def _news(self) -> list[str | bytes]:
-        """Return what is new of the robots' places."""
+    def news(self) -> list[str | bytes]:
+        """Return the frames of what is new of the robots' places."""
         if not self._is_welcome:
             return []
         frames: list[str | bytes] = []
@@ -336,59 +250,19 @@ class LinkClient:
                 frames.append(jsonrpc.call(Alive.__name__, {"robot": robot.name}))
         return frames
 
-    def _wake_soon(self) -> None:
-        if self._waking is None:
-            self._waking = asyncio.get_running_loop().call_later(TOGETHER, self._woken)
-
-    def _woken(self) -> None:
-        self._waking = None
-        self._wake.set()
-
-    def _post(self, frame: str, *, urgent: bool = False) -> None:
-        """Send a frame; those that tell what became of an Abort before all others."""
-        (self._urgent if urgent else self._outgoing).append(frame)
-        self._wake.set()
-
-    def _call(self, method: str, params: Any, answered: Callable[[jsonrpc.Reply], None]) -> int:
-        id = next(self._ids)
-        self._pending_calls[id] = answered
-        self._post(jsonrpc.call(method, params, id))
-        return id
-
     # --- what comes in --------------------------------------------------------------------------------------
 
-    def _receive(self, frame: str | bytes) -> None:
-        # Once it is let in, what goes wrong with a message ends no connection by which robots are stopped.
-        known = (LinkError, MessageError) if self._is_welcome else Exception
-        try:
-            message = jsonrpc.decode(frame)
-            with log_and_continue(log, "what the gateway said", except_for=known):
-                if isinstance(message, jsonrpc.Call):
-                    self._take_call(message)
-                else:
-                    self._take_reply(message)
-        except (jsonrpc.FrameError, MessageError) as error:
-            log.error("the gateway said what cannot be understood: %s", error)
-
-    def _take_reply(self, reply: jsonrpc.Reply) -> None:
-        answered = self._pending_calls.pop(reply.id, None) if isinstance(reply.id, int) else None
-        if answered is not None:
-            answered(reply)
-        elif reply.error is not None:
-            log.warning("the gateway refuses: %s", reply.error)
-
-    def _take_call(self, call: jsonrpc.Call) -> None:
-        if self._standstill.check() and call.method != Abort.__name__:
-            return
+    def handle(self, call: jsonrpc.Call) -> None:
+        """Deal with a call of the gateway; raises LinkError and MessageError."""
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
         # In Start, and in a notification when they have changed.
-        self._addresses.learn(params.get("gateways"))
+        self._connection.addresses.learn(params.get("gateways"))
         if call.method == Start.__name__:
             hello = to_json(LinkHello(LINK_PROTOCOL, self._adapter.kind))
-            self._call(LinkHello.method, hello, self._welcomed)
+            self._connection.call(LinkHello.method, hello, self._welcomed)
         elif call.method == Playback.method:
-            self._post(self._played(call.id, params))
+            self._connection.post(self._played(call.id, params))
         elif call.method == Released.__name__:
             self._released(str(robot), str(params.get("reason")))
         elif call.method == Abort.__name__ and robot is None:
@@ -401,7 +275,7 @@ class LinkClient:
             self._take_answer(robot, call, params)
         elif call.id is not None:
             text = f"this link does not speak for robot {robot!r}"
-            self._post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
+            self._connection.post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
 
     def _played(self, id: int | str | None, params: dict[str, Any]) -> str:
         """Return the reply to a gateway that has a recording played otherwise."""
@@ -417,7 +291,8 @@ class LinkClient:
             # Of a newer gateway, which would send it for ever if nobody refused it.
             log.error("robot %s: the gateway said what this link does not know: %s", robot, error)
             if call.id is not None:
-                self._post(jsonrpc.error(call.id, jsonrpc.REFUSED, f"this link does not know it: {error}"))
+                text = f"this link does not know it: {error}"
+                self._connection.post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
             return
         if isinstance(answer, Abort):
             self._stop(robot, call.id, emergency=answer.emergency)
@@ -426,7 +301,7 @@ class LinkClient:
 
     def _stop(self, robot: str, call: int | str | None, *, emergency: bool) -> None:
         if self._robots[robot].is_only_seen:
-            self._post(jsonrpc.result(call, to_json(OpAck())), urgent=True)
+            self._connection.post(jsonrpc.result(call, to_json(OpAck())), urgent=True)
         else:
             self._commanding.stop(robot, call, emergency=emergency)
 
@@ -439,7 +314,7 @@ class LinkClient:
         self.largest_image_bytes = int(reply.result.get("largest_image_bytes", 0))
         self._site = site
         self._is_welcome = True
-        self._addresses.answered()
+        self._connection.addresses.answered()
         self._is_known.set()
         self._say_status()
         for robot in list(self._robots.values()):
@@ -471,11 +346,11 @@ class LinkClient:
                     one.answer.set_exception(CommandRefusedError("the gateway has another database by now"))
 
     def _new_commanding(self) -> Commanding:
-        return Commanding(self._adapter, self._memory, self._settings.answer_within_s, self._post)
+        return Commanding(self._adapter, self._memory, self._settings.answer_within_s, self._connection.post)
 
     def _ask_areas(self, answer: asyncio.Future[SiteAreas]) -> None:
         params = to_json(GetAreas(self._areas[answer]))
-        self._call(GetAreas.method, params, lambda reply: _areas_came(answer, reply))
+        self._connection.call(GetAreas.method, params, lambda reply: _areas_came(answer, reply))
 
     def _released(self, robot: str, reason: str) -> None:
         known = self._robots.get(robot)
@@ -497,7 +372,7 @@ class LinkClient:
             text = f"not let in: {summary([f'{robot}: {why}' for robot, why in self._refused.items()])}"
             reached = True if status.ok else status.reached
             status = LinkStatus(False, "; ".join(filter(None, (status.text, text))), status.counts, reached)
-        self._post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
+        self._connection.post(jsonrpc.call(LinkStatus.method, to_json(status) | {"counts": status.counts}))
 
     async def _watch_memory(self) -> None:
         while True:
@@ -514,7 +389,7 @@ class LinkClient:
                 self._calming[robot.name] = asyncio.create_task(self._calm(robot))
             return
         params = {"robot": robot.name, **to_json(robot.ready(self._memory.magic(robot.name)))}
-        self._call(Ready.__name__, params, lambda reply: self._readied(robot, reply))
+        self._connection.call(Ready.__name__, params, lambda reply: self._readied(robot, reply))
 
     async def _calm(self, robot: LinkedRobot) -> None:
         """Stop a robot that is adrift before anything can be asked of it; what it was to do has failed."""
@@ -533,11 +408,11 @@ class LinkClient:
     def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:
         ack = reply.result if isinstance(reply.result, dict) else {}
         if reply.error is None and ack.get("ok", True):
-            self._addresses.learn(ack.get("gateways"))
+            self._connection.addresses.learn(ack.get("gateways"))
             robot.admit()
             self._note_refusal(robot.name, None)
             self._adapter.admitted(robot.name)
-            self._wake_soon()
+            self._connection.write_soon()
             for kept in robot.untold():
                 self._say(robot, kept)
             return
@@ -577,9 +452,9 @@ class LinkClient:
         # What was told of its place before goes before it.
         if robot.fresh and isinstance(robot.position, SendPos):
             robot.fresh = False
-            self._post(jsonrpc.call("SendPos", {"robot": robot.name, **to_json(robot.position)}))
+            self._connection.post(jsonrpc.call("SendPos", {"robot": robot.name, **to_json(robot.position)}))
         method, params = type(kept.request).__name__, {"robot": robot.name, **params_of(kept.request)}
-        kept.call = self._call(method, params, lambda reply: self._answered(robot, kept, reply))
+        kept.call = self._connection.call(method, params, lambda reply: self._answered(robot, kept, reply))
 
     def _answered(self, robot: LinkedRobot, kept: Kept, reply: jsonrpc.Reply) -> None:
         if reply.code in (jsonrpc.INTERNAL_ERROR, jsonrpc.TOO_MANY):
@@ -597,7 +472,7 @@ class LinkClient:
             return
         ack = decode_answer(OpAck.__name__, reply.result)
         ack = ack if isinstance(ack, OpAck) else OpAck()
-        self._addresses.learn(ack.gateways)
+        self._connection.addresses.learn(ack.gateways)
         kept.answer.set_result(ack)
 
 
@@ -611,11 +486,3 @@ def _areas_came(answer: asyncio.Future[SiteAreas], reply: jsonrpc.Reply) -> None
         answer.set_result(msgspec.convert(reply.result, SiteAreas))
     except msgspec.ValidationError as error:
         answer.set_exception(CommandRefusedError(f"the gateway's areas cannot be read: {error}"))
-
-
-def _reason(error: OSError | InvalidHandshake) -> str:
-    """Return why there is no connection, in the gateway's own words where it gave some."""
-    if isinstance(error, InvalidStatus):
-        text = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
-        return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"
-    return str(error)

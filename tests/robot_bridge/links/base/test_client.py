@@ -12,9 +12,9 @@ from websockets.frames import CloseCode
 
 from robot_bridge.core.messages.links import LINK_PROTOCOL
 from robot_bridge.core.messages.robots import SetPosEnd
-from robot_bridge.links.base import client
-from robot_bridge.links.base.client import LinkClient
+from robot_bridge.links.base import link_websocket
 from robot_bridge.links.base.errors import CommandRefusedError
+from robot_bridge.links.base.link_websocket import LinkWebSocket
 from robot_bridge.links.base.linked_robots import OVERTAKEN, Commanding
 from robot_bridge.links.base.memory import CompletedCall, LinkMemory
 from robot_bridge.protocol import jsonrpc
@@ -138,7 +138,7 @@ async def test_a_message_that_the_link_does_not_know_is_refused_and_the_next_is_
 
 
 async def test_a_frame_beyond_the_limit_ends_the_connection_and_the_link_comes_back(tmp_path, monkeypatch):
-    monkeypatch.setattr(client, "LARGEST_FRAME", 20_000)
+    monkeypatch.setattr(link_websocket, "LARGEST_FRAME", 20_000)
     gateway, came = NewerGateway([" " * 20_001]), []
 
     async def speak(connection):
@@ -213,10 +213,10 @@ async def test_what_came_of_a_stop_is_told_before_all_else_that_waits(tmp_path):
 
     link = LinkOnTheLine(SimpleNamespace(address="ws://127.0.0.1:1"), tmp_path)
     await asyncio.to_thread(link.kill)
-    client = LinkClient(link._settings, link.adapter, LinkMemory(link._settings.memory_file))
-    client._post("a position")
-    client._post("the stop is done", urgent=True)
-    writing = asyncio.create_task(client._write(SimpleNamespace(send=send)))
+    connection = LinkWebSocket(link._settings)
+    connection.post("a position")
+    connection.post("the stop is done", urgent=True)
+    writing = asyncio.create_task(connection.write(SimpleNamespace(send=send), link.client))
     try:
         await asyncio.wait_for(two.wait(), 20)
     finally:
