@@ -132,12 +132,15 @@ class RobotSession:
         """Tell whether the robot is there, as far as its channel knows."""
         return await self._channel.answers()
 
-    def announce_gateways(self) -> None:
-        """Send the robot where the gateways of the fleet are; before its Ready, Start and OpAck say so."""
+    async def send_gateways(self) -> None:
+        """Send the robot where the gateways of the fleet are; before its Ready, Start and OpAck say so.
+
+        :raises ConnectionClosed: when it is gone.
+        """
         gateways = self._fleet.gateways_at(self._channel.endpoint)
         if gateways is not None and self._admitted and not self._has_ended:
             self._told_gateways = gateways.gateways
-            self._begin(self._channel.send(self._channel.call(Gateways.method, to_json(gateways))))
+            await self._channel.send(self._channel.call(Gateways.method, to_json(gateways)))
 
     # --- what comes in ------------------------------------------------------------------------------------
 

@@ -142,11 +142,11 @@ class LinkConnection:
         if not self.send_at_once(frame):
             self._begin(self.send(frame))
 
-    def announce_gateways(self) -> None:
-        """Send where the gateways of the fleet are to a link that has said hello."""
+    async def send_gateways(self) -> None:
+        """Send where the gateways of the fleet are to a link that has said hello; raises ConnectionClosed."""
         gateways = self._fleet.gateways_at(PATHS[TokenKind.LINK])
         if gateways is not None and self.kind is not None:
-            self._begin(self.send(jsonrpc.call(Gateways.method, to_json(gateways))))
+            await self.send(jsonrpc.call(Gateways.method, to_json(gateways)))
 
     def update(self) -> None:
         """Let go the robots that it may not speak for any more."""
@@ -387,7 +387,7 @@ class WebSocketInterface:
         fleet.orders.reach(self.abort)
         fleet.events.subscribe(RobotLeft, self._let_go)
         fleet.events.subscribe(GatewaysChanged, self._announce_gateways)
-        self._announcing: asyncio.Task[None] | None = None
+        self._tasks: set[asyncio.Task[None]] = set()
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
@@ -455,19 +455,21 @@ class WebSocketInterface:
             session.replace(reason, again=True)
 
     def _announce_gateways(self, _: GatewaysChanged) -> None:
-        """Begin to send links and robots where the gateways are, in place of what was being sent of that."""
-        if self._announcing is not None:
-            self._announcing.cancel()
-        self._announcing = asyncio.create_task(self._send_gateways())
+        self._begin(self._send_gateways())
 
     async def _send_gateways(self) -> None:
+        """Send links and robots where the gateways are; none waits for one that reads nothing."""
         connections: list[LinkConnection | RobotSession] = [*self._links, *self._sessions]
         for number, connection in enumerate(connections, 1):
-            with log_and_continue(log, "sending where the gateways of the fleet are"):
-                connection.announce_gateways()
+            self._begin(while_connected(connection.send_gateways()))
             if number % AT_ONCE == 0:
                 # Thousands of robots would hold up what is sent meanwhile.
                 await asyncio.sleep(0)
+
+    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
 
     def _free_name(self) -> str:
         taken = {*self._fleet.robots.names(), *self._names}
