@@ -47,8 +47,9 @@ log = logging.getLogger(__name__)
 STORED_WITHIN = 1.0
 """seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
 NOTED_WITHIN = 0.02
-"""seconds for which this gateway stands still until a stop is noted, before robots hear of it. A disk that
-hangs must not keep them going; a turn of the loop may take longer where thousands of robots have theirs."""
+"""seconds for which this gateway stands still until a stop is noted, before operators and robots hear of it.
+A disk that hangs must keep neither waiting; a turn of the loop may take longer where thousands of robots have
+theirs."""
 MOST_FIRST = 20
 """operators who are notified of a stop before the robots: that takes a millisecond."""
 ANSWERS_TOGETHER = 0.05
@@ -386,19 +387,20 @@ class EmergencyStops:
         noting = None
         # Whatever goes wrong in one of these, what comes after it is done.
         with log_and_continue(log, "noting an emergency stop"):
-            # The disk works while others are told.
+            # The disk works while other gateways are told.
             noting = self._note()
         for relay in self._relays if is_own else ():
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
-        operators_first = False
-        with log_and_continue(log, "telling operators of an emergency stop"):
-            if operators_first := len(self._listeners) <= MOST_FIRST:
-                self.announce()
         with log_and_continue(log, "waiting for the note of an emergency stop"):
             # Who made one elsewhere has noted it already, and stores it.
             if noting is not None and is_own:
                 futures.wait([noting], NOTED_WITHIN)
+        operators_first = False
+        with log_and_continue(log, "telling operators of an emergency stop"):
+            # Behind the note: nobody sees a stop in force that dies with this gateway.
+            if operators_first := len(self._listeners) <= MOST_FIRST:
+                self.announce()
         for link in self._links:
             with log_and_continue(log, "sending an emergency stop over open connections"):
                 link(f"{NAME_PREFIX}{stop.id}")
