@@ -33,17 +33,28 @@ def watch(bridge):
 def test_a_gateway_killed_while_robots_drive_goes_on_where_it_stopped(bridge):
     bridge.start_robot("ws", (20.0, 20.0, 0.0))
     bridge.start_robot("sql", (40.0, 40.0, 0.0), sql=True)
-    idle = bridge.robot("idle")
+    idle, unheard = bridge.robot("idle"), bridge.robot("unheard")
     idle.plug_in(5)
+    unheard.plug_in(6)
     desk = watch(bridge)
     desk.wait_for_robots("ws", "sql")
-    for robot, x, y in (("ws", 34.0, 20.0), ("sql", 54.0, 40.0), ("idle", 10.0, 10.0)):
+    for robot, x, y in (
+        ("ws", 34.0, 20.0),
+        ("sql", 54.0, 40.0),
+        ("idle", 10.0, 10.0),
+        ("unheard", 60.0, 10.0),
+    ):
         desk.send(f"target-{robot}", robot, "SetPosEnd", x=x, y=y)
     for robot in ("ws", "sql"):
         desk.wait_for_step(f"target-{robot}", "acknowledged")
     first = idle.wait_for("SetPosEnd")
     desk.wait_for_step("target-idle", "delivered")
+    unheard.say(unheard.wait_for("SetPosEnd")["id"])
+    desk.wait_for_step("target-unheard", "acknowledged")
+    unheard.hang_up()
     desk.until(lambda: desk.robots["ws"]["v"] > 1 and desk.robots["sql"]["v"] > 1)
+    # Nobody asks for it again.
+    assert desk.ask("abort", {"command": "abort-unheard", "robot": "unheard"})["state"] == "queued"
 
     bridge.kill_gateway()
     bridge.start_gateway()
@@ -61,6 +72,10 @@ def test_a_gateway_killed_while_robots_drive_goes_on_where_it_stopped(bridge):
     assert again == first  # the same message under the same id: a robot that did it does nothing
     idle.say(again["id"])
     desk.wait_for_step("target-idle", "acknowledged")
+    unheard = bridge.robot("unheard")
+    unheard.ask("Ready", {"magic": 6})
+    unheard.say(unheard.wait_for("Abort")["id"])
+    assert desk.wait_for_step("target-unheard", "aborted")["steps"][-1]["by"] == "Ada"
     assert bridge.sql("select robot, op from sa where op <> 'SetMap' and op <> 'OpAck'") == []
 
 

@@ -17,10 +17,12 @@ import pytest
 
 from robot_bridge.core.clock import ManualClock
 from robot_bridge.core.errors import OutdatedError, RefusedError, StoreError
-from robot_bridge.core.messages.commands import CommandState, Send
+from robot_bridge.core.messages.commands import AbortTask, CommandState, Send
 from robot_bridge.core.messages.queues import GetQueue, QueueTask, ResumeQueue, SetQueue
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.api.robot_sql import SqlInterface
 from robot_bridge.gateway.commands.active_command import may_become
+from robot_bridge.gateway.commands.requests import STORED_LATER
 from robot_bridge.gateway.fleet.emergency_persistence import StopJournal
 from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.site.site_maps import SiteMaps
@@ -254,6 +256,34 @@ class Play:
 
         await self.ask_once(resume)
         self.resumed = self._moment()
+
+    async def stop(self, id):
+        """Stop every robot; whoever is told that a stop is in force asks for it no more."""
+        report = await self.fleet.emergency.stop(EmergencyStop(id), "Ada")
+        assert report.in_force
+        if self.database.dead:
+            await self._revive()
+            report = self.fleet.emergency.report()
+            assert (report.in_force, report.stop) == (True, id), "a stop is forgotten that was in force"
+            await self._look()
+
+    async def abort(self, robot):
+        """Tell a robot to abort what it does; whoever is told that the gateway keeps that, or finds it in the
+        log afterwards, asks for it no more.
+        """
+        id = f"abort-of-{robot}"
+        while not self.sql("select id from commands where id = ?", id):
+            try:
+                await self.fleet.orders.abort(AbortTask(id, robot), "Ada")
+                if not self.database.dead:
+                    return
+            except Killed:
+                pass
+            except StoreError as error:
+                assert STORED_LATER in str(error)
+                return
+            await self._revive()
+            await self._look()
 
     async def resume_all(self):
         """Let all queues go on; each was paused, unless nothing was left in it by then."""

@@ -6,7 +6,6 @@ drove on meanwhile.
 
 from __future__ import annotations
 
-from robot_bridge.core.messages.commands import AbortTask
 from robot_bridge.core.messages.queues import (
     GetQueue,
     MakeCurrent,
@@ -21,7 +20,7 @@ from robot_bridge.core.messages.queues import (
 from robot_bridge.core.messages.records import GetObservations, ReviewObservation
 from robot_bridge.core.messages.roads import CloseRoad, ResolveConflict
 from robot_bridge.core.messages.robots import SetObject
-from robot_bridge.core.messages.safety import ClearEmergencyStop, EmergencyStop
+from robot_bridge.core.messages.safety import ClearEmergencyStop
 from tests.support.bridge.crash_play import START_ANEW
 from tests.support.bridge.living_robots import SqlRobot, WebSocketRobot
 from tests.support.bridge.queue_line import PLACES, task
@@ -115,9 +114,7 @@ async def aborted(play):
     await play.wait(2)
     play.about_to_stop()
     for name in play.robots:
-        await play.ask(
-            lambda fleet, name=name: fleet.orders.abort(AbortTask(f"abort-of-{name}", name), "Ada")
-        )
+        await play.abort(name)
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.stand_for(6)
     await play.resume_until_done()
@@ -134,9 +131,7 @@ async def aborted_too_late(play):
         robot.says_late, robot.away_until = True, play.now + OUT_OF_REACH
     play.about_to_stop()
     for name in play.robots:
-        await play.ask(
-            lambda fleet, name=name: fleet.orders.abort(AbortTask(f"abort-of-{name}", name), "Ada")
-        )
+        await play.abort(name)
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.wait(3)
     await play.resume_all()
@@ -228,7 +223,7 @@ async def stopped(play):
     await play.set_queue(OTHER, robot="r2")
     await play.wait(2)
     play.about_to_stop()
-    await play.ask(lambda fleet: fleet.emergency.stop(EmergencyStop("stop-0001"), "Ada"))
+    await play.stop("stop-0001")
     await play.until(lambda: all(robot.record.stops for robot in play.robots.values()))
     await play.stand_for(6)
     await play.until(lambda: play.fleet.emergency.report().standing == 2)

@@ -100,7 +100,9 @@ def moments(request):
         coming, going = stopped[:COME_TO_STAND], stopped[COME_TO_STAND:][-STILL_ALL:]
         between = stopped[COME_TO_STAND:][:-STILL_ALL][first % standing :: standing]
         some = sorted(coming + between + going + driven[first % every :: every])
-        return [(at, ways[number % len(ways)]) for number, at in enumerate(some, first)]
+        # At the first of these what stops them is not stored yet: an emergency stop is in the journal alone.
+        way = {at: number for number, at in enumerate(some, first)} | dict.fromkeys(stopped[:1], 0)
+        return [(at, ways[way[at] % len(ways)]) for at in some]
 
     return moments
 
