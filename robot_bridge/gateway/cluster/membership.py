@@ -187,9 +187,11 @@ class Membership:
         """until when, by the steady clock, those count as just lost that were missing as this gateway could
         renew its lease again."""
         self._runs = {self.me.run}
-        """the runs of this fleet's gateways, as far as they were read."""
+        """the runs of this fleet's gateways that lived when they were read."""
         self._strange = dict[str, float]()
         """when runs were heard first that were not read, by the steady clock."""
+        self._strangers = set[str]()
+        """those of them that serve another database: they do so still while this one is away."""
         self._other_versions = set[tuple[str, str]]()
         """the gateways of another version, and which, as the log was told."""
 
@@ -220,6 +222,13 @@ class Membership:
         lost = [member for member in self.members if not member.alive and member.gw != self.name]
         return [one.gw for one in lost if one.left > -CLAIMED_S or now < until.get(one.gw, -math.inf)]
 
+    def has_read(self, run: str) -> bool:
+        """Tell whether a gateway was read in the database of this fleet.
+
+        One that came a moment ago was not, nor was one that serves a copy of that database.
+        """
+        return run in self._runs
+
     def is_stranger(self, run: str) -> bool:
         """Tell whether a gateway, heard by the key of this fleet, is none of it: its database is a copy.
 
@@ -229,9 +238,12 @@ class Membership:
             return False
         if len(self._strange) >= MOST_STRANGE:
             self._strange.clear()
+            self._strangers.clear()
         now = self._clock.steady()
         # What counts now was read since.
-        return self.trust.holds and now - self._strange.setdefault(run, now) >= LEASE_S
+        if now - self._strange.setdefault(run, now) >= LEASE_S and self.trust.holds:
+            self._strangers.add(run)
+        return run in self._strangers
 
     def database_time(self) -> float:
         """Return the time by the database's clock, which all gateways go by."""
@@ -296,7 +308,8 @@ class Membership:
         self.trust.renewed(asked_at)
         before = set(self.others())
         self.members = found.members
-        self._runs.update(member.run for member in found.members)
+        # In a copy are the rows of the first database's gateways, too, whose leases have run out there.
+        self._runs.update(member.run for member in found.members if member.alive)
         self._compare_clocks(found)
         self._note_missed(before.difference(self.others()))
         self._name_changes(before, set(self.others()))

@@ -452,21 +452,46 @@ class Exchange:
         except BusMessageError as error:
             self._warn(subject, f"bus, subject {subject}: {error}")
             return
-        if self._is_from_copy(message):
-            self._warn(subject, f"bus, subject {subject}: {COPY.format(message.gw)}")
-            if not isinstance(message, (StopCall, AbortCall)):
-                return
-        elif message.gw == self.gateway:
-            return
-        else:
-            self._heard[message.gw] = time.monotonic()
-        if isinstance(message, StopCall) and subject != STOP:
+        if not self._counts(subject, message):
             return
         if isinstance(message, (StopCall, StopSeen)) and message.number:
             if self._is_copy(content[:SIGNATURE]):
                 return
             message = msgspec.structs.replace(message, number=0)
         self._events.publish(message)
+
+    def _counts(self, subject: str, message: BusMessage) -> bool:
+        """Tell whether a message is taken in; note which gateway of the fleet was heard by it."""
+        if self._is_own(message):
+            return False
+        is_from_copy = self._is_from_copy(message)
+        if is_from_copy:
+            self._warn(subject, f"bus, subject {subject}: {COPY.format(message.gw)}")
+        if isinstance(message, StopCall):
+            is_due = subject == STOP
+        elif isinstance(message, AbortCall):
+            is_due = True
+        else:
+            # Another process of this one's name is none of the others.
+            is_due = message.gw != self.gateway and not is_from_copy
+        is_read = message.gw != self.gateway and self._is_read(message)
+        if is_read:
+            self._heard[message.gw] = time.monotonic()
+        # Robots that an answer tells of are this fleet's only if its gateway is known to be.
+        return is_due and (is_read or not isinstance(message, StopSeen))
+
+    def _is_own(self, message: BusMessage) -> bool:
+        """Tell whether this gateway sent a message.
+
+        By its run: a gateway on a copy of the database, or one that stood still, may have the same name.
+        """
+        known = self._membership
+        return message.gw == self.gateway and (known is None or message.sender_run == known.me.run)
+
+    def _is_read(self, message: BusMessage) -> bool:
+        """Tell whether a message comes from a gateway that was read in the database of this fleet."""
+        known = self._membership
+        return known is None or message.sender_run == "" or known.has_read(message.sender_run)
 
     def _is_from_copy(self, message: BusMessage) -> bool:
         """Tell whether a message is signed by the key of this fleet and comes from none of its gateways."""

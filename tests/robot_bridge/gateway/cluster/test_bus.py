@@ -241,6 +241,42 @@ class Members:
     def is_stranger(self, run):
         return run == "of a copy"
 
+    def has_read(self, run):
+        return run == "of another"
+
+
+KINDS = (StopCall, StopSeen, Beat, AbortCall, PositionBatch)
+
+
+@pytest.mark.parametrize(
+    ("name", "run", "counts", "heard"),
+    [
+        ("a", "of another", KINDS, ["a"]),
+        # Whether its robots are this fleet's is not known before it was read, or found to serve a copy.
+        ("a", "not read", (StopCall, Beat, AbortCall, PositionBatch), []),
+        # Of this one's own name: a copy's, or a process that stood still while this one came in its place.
+        ("b", "not read", (StopCall, AbortCall), []),
+        ("b", "of another", (StopCall, AbortCall), []),
+        ("b", "own", (), []),
+    ],
+)
+def test_who_sent_a_message_is_known_by_the_run_and_stops_count_whoever_it_was(name, run, counts, heard):
+    sender, exchange, taken = Recorder(), Exchange("b", KEY, [], Members("own")), []
+    for kind in KINDS:
+        exchange.subscribe(kind, lambda message: taken.append(type(message)))
+    there = Exchange(name, KEY, [sender], Members(run))
+    for message in (
+        CALL,
+        StopSeen(name, "stop-1", 5, 3, 2),
+        Beat(name),
+        AbortCall(name, "r1", "1"),
+        positions(),
+    ):
+        there.send(STOP, msgspec.structs.replace(message, gw=name))
+    for subject, content in sender.sent:
+        exchange.receive(subject, content)
+    assert (tuple(taken), exchange.heard()) == (tuple(kind for kind in KINDS if kind in counts), heard)
+
 
 @pytest.mark.parametrize("name", ["a", "b"])
 def test_of_a_copy_of_the_database_stops_alone_count_and_the_log_is_not_flooded(name, caplog):

@@ -160,7 +160,17 @@ async def test_one_that_is_heard_and_never_read_serves_another_database(own, lea
     assert not own.is_stranger("of a copy")
     await own.renew()
     assert own.is_stranger("of a copy") and not own.is_stranger(later.run)
+    # It does so still while this one's database is away.
+    own.trust.lost()
+    assert own.is_stranger("of a copy") and not own.is_stranger("of another copy")
+    await own.renew()
     # One that another process took the name of was of this fleet.
     await lease.run(gateways.leave, other)
     await own.renew()
     assert not own.is_stranger(other.run)
+    # Those of the first database are entered in a copy, and never lived there.
+    first = await enter(lease, "first", own.me.version, -1.0)
+    await own.renew()
+    assert own.has_read(other.run) and not own.has_read(first.run)
+    await lease.run(gateways.leave, first)
+    await lease.run(gateways.leave, later)
