@@ -84,6 +84,9 @@ class EmergencyStopRelay:
         self._clock = clock
         self._seen: dict[str, StopSeen] = {}
         """what each other gateway said of the stop in force."""
+        self._asked: dict[str, str] = {}
+        """the stop that each other gateway called for last: where several are in force it may be another one
+        than that which is told here."""
         self._named: list[str] = []
         """the other gateways that were to answer when operators were told last of those."""
         self._changed = asyncio.Event()
@@ -209,6 +212,7 @@ class EmergencyStopRelay:
         stop = self._stops.current
         if stop is None or not self._stops.in_force:
             # It was cleared, which only the database can tell the others.
+            self._asked.clear()
             self._exchange.wake("stops")
             return
         counts = self._stops.local_counts()
@@ -216,7 +220,8 @@ class EmergencyStopRelay:
         said = {**counts, **named}
         for name in _COUNTED_BEYOND:
             said[f"{name}_more"] += len(counts[name]) - len(named[name])
-        self._exchange.send(STOP, StopSeen(self._exchange.gateway, stop.id, **said))
+        for id in {stop.id, *self._asked.values()}:
+            self._exchange.send(STOP, StopSeen(self._exchange.gateway, id, **said))
 
     def _others(self) -> list[str]:
         """Return the other gateways that are to answer: those that live, and those that are heard.
@@ -231,6 +236,7 @@ class EmergencyStopRelay:
 
     def _called(self, call: StopCall) -> None:
         self._stops.stop_elsewhere(StopRow(call.id, call.at, call.by, call.reason))
+        self._asked[call.gw] = call.id
         self._answer()
 
     def _answered(self, seen: StopSeen) -> None:

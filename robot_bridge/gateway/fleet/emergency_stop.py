@@ -101,6 +101,8 @@ class EmergencyStops:
         self._links: list[Callable[[str], None]] = []
         self._relays: list[StopRelay] = []
         self._stop: StopRow | None = None
+        self._in_force: dict[str, StopRow] = {}
+        """the stops that are in force, by id: operators of several gateways may make some at a time."""
         self._unstored: list[StopRow] = []
         self._unlisted: list[StopRow] = []
         """what the database refuses as data: noted on the disk alone, and stored no more."""
@@ -184,7 +186,8 @@ class EmergencyStops:
 
         Raises StoreError when it cannot be known whether there is one.
         """
-        self._stop, self._seen, aborts = await self._database.run(_load)
+        self._stop, in_force, self._seen, aborts = await self._database.run(_load)
+        self._in_force = {stop.id: stop for stop in reversed(in_force)}
         self._count_again()
         for report in aborts:
             self._tally.note_step(report)
@@ -257,17 +260,19 @@ class EmergencyStops:
             self._abort_overdue(stop, self._robots.commanded())
             self.announce()
             return
+        if any(one.id == stop.id for one in self._unstored):
+            return
+        self._in_force.pop(stop.id, None)
         mine = self._stop
         if mine is None or mine.id != stop.id or not self.in_force:
             return
-        if any(one.id == stop.id for one in self._unstored):
-            return
-        self._stop = stop
-        self._writer.end()
-        self._note()
         log.warning(
             "emergency stop of %s cleared by %s%s", stop.by, stop.cleared_by, _because(stop.clear_reason)
         )
+        self._stop = next(reversed(self._in_force.values()), stop)
+        if not self.in_force:
+            self._writer.end()
+        self._note()
         self.announce()
 
     def take_over(self, robots: Sequence[str], newest: StopRow | None) -> None:
@@ -291,14 +296,14 @@ class EmergencyStops:
     @handles(ClearEmergencyStop)
     async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
         """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
-        seen = self._stop
+        # Who asks cannot mean a stop that comes while this waits.
+        seen, known = self._stop, frozenset(self._seen)
         async with self._writing:
             stop = self._stop
             if stop is None or not self.in_force:
                 if stop is not None and request.stop == stop.id:
                     return self.report()
                 raise RefusedError("no emergency stop is in force; there is nothing to clear")
-            # Who asked cannot have meant a stop that came while this waited.
             if request.stop not in (None, stop.id) or stop is not seen:
                 raise RefusedError(
                     f"{stop.by} made another emergency stop at {_clock(stop.at)}{_because(stop.reason)}; "
@@ -306,12 +311,14 @@ class EmergencyStops:
                 )
             await self._store()
             at, supervisor, reason = self._clock.time(), _name(supervisor), request.reason or None
-            unknown = await self._database.run(emergency_stops.clear, at, supervisor, reason, self._seen)
+            unknown = await self._database.run(emergency_stops.clear, at, supervisor, reason, known)
             if unknown is not None:
                 raise RefusedError(
                     f"{unknown.by} made another emergency stop at {_clock(unknown.at)}"
                     f"{_because(unknown.reason)}, at another gateway; look at that one first, then clear it"
                 )
+            for id in known:
+                self._in_force.pop(id, None)
             if self._stop is stop:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
                 self._writer.end()
@@ -356,7 +363,7 @@ class EmergencyStops:
 
     def _put_in_force(self, stop: StopRow) -> None:
         self._seen.add(stop.id)
-        self._stop = stop
+        self._stop = self._in_force[stop.id] = stop
         self._unstored.append(stop)
         with log_and_continue(log, "counting who is told of an emergency stop"):
             self._count_again()
@@ -459,10 +466,12 @@ class EmergencyStops:
             self._listeners.announce("emergency", "emergency", to_json(self.report()))
 
 
-def _load(connection: Connection) -> tuple[StopRow | None, set[str], list[CommandReport]]:
+def _load(
+    connection: Connection,
+) -> tuple[StopRow | None, list[StopRow], set[str], list[CommandReport]]:
     stop = emergency_stops.newest(connection)
     aborts = [] if stop is None else commands.of_kind_since(connection, Abort.__name__, stop.at)
-    return stop, emergency_stops.ids(connection), aborts
+    return stop, emergency_stops.in_force(connection), emergency_stops.ids(connection), aborts
 
 
 def _name(operator: str) -> str:

@@ -244,6 +244,24 @@ async def test_it_ends_when_its_own_row_says_so(place):
     assert not place.stops.in_force
 
 
+async def test_of_two_stops_at_the_same_time_each_is_answered_and_both_have_to_end(place):
+    """Each of two operators' gateways hears of the other one's last."""
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    place.say(CALL)
+    await place.until(lambda: place.stops.report().stored)
+    assert place.stops.report().stop == "stop-number-a"
+    place.bus.sent.clear()
+    place.say(StopCall("a", "stop-number-b", 1000.0, "Bob"))
+    assert {seen.id for seen in place.bus.of(StopSeen)} == {"stop-number-a", "stop-number-b"}
+    # That one of both that a gateway did not know of as the other was cleared stays in force.
+    place.yard.sql(
+        "update emergency_stops set cleared_at = ?, cleared_by = ? where id = ?", 1010.0, "Eve", CALL.id
+    )
+    await place.relay.read_stored()
+    assert (place.stops.in_force, place.stops.report().stop) == (True, "stop-number-b")
+    assert not (await place.stops.clear(ClearEmergencyStop(), "Eve")).in_force
+
+
 async def test_another_stop_that_was_cleared_ends_nothing_here(place):
     await place.store(StopRow("old", 900.0, "Ada", None, 950.0, "Eve"))
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
@@ -392,6 +410,18 @@ async def test_nobody_clears_a_stop_that_this_gateway_does_not_know_of(place):
     assert place.stops.in_force
     await place.relay.read_stored()
     assert not (await place.stops.clear(ClearEmergencyStop(), "Eve")).in_force
+
+
+async def test_nobody_clears_a_stop_that_came_while_the_clearing_waited(place, held):
+    place.stops.begin(EmergencyStop("stop-number-b"), "Bob")
+    clearing = asyncio.create_task(place.stops.clear(ClearEmergencyStop(), "Eve"))
+    await asyncio.sleep(0)
+    place.say(CALL)
+    held.set()
+    with pytest.raises(RefusedError, match="Ada made another emergency stop"):
+        await clearing
+    assert place.stops.in_force
+    assert len(await place.yard.database.run(emergency_stops.in_force)) == 2
 
 
 async def cut_off(place):

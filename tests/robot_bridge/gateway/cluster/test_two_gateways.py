@@ -404,6 +404,14 @@ def test_robots_of_two_gateways_are_aborted_together(pair, name):
     assert {name, f"{name}-b"} <= {command["robot"] for command in found}
     for one in (there, here):
         one.wait_for("Abort")
+    # As are they by two stops at the same time, which both operators see reach both gateways.
+    desks = desk_at(pair.a), desk
+    asked = [one.begin("emergency_stop", {"command": f"{k}-{name}"}) for k, one in enumerate(desks)]
+    for one, id in zip(desks, asked, strict=True):
+        one.answer(id)
+        one.until(lambda one=one: one.emergency["gateways"]["reached"] == 2 and one.emergency["stored"])
+    clear(desks[0], pair.b)
+    assert pair.a.sql("select 1 from emergency_stops where cleared_at is null") == []
 
 
 def targets(*robots):
