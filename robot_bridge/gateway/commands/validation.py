@@ -92,11 +92,13 @@ class CommandReader:
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
     def drives_since(self, robot: str, at: float) -> bool:
-        """Tell whether the robot has a motion from before ``at`` to carry out, and no stop's Abort."""
+        """Tell whether the robot has a motion from before ``at`` to carry out, and no stop's Abort after it.
+
+        The Abort of an earlier stop is open still where nobody has seen the robot stand since.
+        """
         mine = self._open.of(robot)
-        return any(c.is_motion and c.report.steps[0].at <= at for c in mine) and not any(
-            c.is_emergency for c in mine
-        )
+        aborted = max((c.sa_id for c in mine if c.is_emergency), default=-1)
+        return any(c.is_motion and c.report.steps[0].at <= at and c.sa_id > aborted for c in mine)
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message that waits in SA, by the message's id."""

@@ -334,6 +334,21 @@ async def test_robots_that_drive_since_before_a_stop_that_is_over_are_aborted(pl
     assert place.yard.waiting("r1") == []
 
 
+async def test_so_are_those_whose_abort_of_an_earlier_stop_has_not_ended(place):
+    """Nobody saw the robot stand between the two stops."""
+    place.say(CALL)
+    await place.until(lambda: place.stops.report().stored)
+    await place.stops.clear(ClearEmergencyStop(), "Eve")
+    await place.yard.acknowledge_all()
+    await place.yard.send("before")
+    over = StopRow("stop-number-c", place.yard.now + 1.0, "Ada", None, place.yard.now + 2.0, "Eve")
+    place.yard.now += 10.0
+    await place.store(over)
+    await place.relay.read_stored()
+    await place.yard.fleet.save()
+    assert place.yard.waiting("r1")[-1] == "Abort"
+
+
 async def test_a_stop_that_was_over_at_a_time_to_come_tells_nothing(place):
     await place.yard.send("before")
     await place.store(over_at(place.yard.now + 1000.0))
