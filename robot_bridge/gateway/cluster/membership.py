@@ -164,6 +164,22 @@ GONE_S = 7 * 24 * 3600.0
 """seconds after the end of its lease until a gateway is struck off: until then it may be started again."""
 
 
+class SharedClock(Clock):
+    """The database's clock as a gateway knows it: what one notes by it others compare with what they did."""
+
+    def __init__(self, membership: Membership, clock: Clock) -> None:
+        self._membership = membership
+        self._clock = clock
+
+    def time(self) -> float:
+        """Return the seconds since the Unix epoch by the database's clock."""
+        return self._membership.database_time()
+
+    def steady(self) -> float:
+        """Return the seconds of this computer's steady clock."""
+        return self._clock.steady()
+
+
 class Membership:
     """One gateway among those of a fleet.
 
@@ -180,6 +196,7 @@ class Membership:
         """all gateways, as they were at the last renewal."""
         self.clock_offset = 0.0
         """seconds that the database's clock is ahead of this computer's."""
+        self.shared_clock = SharedClock(self, clock)
         self._lease = lease
         self._clock = clock
         self._clock_said_at = -OFF_AGAIN_S

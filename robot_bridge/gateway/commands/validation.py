@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections import Counter
 from collections.abc import Sequence
 from typing import Protocol, runtime_checkable
@@ -91,14 +92,16 @@ class CommandReader:
         """Tell whether the Abort of an emergency stop is on its way to the robot."""
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
-    def drives_since(self, robot: str, at: float) -> bool:
+    def drives_since(self, robot: str, at: float, doubted_from: float = math.inf) -> bool:
         """Tell whether the robot has a motion from before ``at`` to carry out, and no stop's Abort after it.
 
-        The Abort of an earlier stop is open still where nobody has seen the robot stand since.
+        One from after ``doubted_from`` may be from before that as well. The Abort of an earlier stop is open
+        still where nobody has seen the robot stand since.
         """
         mine = self._open.of(robot)
         aborted = max((c.sa_id for c in mine if c.is_emergency), default=-1)
-        return any(c.is_motion and c.report.steps[0].at <= at and c.sa_id > aborted for c in mine)
+        motions = [c.report.steps[0].at for c in mine if c.is_motion and c.sa_id > aborted]
+        return any(began <= at or began > doubted_from for began in motions)
 
     def undelivered(self) -> dict[int, str]:
         """Return the robot of every message that waits in SA, by the message's id."""

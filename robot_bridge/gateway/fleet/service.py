@@ -103,8 +103,10 @@ class Fleet:
             database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
         )
         self.orders = CommandRequests(site, self.robots, self._book, database)
+        # A stop that one gateway clears ends at others what was begun before that.
+        stop_clock = clock if cluster is None else cluster.membership.shared_clock
         self.emergency = EmergencyStops(
-            self._book, database, clock, self.robots, self.listeners, self.events, stops
+            self._book, database, stop_clock, self.robots, self.listeners, self.events, stops
         )
         self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()

@@ -6,13 +6,18 @@ import asyncio
 import os
 import re
 import socket
+from types import SimpleNamespace
 
 import pytest
 
 from robot_bridge.core.clock import Clock
 from robot_bridge.core.errors import BridgeError
+from robot_bridge.core.messages.safety import EmergencyStop
 from robot_bridge.gateway.cluster.cluster import lease_database
 from robot_bridge.gateway.cluster.membership import CLAIMED_S, LEASE_S, OFF_AGAIN_S, RENEW_S, Membership
+from robot_bridge.gateway.cluster.messages import Exchange
+from robot_bridge.gateway.cluster.ownership import Ownership
+from robot_bridge.gateway.fleet.service import Fleet
 from robot_bridge.gateway.storage.database import read_address
 from robot_bridge.gateway.storage.repositories import gateways
 
@@ -115,7 +120,7 @@ async def test_a_version_that_differs_is_named_at_both_and_once(own, lease, capl
 
 @pytest.mark.parametrize("seconds", [-300.0, 300.0])
 async def test_a_clock_that_is_minutes_off_is_named_once_a_minute_and_keeps_no_lease_from_holding(
-    lease, caplog, seconds
+    lease, site_maps, caplog, seconds
 ):
     clock = ClockOff(seconds)
     off = Membership("off", lease, clock)
@@ -128,6 +133,12 @@ async def test_a_clock_that_is_minutes_off_is_named_once_a_minute_and_keeps_no_l
     assert len(re.findall(said, caplog.text)) == 2
     assert off.trust.holds and off.leads
     assert abs(off.database_time() - (clock.time() - seconds)) < 30
+    # Stops are made and cleared by the clock that all gateways know.
+    ownership, exchange = Ownership(off, lease), Exchange("off", b"key", [])
+    cluster = SimpleNamespace(membership=off, ownership=ownership, exchange=exchange)
+    fleet = Fleet(site_maps, lease, clock, cluster=cluster)
+    fleet.emergency.begin(EmergencyStop("stop-number-off"), "Ada")
+    assert abs(fleet.emergency.current.at - (clock.time() - seconds)) < 30
     await off.leave()
 
 

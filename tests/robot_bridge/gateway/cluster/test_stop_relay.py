@@ -349,6 +349,18 @@ async def test_so_are_those_whose_abort_of_an_earlier_stop_has_not_ended(place):
     assert place.yard.waiting("r1")[-1] == "Abort"
 
 
+@pytest.mark.parametrize(("later", "waiting"), [(5.0, "Abort"), (90.0, "SetPosEnd")])
+async def test_so_are_those_sent_by_a_clock_that_is_minutes_ahead_for_a_while(place, later, waiting):
+    place.yard.now += 300.0
+    await place.yard.send("before")
+    over = over_at(place.yard.now - 298.0)
+    place.yard.now += later - 298.0
+    await place.store(over)
+    await place.relay.read_stored()
+    await place.yard.fleet.save()
+    assert place.yard.waiting("r1")[-1] == waiting
+
+
 async def test_a_stop_that_was_over_at_a_time_to_come_tells_nothing(place):
     await place.yard.send("before")
     await place.store(over_at(place.yard.now + 1000.0))
