@@ -7,6 +7,7 @@ import itertools
 import json
 import signal
 import time
+from urllib.request import urlopen
 
 import pytest
 from websockets.exceptions import ConnectionClosed
@@ -551,6 +552,12 @@ def end_gateway(bridge):
     bridge.gateway.wait(10 * BUSY)
 
 
+def is_on_bus(bridge):
+    """Tell whether a gateway says that it is connected to NATS."""
+    with urlopen(f"{bridge.address.replace('ws://', 'http://')}/healthz", timeout=10 * BUSY) as page:
+        return json.loads(page.read())["cluster"]["buses"]["nats"]
+
+
 def ids_of(bridge):
     return dict(bridge.sql("select name, value from bridge"))
 
@@ -583,7 +590,8 @@ def test_a_fleet_on_a_copy_of_the_database_is_another_fleet(
         said = (
             "is a copy of another one" if is_noticed else "gateway a serves a copy of this fleet's database"
         )
-        # At once: a gateway of the same name is not known for a copy's yet.
+        # As soon as it is on the bus: a gateway of the same name is not known for a copy's yet.
+        wait_until(lambda second=second: is_on_bus(second))
         assert stop(desk_at(second), name)["gateways"] == {"reached": 1, "of": 1, "missing": []}
         if not is_noticed:
             assert robot.wait_for("Abort", 2.0)["params"]["emergency"]
