@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import accumulate
@@ -158,21 +157,11 @@ FIELDS = 10
 """x, y, source left, top, width, height, scale x, scale y, rotation, opacity: Qt's PixmapFragment."""
 
 
-SMALL = 24
-"""Device pixels up to which a part is painted faster by Qt's loop for scaled pictures."""
-ALMOST_ONE = 1.0 + 1e-9
-"""Scaled by so much every pixel is the same, and Qt takes that loop: it has no masked reads and writes, of
-which the loop for pictures as they are has two a line."""
-
-
 class Fragments:
-    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one.
+    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one."""
 
-    No part is larger than ``most`` device pixels in either direction, where that is said.
-    """
-
-    def __init__(self, ratio: float, most: float = math.inf) -> None:
-        self.scale = (ALMOST_ONE if most <= SMALL else 1.0) / ratio
+    def __init__(self, ratio: float) -> None:
+        self.scale = 1.0 / ratio
         self._fragments = None
         self._table = np.empty((0, FIELDS))
         self._painted = 0
@@ -216,7 +205,7 @@ class Sprites:
         self._atlas = in_a_column(kept)
         self._ratio = ratio
         height, width = np.array([cell.shape for cell in kept], dtype=np.float64).T
-        self._fragments = Fragments(ratio, max(height.max(), width.max()))
+        self._fragments = Fragments(ratio)
         across = np.array([columns.start for _, columns in parts]) + width / 2
         down = np.array([lines.start for lines, _ in parts]) + height / 2
         bottom = np.cumsum(height)
