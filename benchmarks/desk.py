@@ -34,8 +34,8 @@ and are worse where the machine has other things to do.
 Milliseconds of computing by the window's thread for each of {updates} updates, everything drawn: robots
 with heading, state and speed, trails, names, ages. *Of it the map* is what QGIS takes to put its finished
 map there without any robot. *Frames* is how many such updates fit into a second. *Layer* is up to {at_once}
-robots written to the vector layer; each robot is written once a second, so that the more there are, the
-more of the updates write.
+robots written to the vector layer, which has them all already; each robot is written once a second, so that
+the more there are, the more of the updates write.
 
 {overlay}
 

