@@ -129,7 +129,7 @@ _RESULTS: dict[str, type] = {
     "get_areasResult": links.SiteAreas,
 }
 _GATEWAYS: dict[str, type] = {Gateways.method: Gateways}
-"""What links and robots are told where several gateways serve the fleet."""
+"""Sent to links and robots where several gateways serve the fleet."""
 _STOP = "AbortOfAll"
 _PLAYBACK_RESULT = f"{Playback.method}Result"
 _ROBOT: Schema = {

@@ -139,7 +139,7 @@ class RobotSession:
         """
         gateways = self._fleet.gateways_at(self._channel.endpoint)
         if gateways is not None and self._admitted and not self._has_ended:
-            self._told_gateways = gateways.gateways
+            # The next OpAck has them as well, for who passes over what it does not know.
             await self._channel.send(self._channel.call(Gateways.method, to_json(gateways)))
 
     # --- what comes in ------------------------------------------------------------------------------------

@@ -52,7 +52,7 @@ log = logging.getLogger(__name__)
 ANSWER_WITHIN = 5.0
 """seconds that a link has to answer what it is asked for itself."""
 AT_ONCE = 50
-"""connections to which is sent where the gateways are before others have their turn."""
+"""connections that are written to in one turn of the loop when the gateways of the fleet have changed."""
 MOST_CALLS = 20
 """questions to a link that wait for its answer."""
 
