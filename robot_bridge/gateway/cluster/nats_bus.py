@@ -91,8 +91,7 @@ class NatsConnection:
         try:
             check_server(client)
             await self._subscribe(client, receive)
-            if is_cancelled():
-                raise asyncio.CancelledError
+            raise_if_cancelled()
             self.client = client
             if was_lost:
                 log.warning("bus %s: %s is connected again", self._servers.where, self._name)
@@ -121,9 +120,8 @@ class NatsConnection:
             self._said.add(reason)
         except asyncio.CancelledError:
             # The library cancels tasks and futures of its own, which is no reason to end this one.
-            if is_cancelled():
-                raise
             self._say("the client was cancelled")
+        raise_if_cancelled()
 
     async def _subscribe(self, client: Any, receive: Receive) -> None:
         """Return when the server knows what is listened to: what is said before is not heard."""
@@ -349,14 +347,14 @@ class NatsBus:
             await client.publish(f"{self._prefix}.{subject}", content)
 
 
-def is_cancelled() -> bool:
-    """Tell whether the running task was cancelled, even if nobody raised that.
+def raise_if_cancelled() -> None:
+    """Raise CancelledError where the running task was cancelled and what it waited for has swallowed that.
 
     The client waits by ``asyncio.wait_for``, which in Python 3.11 returns as if nothing were the matter when
     the server answers in the same turn of the loop. Such a task would never end.
     """
-    task = asyncio.current_task()
-    return task is None or task.cancelling() > 0
+    if (task := asyncio.current_task()) is None or task.cancelling():
+        raise asyncio.CancelledError
 
 
 def write_at_once(client: Any, subject: str, content: bytes) -> bool:
