@@ -246,6 +246,13 @@ class Membership:
         """
         return run in self._runs
 
+    def is_without_lease(self, run: str) -> bool:
+        """Tell whether a gateway stands in the database and does not renew its lease there.
+
+        It may be cut off from the database, or serve a copy of it, in which it is read as well.
+        """
+        return run not in self._runs and any(member.run == run for member in self.members)
+
     def is_stranger(self, run: str) -> bool:
         """Tell whether a gateway, heard by the key of this fleet, is none of it: its database is a copy.
 

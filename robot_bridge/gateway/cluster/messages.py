@@ -367,6 +367,11 @@ HEARD_S = 5.0
 """seconds after which a gateway that says nothing is not heard any more."""
 COUNT_S = 1.0
 """seconds between two counts in the log of the lines that were left out of it."""
+WITHOUT_LEASE = (
+    "gateway {} does not renew its lease: see whether it reaches the database, and whether that is this "
+    "fleet's and no copy; its stops and Aborts are done here, and nothing else of it counts"
+)
+"""What the log says of a gateway that stands in the database and that nobody has seen alive there."""
 COPY = (
     "gateway {} serves a copy of this fleet's database on the same bus; its stops and Aborts are done here, "
     "and nothing else of it counts: give it a bus of its own, or restore a backup in place of the copy"
@@ -396,6 +401,7 @@ class Exchange:
         self._buses = buses
         self._events = EventBus()
         self._heard: dict[str, float] = {}
+        self._heard_without_lease: dict[str, float] = {}
         # At random, so that a gateway that is started again does not begin with the same ones.
         self._numbers = itertools.count(1 + secrets.randbits(48))
         self._known: dict[bytes, None] = {}
@@ -436,6 +442,11 @@ class Exchange:
         now = time.monotonic()
         return sorted(name for name, at in self._heard.items() if now - at < within)
 
+    def heard_without_lease(self, within: float = HEARD_S) -> list[str]:
+        """Return the gateways heard ``within`` so many seconds that stand in the database without a lease."""
+        now = time.monotonic()
+        return sorted(name for name, at in self._heard_without_lease.items() if now - at < within)
+
     async def run(self) -> None:
         """Keep all buses connected until cancelled."""
         async with asyncio.TaskGroup() as group:
@@ -452,7 +463,7 @@ class Exchange:
         except BusMessageError as error:
             self._warn(subject, f"bus, subject {subject}: {error}")
             return
-        if not self._counts(subject, message):
+        if not self._admit(subject, message):
             return
         if isinstance(message, (StopCall, StopSeen)) and message.number:
             if self._is_copy(content[:SIGNATURE]):
@@ -460,13 +471,15 @@ class Exchange:
             message = msgspec.structs.replace(message, number=0)
         self._events.publish(message)
 
-    def _counts(self, subject: str, message: BusMessage) -> bool:
-        """Tell whether a message is taken in; note which gateway of the fleet was heard by it."""
+    def _admit(self, subject: str, message: BusMessage) -> bool:
+        """Note which gateway was heard; return whether what it says is taken in."""
         if self._is_own(message):
             return False
         is_from_copy = self._is_from_copy(message)
+        has_no_lease = self._has_no_lease(message)
         if is_from_copy:
-            self._warn(subject, f"bus, subject {subject}: {COPY.format(message.gw)}")
+            line = WITHOUT_LEASE if has_no_lease else COPY
+            self._warn(subject, f"bus, subject {subject}: {line.format(message.gw)}")
         if isinstance(message, StopCall):
             is_due = subject == STOP
         elif isinstance(message, AbortCall):
@@ -477,6 +490,8 @@ class Exchange:
         is_read = message.gw != self.gateway and self._is_read(message)
         if is_read:
             self._heard[message.gw] = time.monotonic()
+        elif has_no_lease and message.gw != self.gateway:
+            self._heard_without_lease[message.gw] = time.monotonic()
         # Robots that an answer tells of are this fleet's only if its gateway is known to be.
         return is_due and (is_read or not isinstance(message, StopSeen))
 
@@ -492,6 +507,10 @@ class Exchange:
         """Tell whether a message comes from a gateway that was read in the database of this fleet."""
         known = self._membership
         return known is None or message.sender_run == "" or known.has_read(message.sender_run)
+
+    def _has_no_lease(self, message: BusMessage) -> bool:
+        """Tell whether a message comes from a gateway that stands in the database and was not alive there."""
+        return self._membership is not None and self._membership.is_without_lease(message.sender_run)
 
     def _is_from_copy(self, message: BusMessage) -> bool:
         """Tell whether a message is signed by the key of this fleet and comes from none of its gateways."""

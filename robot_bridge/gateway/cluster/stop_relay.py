@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import itertools
 import logging
 import uuid
 from collections.abc import Sequence
@@ -57,6 +58,10 @@ class LocalStops(Protocol):
     def stop_elsewhere(self, stop: StopRow) -> None:
         """Put a stop in force that was made at another gateway."""
 
+    @property
+    def known_ids(self) -> Sequence[str]:
+        """The ids of the stops that are in force here, and of the one that was last."""
+
     def learn(self, stop: StopRow) -> None:
         """Take in how a stop is stored."""
 
@@ -86,7 +91,7 @@ class EmergencyStopRelay:
         """what each other gateway said of the stop in force."""
         self._asked: dict[str, str] = {}
         """the stop that each other gateway called for last: where several are in force it may be another one
-        than that which is told here."""
+        than that of the report here."""
         self._named: list[str] = []
         """the other gateways that were to answer when operators were told last of those."""
         self._changed = asyncio.Event()
@@ -146,10 +151,10 @@ class EmergencyStopRelay:
 
     async def read_stored(self) -> None:
         """Learn from the database of stops, and of their end; raises StoreError."""
-        current, id, after = self._stops.current, "", 0.0
+        current, after = self._stops.current, 0.0
         if current is not None:
-            id, after = current.id, current.at if current.cleared_at is None else current.cleared_at
-        found = await self._lease.read(emergency_stops.changed, id, after)
+            after = current.at if current.cleared_at is None else current.cleared_at
+        found = await self._lease.read(emergency_stops.changed, self._stops.known_ids, after)
         self._looked_at = self._clock.steady()
         self._has_company = bool(self._membership.others())
         # Ends last: another stop in force must hold by then.
@@ -178,8 +183,8 @@ class EmergencyStopRelay:
             "neither the database nor any other gateway has been reached for %g s: all robots stop", CUT_OFF_S
         )
         reason = "cut off from the database and from every other gateway"
-        by = f"gateway {self._exchange.gateway}"
-        self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", self._clock.time(), by, reason))
+        by, at = f"gateway {self._exchange.gateway}", self._membership.database_time()
+        self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", at, by, reason))
 
     async def _tell(self) -> None:
         while True:
@@ -227,10 +232,12 @@ class EmergencyStopRelay:
         """Return the other gateways that are to answer: those that live, and those that are heard.
 
         One whose lease has just run out is among them: its robots may drive, and count as nobody's until
-        another gateway has claimed them. Without it all would seem stopped for that moment.
+        another gateway has claimed them. Without it all would seem stopped for that moment. So is one that is
+        heard without a lease: it may be cut off from the database, and have robots still.
         """
         membership = self._membership
-        return sorted({*membership.others(), *membership.just_lost(), *self._exchange.heard()})
+        heard = self._exchange.heard(), self._exchange.heard_without_lease()
+        return sorted({*membership.others(), *membership.just_lost(), *itertools.chain(*heard)})
 
     # --- what comes in ------------------------------------------------------------------------------------
 

@@ -57,9 +57,10 @@ ANSWERS_TOGETHER = 0.05
 each answer of one of them would take all the time in which the robots are to be heard."""
 REPEATED_S = 1.0
 """seconds after which a stop in force is reported to operators again: who hears nothing knows nothing."""
-AHEAD_S, DOUBTED_S = 1.0, 60.0
-"""Seconds that a clock is ahead from which on times by it say nothing, and seconds after the end of a stop in
-which a robot is aborted if it is not certain that it drives since then."""
+AHEAD_S = 1.0
+"""seconds by which a time may lie in the future: what is known of the database's clock is not exact."""
+DOUBTED_S = 60.0
+"""seconds after the end of a stop in which a robot is aborted where nobody knows how old its motion is."""
 NAME_PREFIX = "emergency-"
 """Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
 
@@ -126,6 +127,11 @@ class EmergencyStops:
     def relay_by(self, relay: StopRelay) -> None:
         """Have ``relay`` tell other gateways of each stop that is made here."""
         self._relays.append(relay)
+
+    @property
+    def known_ids(self) -> list[str]:
+        """The ids of the stops that are in force, and of the one that was last."""
+        return [*self._in_force, *([] if self._stop is None else [self._stop.id])]
 
     @property
     def in_force(self) -> bool:
@@ -381,7 +387,7 @@ class EmergencyStops:
         A stop that was cleared in the future is of a wrong clock: what was before it cannot be known.
         """
         now = self._clock.time()
-        if stop is None or stop.cleared_at is None or stop.cleared_at > now:
+        if stop is None or stop.cleared_at is None or stop.cleared_at > now + AHEAD_S:
             return
         # Of a motion from a time to come, by a wrong clock of its gateway, nobody knows how old it is.
         doubted_from = now + AHEAD_S if now - stop.cleared_at < DOUBTED_S else math.inf
@@ -406,7 +412,7 @@ class EmergencyStops:
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
         with log_and_continue(log, "waiting for the note of an emergency stop"):
-            # Who made one elsewhere has noted it already, and stores it.
+            # One from elsewhere is noted and stored there as well.
             if noting is not None and is_own:
                 futures.wait([noting], NOTED_WITHIN)
         operators_first = False

@@ -60,10 +60,10 @@ def in_force(connection: Connection) -> list[StopRow]:
     return [StopRow(*row) for row in connection.execute(query)]
 
 
-def changed(connection: Connection, id: str, after: float) -> list[StopRow]:
-    """Return the stops in force, those cleared after a time, and the one with an id, the oldest first."""
+def changed(connection: Connection, ids: Collection[str], after: float) -> list[StopRow]:
+    """Return the stops in force, those cleared after a time, and those with ``ids``, the oldest first."""
     c = emergency_stops.c
-    found = or_(c.cleared_at.is_(None), c.cleared_at > after, c.id == id)
+    found = or_(c.cleared_at.is_(None), c.cleared_at > after, c.id.in_(ids))
     return [StopRow(*row) for row in connection.execute(select(*_COLUMNS).where(found).order_by(c.at))]
 
 

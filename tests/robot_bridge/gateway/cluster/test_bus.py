@@ -239,7 +239,10 @@ class Members:
         self.me = SimpleNamespace(run=run)
 
     def is_stranger(self, run):
-        return run == "of a copy"
+        return run in ("of a copy", "without a lease")
+
+    def is_without_lease(self, run):
+        return run == "without a lease"
 
     def has_read(self, run):
         return run == "of another"
@@ -258,6 +261,8 @@ KINDS = (StopCall, StopSeen, Beat, AbortCall, PositionBatch)
         ("b", "not read", (StopCall, AbortCall), []),
         ("b", "of another", (StopCall, AbortCall), []),
         ("b", "own", (), []),
+        # It is cut off from the database, or this one's is a copy of its: it may have robots.
+        ("a", "without a lease", (StopCall, AbortCall), []),
     ],
 )
 def test_who_sent_a_message_is_known_by_the_run_and_stops_count_whoever_it_was(name, run, counts, heard):
@@ -276,6 +281,7 @@ def test_who_sent_a_message_is_known_by_the_run_and_stops_count_whoever_it_was(n
     for subject, content in sender.sent:
         exchange.receive(subject, content)
     assert (tuple(taken), exchange.heard()) == (tuple(kind for kind in KINDS if kind in counts), heard)
+    assert exchange.heard_without_lease() == (["a"] if run == "without a lease" else [])
 
 
 @pytest.mark.parametrize("name", ["a", "b"])

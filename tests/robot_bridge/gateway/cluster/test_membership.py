@@ -183,5 +183,6 @@ async def test_one_that_is_heard_and_never_read_serves_another_database(own, lea
     first = await enter(lease, "first", own.me.version, -1.0)
     await own.renew()
     assert own.has_read(other.run) and not own.has_read(first.run)
+    assert [run for run in (own.me.run, other.run, first.run) if own.is_without_lease(run)] == [first.run]
     await lease.run(gateways.leave, first)
     await lease.run(gateways.leave, later)

@@ -57,6 +57,9 @@ class Company:
     def just_lost(self):
         return list(self.lost)
 
+    def database_time(self):
+        return 5000.0
+
 
 class Lease:
     """The connection by which stops are looked up, as long as the database is there."""
@@ -262,6 +265,32 @@ async def test_of_two_stops_at_the_same_time_each_is_answered_and_both_have_to_e
     assert not (await place.stops.clear(ClearEmergencyStop(), "Eve")).in_force
 
 
+async def test_a_stop_that_was_over_when_the_next_one_came_does_not_come_back(place):
+    """It was cleared elsewhere, and this gateway has not looked since."""
+
+    def clear(id, at):
+        place.yard.sql("update emergency_stops set cleared_at = ?, cleared_by = 'Eve' where id = ?", at, id)
+
+    place.say(CALL)
+    await place.until(lambda: place.stops.report().stored)
+    clear(CALL.id, 1009.9)
+    place.say(StopCall("a", "stop-number-c", 1010.0, "Bob"))
+    await place.until(lambda: place.stops.report().stored)
+    await place.relay.read_stored()
+    assert (place.stops.in_force, place.stops.report().stop) == (True, "stop-number-c")
+    clear("stop-number-c", 1020.0)
+    await place.relay.read_stored()
+    assert (place.stops.in_force, place.stops.report().stop) == (False, "stop-number-c")
+
+
+async def test_a_gateway_that_is_heard_without_a_lease_is_missed_until_it_has_one(place, monkeypatch):
+    """It is cut off from the database, and its robots may be there still."""
+    monkeypatch.setattr(place.exchange, "heard_without_lease", lambda: ["c"])
+    await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
+    place.say(StopSeen("a", "stop-number-b", 3, 2, 1, ["x"], []))
+    assert place.stops.report().gateways == StoppedGateways(2, 3, ["c"])
+
+
 async def test_another_stop_that_was_cleared_ends_nothing_here(place):
     await place.store(StopRow("old", 900.0, "Ada", None, 950.0, "Eve"))
     await place.stops.stop(EmergencyStop("stop-number-b"), "Bob")
@@ -465,6 +494,8 @@ async def test_a_gateway_that_reaches_nobody_stops_its_robots(place):
     report = place.stops.report()
     assert report.in_force and report.by == "gateway b" and place.told
     assert report.reason == "cut off from the database and from every other gateway"
+    # By the database's clock, as all stops.
+    assert report.at == 5000.0
 
 
 async def test_not_where_another_gateway_is_heard(place):
