@@ -180,11 +180,14 @@ def is_running(pid: int) -> bool:
 def freeze(pid: int) -> None:
     """Let a process stand still: all its threads do when this returns. ``SIGCONT`` wakes it.
 
-    :raises ProcessLookupError: when it has ended.
+    :raises ProcessLookupError: when it has ended; StageError when it does not stop.
     """
     os.kill(pid, signal.SIGSTOP)
+    until = time.monotonic() + PATIENCE_S
     # Each thread stops when it is given time next, and does something until then.
     while any(_state(thread) not in "TtXZ" for thread in Path(f"/proc/{pid}/task").glob("[0-9]*")):
+        if time.monotonic() > until:
+            raise StageError(f"process {pid} does not stop")
         time.sleep(0.001)
 
 

@@ -98,8 +98,7 @@ class LinkWebSocket:
         self._waking = None
         self._wake.set()
 
-    async def write(self, connection: ClientConnection, link: CallHandler) -> None:
-        """Send what was posted, and the news of ``link``, until the connection is closed."""
+    async def _write(self, connection: ClientConnection, link: CallHandler) -> None:
         try:
             while True:
                 await self._wake.wait()
@@ -147,7 +146,7 @@ class LinkWebSocket:
         self._outgoing.clear()
         self._pending_calls.clear()
         self._standstill = StandstillWatch(self._longest_pause_s)
-        works = (self.write(connection, link), self._end_when_old(connection, link))
+        works = (self._write(connection, link), self._end_when_old(connection, link))
         tasks = [asyncio.create_task(work) for work in works]
         try:
             async for frame in connection:

@@ -216,7 +216,7 @@ async def test_what_came_of_a_stop_is_told_before_all_else_that_waits(tmp_path):
     connection = LinkWebSocket(link._settings)
     connection.post("a position")
     connection.post("the stop is done", urgent=True)
-    writing = asyncio.create_task(connection.write(SimpleNamespace(send=send), link.client))
+    writing = asyncio.create_task(connection._write(SimpleNamespace(send=send), link.client))
     try:
         await asyncio.wait_for(two.wait(), 20)
     finally:
