@@ -120,6 +120,7 @@ class NatsConnection:
             self._said.add(reason)
         except asyncio.CancelledError:
             # The library cancels tasks and futures of its own, which is no reason to end this one.
+            raise_if_cancelled()
             self._say("the client was cancelled")
         raise_if_cancelled()
 
