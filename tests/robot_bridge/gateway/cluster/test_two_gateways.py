@@ -625,6 +625,8 @@ def noting_pair(start_bridge, site, postgresql_server, new_database, tmp_path):
 
 def driven(pair, folder):
     """Have a robot at b drive that was sent on since the state of the database that is returned."""
+    # It learns where a is as it connects.
+    wait_until(lambda: len(pair.b.desk().hello["gateways"]) == 2)
     pair.b.start_robot("r1", (20.0, 20.0, 0.0), options=["--speed", "0.5"])
     desk = desk_at(pair.b)
     desk.wait_for_robots("r1")
