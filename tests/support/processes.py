@@ -188,6 +188,7 @@ def freeze(pid: int) -> None:
     while any(_state(thread) not in "TtXZ" for thread in Path(f"/proc/{pid}/task").glob("[0-9]*")):
         if time.monotonic() > until:
             raise StageError(f"process {pid} does not stop")
+        # The kernel tells nobody but the parent that a thread has stopped.
         time.sleep(0.001)
 
 

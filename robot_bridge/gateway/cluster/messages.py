@@ -439,13 +439,11 @@ class Exchange:
 
     def heard(self, within: float = HEARD_S) -> list[str]:
         """Return the other gateways that said something ``within`` so many seconds."""
-        now = time.monotonic()
-        return sorted(name for name, at in self._heard.items() if now - at < within)
+        return _recent(self._heard, within)
 
-    def heard_without_lease(self, within: float = HEARD_S) -> list[str]:
-        """Return the gateways heard ``within`` so many seconds that stand in the database without a lease."""
-        now = time.monotonic()
-        return sorted(name for name, at in self._heard_without_lease.items() if now - at < within)
+    def heard_without_lease(self) -> list[str]:
+        """Return the gateways heard of late that stand in the database without a lease."""
+        return _recent(self._heard_without_lease, HEARD_S)
 
     async def run(self) -> None:
         """Keep all buses connected until cancelled."""
@@ -532,3 +530,8 @@ class Exchange:
         if len(self._known) > MOST_NUMBERED:
             del self._known[next(iter(self._known))]
         return False
+
+
+def _recent(heard: dict[str, float], within: float) -> list[str]:
+    now = time.monotonic()
+    return sorted(name for name, at in heard.items() if now - at < within)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import itertools
 import logging
 import uuid
 from collections.abc import Sequence
@@ -235,9 +234,8 @@ class EmergencyStopRelay:
         another gateway has claimed them. Without it all would seem stopped for that moment. So is one that is
         heard without a lease: it may be cut off from the database, and have robots still.
         """
-        membership = self._membership
-        heard = self._exchange.heard(), self._exchange.heard_without_lease()
-        return sorted({*membership.others(), *membership.just_lost(), *itertools.chain(*heard)})
+        entered = *self._membership.others(), *self._membership.just_lost()
+        return sorted({*entered, *self._exchange.heard(), *self._exchange.heard_without_lease()})
 
     # --- what comes in ------------------------------------------------------------------------------------
 

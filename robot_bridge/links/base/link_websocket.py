@@ -27,7 +27,7 @@ from .settings import LinkSettings
 log = logging.getLogger(__name__)
 
 TOGETHER = 0.05
-"""seconds within which positions are told in one frame."""
+"""seconds within which positions are sent in one frame."""
 LARGEST_FRAME = 64 << 20
 
 
@@ -105,7 +105,7 @@ class LinkWebSocket:
                 self._wake.clear()
                 while self._urgent or self._outgoing:
                     await connection.send((self._urgent or self._outgoing).popleft())
-                # Made when they can be sent: of what waited for a slow line only the newest is told.
+                # Made when they can be sent: of what waited for a slow line only the newest is sent.
                 for frame in link.news():
                     await connection.send(frame)
         except ConnectionClosed:

@@ -258,7 +258,7 @@ class Play:
         self.resumed = self._moment()
 
     async def stop(self, id):
-        """Stop every robot; whoever is told that a stop is in force asks for it no more."""
+        """Stop every robot; who has heard that it is in force does not ask again."""
         report = await self.fleet.emergency.stop(EmergencyStop(id), "Ada")
         assert report.in_force
         if self.database.dead:
@@ -268,8 +268,8 @@ class Play:
             await self._look()
 
     async def abort(self, robot):
-        """Tell a robot to abort what it does; whoever is told that the gateway keeps that, or finds it in the
-        log afterwards, asks for it no more.
+        """Abort what a robot does; who has heard that the gateway keeps that, or finds it in the log
+        afterwards, does not ask again.
         """
         id = f"abort-of-{robot}"
         while not self.sql("select id from commands where id = ?", id):
