@@ -78,10 +78,10 @@ class ScenePainter:
         self._plans.paint(painter, placed, view.pixels, screen, self.robots.marks)
         self._draft.paint(painter, placed, view.pixels, screen, self.robots.marks)
         self.robots.paint(painter, placed, view, screen)
-        self._borders.find(placed, view, screen)
+        is_busy = self._borders.find(placed, view, screen)
         taken = [(x - 24.0, y, x + 24.0, y + 26.0) for x, y in self._plans.distances]
         taken += [hint.area for hint in self.hints]
-        self._names.paint(painter, placed, view, screen, taken)
+        self._names.paint(painter, placed, view, screen, taken, may_wait=is_busy)
         self._borders.paint(painter, placed, screen)
 
     def _view(self, placed: MapScene, screen: Screen) -> InView:

@@ -368,14 +368,18 @@ class NamesPainter:
         view: InView,
         screen: Screen,
         taken: Sequence[tuple[float, float, float, float]] = (),
+        *,
+        may_wait: bool = False,
     ) -> None:
         """Paint names of those in view.
 
-        ``taken`` are left, top, right and bottom of what has texts already.
+        ``taken`` are left, top, right and bottom of what has texts already. Where it ``may_wait``, whose
+        names they are stays as it is unless the view moves: there is much else to do for this frame.
         """
         robots = placed.scene.robots
         now = placed.scene.now
-        if abs(now - self._chosen_at) >= CHOOSE_EVERY or screen != self._screen or self._are_others(robots):
+        is_due = abs(now - self._chosen_at) >= CHOOSE_EVERY and not may_wait
+        if is_due or screen != self._screen or self._are_others(robots):
             self._named = self._chosen(placed, view, screen, taken)
             self._chosen_at, self._screen = now, screen
             self._written = [texts(robots, row) for row in self._named.tolist()]

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from fleet_supervisor.plugin.map.overlay.scene import SceneTransformer
 from fleet_supervisor.plugin.ui.glyphs import STATE_COLOURS, UNSURE_COLOUR
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
 
@@ -31,3 +32,21 @@ def test_the_arrow_to_a_robot_that_may_be_elsewhere_is_not_that_of_a_fresh_one(c
     show(canvas, site, scene_of((600, 50, 0.0, RobotState.FRESH), doubted=True))
     assert len(spots(canvas, UNSURE_COLOUR)) > 10
     assert len(spots(canvas, STATE_COLOURS[RobotState.FRESH])) == 0
+
+
+def test_arrows_and_names_are_not_chosen_in_the_same_frame(canvas, site):
+    robots = (600, 50, 0.0, RobotState.FRESH), (60, 50, 0.0, RobotState.FRESH)
+    overlay = show(canvas, site, scene_of(*robots))
+    canvas.grab()
+    painter, placed = overlay._painter, overlay._placed
+    found, chosen = [], []
+    for tenths in range(1, 21):
+        before = painter.hints, painter._names._written
+        scene = scene_of(*robots, now=100.0 + tenths / 10)
+        overlay.show_scene(SceneTransformer().placed(scene, placed.placement))
+        canvas.grab()
+        if painter.hints is not before[0]:
+            found.append(tenths)
+        if painter._names._written is not before[1]:
+            chosen.append(tenths)
+    assert len(found) >= 5 and len(chosen) >= 5 and not set(found) & set(chosen)
