@@ -22,7 +22,8 @@ OWNERS_INTERVAL_S = 1.0
 ADDRESSES_INTERVAL_S = 1.0
 FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
-ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots", "suspensions")
+SUSPEND_INTERVAL_S = 0.5
+ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots")
 """Work that the leader does for all gateways."""
 
 
@@ -73,6 +74,11 @@ class ClusterRelays:
 
     def works(self, works: Mapping[str, Work], tally: Counters) -> dict[str, Work]:
         """Return ``works`` of a gateway as one of several does them, and what it does beside."""
+        if "suspensions" in works:
+            works = {
+                **works,
+                "suspensions": lambda: every(SUSPEND_INTERVAL_S, self._suspend, "suspensions", tally),
+            }
         once = {name: self._led(name, works[name], tally) for name in ONCE_PER_DATABASE if name in works}
         return {
             **works,
@@ -106,6 +112,12 @@ class ClusterRelays:
         while True:
             self._numbers.send_beat()
             await asyncio.sleep(BEAT_INTERVAL_S)
+
+    async def _suspend(self) -> None:
+        """Learn which accounts are suspended, and decide on that while this gateway leads."""
+        await self._fleet.suspensions.follow()
+        if self._cluster.membership.leads:
+            await self._fleet.suspensions.update()
 
     async def _forget_old(self) -> None:
         await self.requests.forget()

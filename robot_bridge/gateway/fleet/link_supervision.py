@@ -308,6 +308,7 @@ class SuspendedCommands(Protocol):
 class AccountSuspensions:
     """Locks such accounts for a while, says so to operators, and unlocks them.
 
+    All by the database's second connection: the first one may be waiting for just these accounts.
     Those that an earlier gateway has locked are unlocked in time, too. No account is locked while an Abort is
     on its way to its robot: a stop that could not be read would be worse than what the account does.
     """
@@ -343,6 +344,14 @@ class AccountSuspensions:
         if self._in_force:
             self._tell()
 
+    async def follow(self) -> None:
+        """Take in what another gateway of the fleet has locked and unlocked; raises StoreError."""
+        stored = await self._database.run_aside(blocking_sessions.stored_suspensions)
+        if stored != self._in_force:
+            self._in_force = stored
+            self._not_locked &= stored.keys()
+            self._tell()
+
     async def update(self) -> None:
         """Lock accounts that have offended too often, unlock those whose time is over; raises StoreError."""
         now = self._clock.time()
@@ -359,7 +368,7 @@ class AccountSuspensions:
         blocking, backends = self._database.offences.drain()
         flooding: list[str] = []
         if backends:
-            flooding = await self._database.read(blocking_sessions.robots_of_backends, backends)
+            flooding = await self._database.run_aside(blocking_sessions.robots_of_backends, backends)
         for robot, times in Counter(blocking).items():
             seen = self._offences[robot]
             seen.extend([now] * times)
@@ -376,9 +385,9 @@ class AccountSuspensions:
         self._last[robot] = now, seconds
         in_force = self._in_force | {robot: (now + seconds, why)}
         # Noted before it is done: whoever comes after a crash in between unlocks what may be locked.
-        await self._database.run(blocking_sessions.store_suspensions, in_force)
+        await self._database.run_aside(blocking_sessions.store_suspensions, in_force)
         self._in_force = in_force
-        if await self._database.run_alone(blocking_sessions.set_suspended, robot, True):
+        if await self._database.run_aside(blocking_sessions.set_suspended, robot, True):
             log.error("database account of robot %s: %s; locked for %.0f s", robot, why, seconds)
         else:
             self._not_locked.add(robot)
@@ -386,9 +395,9 @@ class AccountSuspensions:
         self._tell()
 
     async def _resume(self, robot: str) -> None:
-        await self._database.run_alone(blocking_sessions.set_suspended, robot, False)
+        await self._database.run_aside(blocking_sessions.set_suspended, robot, False)
         in_force = {name: one for name, one in self._in_force.items() if name != robot}
-        await self._database.run(blocking_sessions.store_suspensions, in_force)
+        await self._database.run_aside(blocking_sessions.store_suspensions, in_force)
         self._in_force = in_force
         self._not_locked.discard(robot)
         log.warning("database account of robot %s: not locked any more", robot)

@@ -342,7 +342,8 @@ def _settle(outcomes: list[Outcome]) -> None:
             job.future.set_exception(error)
 
 
-# --- The database: one connection in one thread of its own, so that the event loop never waits for a disk
+# --- The database: one connection in one thread of its own, so that the event loop never waits for a disk.
+# A second one, opened when it is first used, ends what keeps the first one waiting.
 
 T = TypeVar("T")
 WATCH_INTERVAL_S = 1.0
@@ -364,7 +365,10 @@ class Database:
         self._engine, self.dialect = open_engine(self.url, patience)
         self.offences = Offences()
         """What robots' accounts do to others."""
-        self._worker = DatabaseWorker(self._engine, self.dialect, shown(self.url), patience, self.offences)
+        self._worker, self._aside = (
+            DatabaseWorker(self._engine, self.dialect, shown(self.url), patience, self.offences)
+            for _ in range(2)
+        )
         self._watch: asyncio.Task[None] | None = None
         self._observers: list[Callable[[float], None]] = []
 
@@ -410,14 +414,14 @@ class Database:
         result: int | None = await self._submit(self.dialect.version, (), Durability.READ, alone=True)
         return result
 
-    async def run_alone(self, work: Callable[..., T], *arguments: Any) -> T:
-        """Run ``work`` outside of any transaction: it begins and ends its own; raises StoreError."""
-        result: T = await self._submit(work, arguments, Durability.READ, alone=True)
+    async def run_aside(self, work: Callable[..., T], *arguments: Any) -> T:
+        """As :meth:`run`, on a second connection: what keeps the first one waiting does not delay it."""
+        result: T = await self._submit(work, arguments, Durability.WRITE, worker=self._aside)
         return result
 
     async def end_stuck(self) -> None:
         """End robots' transactions that take too long; raises StoreError."""
-        await self._submit(_end_stuck, (), Durability.READ, alone=True)
+        await self.run_aside(end_blocking_sessions)
 
     def wakeup(self, channel: str) -> Wakeup:
         """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
@@ -451,7 +455,9 @@ class Database:
         """Close the connection and end the thread; one that takes longer than ``within`` seconds is left."""
         if self._watch is not None:
             self._watch.cancel()
-        await asyncio.to_thread(self._worker.close, within)
+        until = time.monotonic() + within
+        for worker in (self._worker, self._aside):
+            await asyncio.to_thread(worker.close, max(until - time.monotonic(), 0.0))
 
     async def _timed(self, work: Callable[..., T], arguments: tuple[Any, ...], mode: Durability) -> T:
         began = time.perf_counter()
@@ -464,20 +470,27 @@ class Database:
         return result
 
     async def _submit(
-        self, work: Callable[..., Any], arguments: tuple[Any, ...], mode: Durability, *, alone: bool = False
+        self,
+        work: Callable[..., Any],
+        arguments: tuple[Any, ...],
+        mode: Durability,
+        *,
+        alone: bool = False,
+        worker: DatabaseWorker | None = None,
     ) -> Any:
         loop = asyncio.get_running_loop()
         if self._watch is None:
             self._watch = loop.create_task(self._watch_over())
         future: asyncio.Future[Any] = loop.create_future()
-        self._worker.submit(DatabaseJob(work, arguments, loop, future, mode, alone))
+        (worker or self._worker).submit(DatabaseJob(work, arguments, loop, future, mode, alone))
         return await future
 
     async def _watch_over(self) -> None:
         """Cut the connection to a server that does not answer: a frozen one keeps no limits of its own."""
         while True:
             await asyncio.sleep(WATCH_INTERVAL_S)
-            self._worker.interrupt_if_stuck()
+            for worker in (self._worker, self._aside):
+                worker.interrupt_if_stuck()
 
 
 async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
@@ -485,11 +498,6 @@ async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
     task = asyncio.ensure_future(work)
     task.add_done_callback(lambda done: done.cancelled() or done.exception())
     return await asyncio.shield(task)
-
-
-def _end_stuck(connection: Connection) -> None:
-    with connection.begin():
-        end_blocking_sessions(connection)
 
 
 def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:

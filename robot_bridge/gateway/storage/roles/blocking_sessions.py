@@ -133,15 +133,14 @@ def robots_of_backends(connection: Connection, backends: Sequence[int]) -> list[
 def set_suspended(connection: Connection, robot: str, suspended: bool) -> bool:
     """Lock a robot's account and end its connections, or unlock it; false where the set-up cannot do that.
 
-    Must run outside of others' transactions: MariaDB commits with it.
+    MariaDB commits with it.
     """
-    with connection.begin():
-        if not _has_routine(connection, "suspend_robot"):
-            return False
-        verb = "select for_robots." if connection.dialect.name == "postgresql" else "call "
-        connection.execute(
-            text(f"{verb}suspend_robot(:robot, :suspended)"), {"robot": robot, "suspended": suspended}
-        )
+    if not _has_routine(connection, "suspend_robot"):
+        return False
+    verb = "select for_robots." if connection.dialect.name == "postgresql" else "call "
+    connection.execute(
+        text(f"{verb}suspend_robot(:robot, :suspended)"), {"robot": robot, "suspended": suspended}
+    )
     return True
 
 

@@ -123,6 +123,21 @@ def test_a_robot_at_one_is_seen_commanded_and_stopped_at_the_other(pair, name):
     clear(desk, pair.a)
 
 
+def test_accounts_that_are_suspended_are_named_at_both(pair, name):
+    desks = [desk_at(pair.a), desk_at(pair.b)]
+    until = time.time() + 3.0
+    pair.a.sql(
+        f"insert into bridge (name, value) values ('suspended', '{json.dumps({name: [until, 'blocks']})}')"
+    )
+    for desk in desks:
+        desk.until(lambda desk=desk: desk.suspended)
+        assert desk.suspended == [{"robot": name, "reason": "blocks", "until": pytest.approx(until)}]
+    # By the one that leads.
+    for desk in desks:
+        desk.until(lambda desk=desk: not desk.suspended)
+    assert pair.a.sql("select count(*) from bridge where name = 'suspended'") == [(0,)]
+
+
 def test_what_a_robot_declares_and_says_of_itself_is_seen_at_the_other_gateway(pair, name):
     robot, desk = pair.a.robot(name), desk_at(pair.b)
     robot.plug_in(1, asks_path=True, abilities=["targets", "map"])

@@ -64,7 +64,7 @@ async def test_what_only_reads_succeeds_beside_what_cannot_be_written(disk):
     await database.run(add, "first")
     disk.fill()
     # They wait for the database together, and so are done together.
-    busy = asyncio.create_task(database.run_alone(wait))
+    busy = asyncio.create_task(database.read(wait))
     works = [database.run(add, "x" * 60, 900), database.read(names), database.run(add, "x" * 60, 900)]
     written, read, again = await asyncio.gather(*works, return_exceptions=True)
     await busy

@@ -62,7 +62,7 @@ async def database(yard):
     database = Database(yard.address(GATEWAY))
     yield database
     for robot in (MINE, OTHER):
-        await database.run_alone(blocking_sessions.set_suspended, robot, False)
+        await database.run_aside(blocking_sessions.set_suspended, robot, False)
     await database.run(blocking_sessions.store_suspensions, {})
     await database.close()
 
@@ -103,6 +103,26 @@ async def test_who_blocks_three_times_in_a_minute_is_locked_out_and_let_in_again
     assert await database.read(blocking_sessions.stored_suspensions) == {}
 
 
+async def test_an_account_is_locked_out_while_a_command_waits_for_its_rows(yard, database):
+    waits, over = threading.Event(), threading.Event()
+
+    def work(_connection):
+        waits.set()
+        assert over.wait(60)
+
+    suspensions = AccountSuspensions(database, Commands(), Desks(), ManualClock())
+    waiting = asyncio.create_task(database.run(work))
+    try:
+        assert await asyncio.to_thread(waits.wait, 60)
+        database.offences.add_blocking([MINE] * 3)
+        async with asyncio.timeout(30):
+            await suspensions.update()
+        assert not can_connect(yard) and not waiting.done()
+    finally:
+        over.set()
+        await waiting
+
+
 async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database):
     clock, desks = ManualClock(), Desks()
     suspensions = AccountSuspensions(database, Commands(), desks, clock)
@@ -114,6 +134,22 @@ async def test_who_does_it_again_is_locked_out_for_twice_as_long(yard, database)
         clock.advance(seconds)
         await suspensions.update()
         assert suspensions.report().robots == [] and can_connect(yard)
+
+
+async def test_the_next_gateway_to_lead_unlocks_what_the_former_one_has_locked(yard, database):
+    clock, desks = ManualClock(), Desks()
+    former, following = (AccountSuspensions(database, Commands(), at, clock) for at in (Desks(), desks))
+    await following.follow()
+    database.offences.add_blocking([MINE] * 3)
+    await former.update()
+    await following.follow()
+    await following.follow()
+    assert desks.reported == [[(MINE, True)]] and not can_connect(yard)
+    # The former one is killed.
+    clock.advance(61)
+    await following.follow()
+    await following.update()
+    assert desks.reported[1:] == [[]] and can_connect(yard)
 
 
 async def test_no_account_is_locked_while_its_robot_awaits_an_abort(yard, database):
@@ -146,7 +182,7 @@ async def test_a_gateway_that_dies_before_the_lock_is_set_unlocks_all_the_same(y
 
 async def test_nobody_but_a_robot_of_this_database_is_locked_out(yard, database):
     for name in (GATEWAY, "postgres", "root", "nobody'; --", "nobody\"'"):
-        await database.run_alone(blocking_sessions.set_suspended, name, True)
+        await database.run_aside(blocking_sessions.set_suspended, name, True)
     assert can_connect(yard, GATEWAY) and can_connect(yard) and can_connect(yard, "admin")
     for session in (yard.of(MINE), yard.of(OTHER)):
         call = (
@@ -190,7 +226,7 @@ async def test_an_older_set_up_is_said_and_an_upgrade_mends_it(yard, database, c
     await asyncio.to_thread(
         run_once, yard.admin, lambda connection: role_manager_on(connection).renew_rights()
     )
-    assert await database.run_alone(blocking_sessions.set_suspended, MINE, True)
+    assert await database.run_aside(blocking_sessions.set_suspended, MINE, True)
     assert not can_connect(yard)
 
 
