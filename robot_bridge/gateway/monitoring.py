@@ -11,8 +11,9 @@ import logging
 import math
 import time
 from collections import Counter
-from collections.abc import Awaitable, Callable, Iterable, Iterator, Mapping
+from collections.abc import Awaitable, Callable, Coroutine, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
+from typing import Any
 
 from prometheus_client import CollectorRegistry, Histogram, ProcessCollector
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Metric
@@ -262,6 +263,29 @@ class Steps:
 
     def _is_news(self, step: str, error: Exception) -> bool:
         return self._news.has(step, f"{type(error).__name__} {error}")
+
+
+class BackgroundTasks:
+    """Tasks that nobody awaits, kept until they end: the event loop alone would let them be collected."""
+
+    def __init__(self) -> None:
+        self._tasks: set[asyncio.Task[None]] = set()
+
+    def __len__(self) -> int:
+        return len(self._tasks)
+
+    def start(self, work: Coroutine[Any, Any, None], name: str | None = None) -> asyncio.Task[None]:
+        """Start ``work`` as a task."""
+        task = asyncio.create_task(work, name=name)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+        return task
+
+    async def wait(self, most: int = 0) -> None:
+        """Wait until no more than ``most`` run, whatever becomes of them."""
+        until = asyncio.FIRST_COMPLETED if most else asyncio.ALL_COMPLETED
+        while len(self._tasks) > most:
+            await asyncio.wait(self._tasks, return_when=until)
 
 
 async def wait_at_most(event: asyncio.Event, seconds: float) -> None:

@@ -20,6 +20,7 @@ from ...core.messages.robots import PAYLOADS, Abort, SetMap
 from ...protocol.codec import parse_params, with_base64
 from ..fleet.emergency_persistence import HELD_BACK
 from ..fleet.service import Fleet
+from ..monitoring import BackgroundTasks
 from ..storage.repositories.requests import AnswerRow, Outbox
 
 
@@ -99,7 +100,7 @@ class Delivery:
         self._stops = 0
         self._last = {False: 0, True: 0}
         """the ids of the messages that were sent last, by urgency."""
-        self._stopping: set[asyncio.Task[None]] = set()
+        self._stopping = BackgroundTasks()
 
     @property
     def reader(self) -> Outbox:
@@ -132,9 +133,7 @@ class Delivery:
             # A task of each would come after thousands of others.
             if self._channel.send_at_once(frame):
                 return
-        task = asyncio.create_task(while_connected(self._channel.send(frame)))
-        self._stopping.add(task)
-        task.add_done_callback(self._stopping.discard)
+        self._stopping.start(while_connected(self._channel.send(frame)))
 
     def outdate(self) -> None:
         """Send nothing of what was read before: the robot is being told to stop."""

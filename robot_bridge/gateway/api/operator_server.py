@@ -46,6 +46,7 @@ from ..fleet.operator_updates import EVERYTHING, Tick
 from ..fleet.service import Fleet
 from ..fleet.views import ViewWatch
 from ..model.events import Answering
+from ..monitoring import BackgroundTasks
 
 # --- The order of requests, and what one overtakes ---
 
@@ -83,7 +84,7 @@ class RequestScheduler:
         self._settle = settle
         self._turn = _Lane(settle)
         self._aside = _Lane(settle)
-        self._stopping: set[asyncio.Task[None]] = set()
+        self._stopping = BackgroundTasks()
         self._late: list[ScheduledRequest] = []
         """what a stop has overtaken that has not had its own turn yet."""
 
@@ -103,22 +104,20 @@ class RequestScheduler:
     async def finish(self) -> None:
         """Wait for what stops robots and for what has been begun; forget the rest, the operator is gone."""
         self._aside.cancel()
-        await asyncio.gather(*self._stopping, self._turn.end(), return_exceptions=True)
+        await asyncio.gather(self._stopping.wait(), self._turn.end(), return_exceptions=True)
 
     async def _stop(self, scheduled: ScheduledRequest) -> None:
         emergency = isinstance(scheduled.request, EmergencyStop)
         if not emergency and len(self._stopping) >= MOST_STOPPING:
             await self._settle(scheduled, _too_many(scheduled))
             return
-        task = asyncio.create_task(self._settle(scheduled, None))
-        self._stopping.add(task)
-        task.add_done_callback(self._stopping.discard)
+        self._stopping.start(self._settle(scheduled, None))
         self.overtake(scheduled.request)
         overtaken, self._late = self._late, []
         for late in overtaken:
             await self._settle(late, _overtaken(late, scheduled))
-        while emergency and len(self._stopping) >= MOST_STOPPING + MOST_EMERGENCIES:
-            await asyncio.wait(self._stopping, return_when=asyncio.FIRST_COMPLETED)
+        if emergency:
+            await self._stopping.wait(MOST_STOPPING + MOST_EMERGENCIES - 1)
 
     async def _ask_aside(self, scheduled: ScheduledRequest) -> None:
         for older in self._aside.withdraw(lambda waiting: _is_renewed(waiting, scheduled)):

@@ -25,6 +25,7 @@ from ..auth.client_connection import ClientConnection
 from ..fleet.outbox import RequestOutcome
 from ..fleet.registration import ConnectionClaims
 from ..fleet.service import Fleet
+from ..monitoring import BackgroundTasks
 from ..storage.database import to_its_end
 from .delivery import Channel, Delivery, while_connected
 
@@ -88,7 +89,7 @@ class RobotSession:
         self._admitted = False
         self._delivery = Delivery(fleet, channel, robot)
         self._closing: asyncio.Task[None] | None = None
-        self._due: set[asyncio.Task[None]] = set()
+        self._due = BackgroundTasks()
         self._has_ended = False
         self._told_gateways: list[str] | None = None
 
@@ -163,41 +164,30 @@ class RobotSession:
 
     def follow_up(self, rest: Awaitable[None] | Exception) -> None:
         """See to the end what a position brought about, or tell what is wrong with it."""
-        self._begin(self._answer(POSITION, self._outcome(rest)))
+        self._due.start(while_connected(self._answer(POSITION, self._outcome(rest))))
 
     async def receive_pose(self, pose: SendPos) -> None:
         """Take in a position, at once where that can be; else behind what is being stored, or refuse it."""
         if not self.take_pose(pose):
-            await self._settled()
+            await self._due.wait()
             await self._answer(POSITION, self._ask(pose, None))
 
     async def receive(self, message: jsonrpc.Call | jsonrpc.Reply) -> None:
         """Deal with a call, behind what is still to be stored, or begin to deal with the reply to one."""
         if isinstance(message, jsonrpc.Call):
-            await self._settled()
+            await self._due.wait()
             await self._answer(message, self._receive_call(message))
         else:
-            while len(self._due) >= MOST_DUE:
-                await asyncio.wait(self._due, return_when=asyncio.FIRST_COMPLETED)
+            await self._due.wait(MOST_DUE - 1)
             self._receive_reply(message)
 
     async def refuse_frame(self, error: jsonrpc.FrameError, *, large: bool = False) -> None:
         """Tell the robot that a frame cannot be read, and operators too where it was too ``large``."""
-        await self._settled()
+        await self._due.wait()
         if large and self._admitted:
             self._fleet.refuse_large(self.robot, self._channel.name, str(error))
         self._warn(self._key_of("frames"), f"{self._who}: {error}")
         await self._channel.send(self._channel.error(error.id, error.code, str(error)))
-
-    async def _settled(self) -> None:
-        """Wait for what is being stored."""
-        if self._due:
-            await asyncio.wait(self._due)
-
-    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(while_connected(work))
-        self._due.add(task)
-        task.add_done_callback(self._due.discard)
 
     @property
     def _who(self) -> str:
@@ -272,7 +262,7 @@ class RobotSession:
             storing = self._fleet.acknowledge(self.robot, self._channel.name, ack)
         except Exception as error:
             storing = error
-        self._begin(self._finish_reply(reply.id, storing))
+        self._due.start(while_connected(self._finish_reply(reply.id, storing)))
 
     async def _finish_reply(self, id: int | str | None, storing: Awaitable[None] | Exception) -> None:
         try:

@@ -7,7 +7,7 @@ import contextlib
 import itertools
 import logging
 from collections import Counter
-from collections.abc import AsyncIterator, Coroutine
+from collections.abc import AsyncIterator
 from typing import Any, TypeVar
 
 import msgspec
@@ -38,6 +38,7 @@ from ..fleet.link_supervision import ConnectedLink
 from ..fleet.service import Fleet
 from ..model.events import GatewaysChanged, RobotLeft
 from ..model.robots import RobotPose
+from ..monitoring import BackgroundTasks
 from .delivery import while_connected
 from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answering, send_frame
 from .shared_connection import SEPARATOR, LinkedRobotChannel
@@ -83,7 +84,7 @@ class LinkConnection:
         self._places: dict[str, LinkedRobotChannel] = {}
         self._robots = gate.robots_of_link(connection)
         self._turn, self._large = asyncio.Lock(), asyncio.Lock()
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks = BackgroundTasks()
         self._numbers = itertools.count(1)
         self._pending_calls: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
 
@@ -140,7 +141,7 @@ class LinkConnection:
             place.session.outdate()
         frame = jsonrpc.call(AbortOfAll.method, to_json(AbortOfAll(call_id)))
         if not self.send_at_once(frame):
-            self._begin(self.send(frame))
+            self._tasks.start(while_connected(self.send(frame)))
 
     async def send_gateways(self) -> None:
         """Send where the gateways of the fleet are to a link that has said hello; raises ConnectionClosed."""
@@ -157,7 +158,9 @@ class LinkConnection:
         for place in list(self._places.values()):
             if not speaks_for(robots, place.robot):
                 self._holders.release(place.session)
-                self._begin(place.release(f"link {self.name} may not speak for it any more"))
+                self._tasks.start(
+                    while_connected(place.release(f"link {self.name} may not speak for it any more"))
+                )
 
     # --- what its robots share ----------------------------------------------------------------------------
 
@@ -194,11 +197,6 @@ class LinkConnection:
         """Carry nothing more for a robot, until the link says Ready for it again."""
         if self._places.get(place.robot) is place:
             del self._places[place.robot]
-
-    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(while_connected(work))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
 
     # --- what comes in ------------------------------------------------------------------------------------
 
@@ -239,7 +237,7 @@ class LinkConnection:
                 await self.send(jsonrpc.result(call.id, {}))
         elif call.method == GetAreas.method:
             # Those of a city take a moment, and its robots' messages are not to wait.
-            self._begin(self._tell_areas(call.id, _decoded(GetAreas, call)))
+            self._tasks.start(while_connected(self._tell_areas(call.id, _decoded(GetAreas, call))))
         elif call.method == LinkPositions.method:
             for entry in entries_in(call.params):
                 method = "SendGPS" if "lat" in entry else "SendPos"
@@ -387,7 +385,7 @@ class WebSocketInterface:
         fleet.orders.reach(self.abort)
         fleet.events.subscribe(RobotLeft, self._let_go)
         fleet.events.subscribe(GatewaysChanged, self._announce_gateways)
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks = BackgroundTasks()
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
         """Serve one connection to its end; without a name the robot is given one."""
@@ -455,21 +453,16 @@ class WebSocketInterface:
             session.replace(reason, again=True)
 
     def _announce_gateways(self, _: GatewaysChanged) -> None:
-        self._begin(self._send_gateways())
+        self._tasks.start(self._send_gateways())
 
     async def _send_gateways(self) -> None:
         """Send links and robots where the gateways are; none waits for one that reads nothing."""
         connections: list[LinkConnection | RobotSession] = [*self._links, *self._sessions]
         for number, connection in enumerate(connections, 1):
-            self._begin(while_connected(connection.send_gateways()))
+            self._tasks.start(while_connected(connection.send_gateways()))
             if number % AT_ONCE == 0:
                 # Thousands of robots would hold up what is sent meanwhile.
                 await asyncio.sleep(0)
-
-    def _begin(self, work: Coroutine[Any, Any, None]) -> None:
-        task = asyncio.create_task(work)
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
 
     def _free_name(self) -> str:
         taken = {*self._fleet.robots.names(), *self._names}

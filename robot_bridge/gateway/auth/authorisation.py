@@ -16,6 +16,7 @@ from ...core.clock import SYSTEM_CLOCK, Clock
 from ...core.errors import AccessError, StoreError, counted
 from ...core.messages.base import Role
 from ...core.sites.settings_tables import LimitSettings
+from ..monitoring import BackgroundTasks
 from ..storage.database import Database
 from . import audit
 from .accounts import AccountCache, TokenKind, new_id, token_in
@@ -45,7 +46,7 @@ class ConnectionRegistry:
         self._counts: Counter[object] = Counter()
         self._pending: defaultdict[str, dict[ClientConnection, None]] = defaultdict(dict)
         self._shed_lines = RateLimit(SHED_LINES_PER_S, SHED_LINES)
-        self._endings: set[asyncio.Task[None]] = set()
+        self._endings = BackgroundTasks()
 
     def __iter__(self) -> Iterator[tuple[ClientConnection, Identity]]:
         return iter(list(self._inside.items()))
@@ -135,9 +136,7 @@ class ConnectionRegistry:
             self._journal.ended(identity.session, reason)
         # A close frame carries at most 123 bytes of reason.
         short = reason.encode()[:120].decode(errors="ignore")
-        task = asyncio.get_running_loop().create_task(visitor.expel(code, short))
-        self._endings.add(task)
-        task.add_done_callback(self._endings.discard)
+        self._endings.start(visitor.expel(code, short))
 
     def _take_out(self, visitor: ClientConnection) -> Identity | None:
         identity = self._inside.pop(visitor, None)

@@ -15,6 +15,7 @@ from sqlalchemy import Connection
 from ...core.errors import StoreError, listed_names
 from ...core.logs import log_and_continue
 from ...core.messages.base import DeskRequest
+from ..monitoring import BackgroundTasks
 from ..storage.database import Database, to_its_end
 from ..storage.repositories import gateways
 from ..storage.repositories import robots as stored_robots
@@ -253,7 +254,7 @@ class NameClaims:
         self._exchange = exchange
         self._holder = holder
         self._asked: dict[str, asyncio.Future[str | None]] = {}
-        self._answering: set[asyncio.Task[None]] = set()
+        self._answering = BackgroundTasks()
         exchange.subscribe(NameQuery, self._begin_answer)
         exchange.subscribe(NameAnswer, self._answered)
 
@@ -279,9 +280,7 @@ class NameClaims:
         return None if refusal is None else f"at gateway {gateway} {refusal}"
 
     def _begin_answer(self, query: NameQuery) -> None:
-        task = asyncio.create_task(self._answer(query))
-        self._answering.add(task)
-        task.add_done_callback(self._answering.discard)
+        self._answering.start(self._answer(query))
 
     async def _answer(self, query: NameQuery) -> None:
         with log_and_continue(log, f"answering gateway {query.gw} about robot {query.robot!r}"):

@@ -55,7 +55,7 @@ from ...core.messages.robots import Abort
 from ...protocol.codec import decode_desk_request
 from ..model.events import Answering
 from ..model.robots import Robots
-from ..monitoring import wait_at_most
+from ..monitoring import BackgroundTasks, wait_at_most
 from ..storage.database import Database
 from ..storage.repositories import commands, gateways
 from ..storage.repositories.gateways import NewRequest, TakenRequest
@@ -126,7 +126,7 @@ class RequestRelay:
         self._database = database
         self._asked = asyncio.Event()
         self._answered: dict[int, asyncio.Event] = {}
-        self._doing: set[asyncio.Task[None]] = set()
+        self._doing = BackgroundTasks()
         self._links: list[Callable[[str, str], bool]] = []
         exchange.subscribe(Wake, self._woken)
         exchange.subscribe(AbortCall, self._abort)
@@ -290,9 +290,7 @@ class RequestRelay:
             return
         begun = await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE)
         for request in begun:
-            task = asyncio.create_task(self._do(request))
-            self._doing.add(task)
-            task.add_done_callback(self._doing.discard)
+            self._doing.start(self._do(request))
         if len(begun) == MOST_AT_ONCE:
             # More may wait, Aborts of a whole fleet among them, for which nobody wakes this gateway again.
             self._asked.set()

@@ -17,6 +17,7 @@ from ...core.logs import log_and_continue
 from ...core.messages.commands import CommandReport
 from ...core.messages.robots import Abort, Answer, Command, SendPos, SetPosIni
 from ...protocol.codec import decode_answer
+from ..monitoring import BackgroundTasks
 from ..storage.database import Database
 from ..storage.repositories import closures, commands, queues
 from ..storage.repositories import requests as answers
@@ -404,7 +405,7 @@ class RobotSequences:
     def __init__(self, judge: PositionJudge) -> None:
         self._judge = judge
         self._waiting: dict[str, deque[_Work | SendPos]] = {}
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks = BackgroundTasks()
 
     def add_position(self, robot: str, pose: SendPos) -> bool:
         """Have a position judged behind what is being done; false, where that is nothing."""
@@ -427,9 +428,7 @@ class RobotSequences:
             waiting.append(entry)
             return future
         self._waiting[robot] = deque([entry])
-        task = asyncio.create_task(self._run(robot))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._tasks.start(self._run(robot))
         return future
 
     async def _run(self, robot: str) -> None:

@@ -35,6 +35,7 @@ from ..model.events import (
 from ..model.fence_stays import DONE, Clearances, FoundStays, Stay, Stays, find_stays, finite_places
 from ..model.robot_columns import DOUBTED, FRESH, LOCATED, OFFLINE, POSE_AT, RobotPlaces, X, Y
 from ..model.robots import Robots
+from ..monitoring import BackgroundTasks
 from ..queues.requests import PauseService
 from ..site.places import ServedSite
 from .emergency_stop import EmergencyStops
@@ -113,7 +114,7 @@ class GeofenceWatch:
         """The gateways that judge their robots themselves."""
         self._judged: set[str] = set()
         """The robots that were judged here since they came from another gateway."""
-        self._acting: set[asyncio.Task[None]] = set()
+        self._acting = BackgroundTasks()
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
         """When a report was made last, and of how many stays."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
@@ -173,7 +174,7 @@ class GeofenceWatch:
 
     async def settle(self) -> None:
         """Wait until every stop that was begun is done or has failed once."""
-        await asyncio.gather(*self._acting, return_exceptions=True)
+        await self._acting.wait()
 
     async def _fences(self) -> Fences:
         """Return what robots must not be in; what has changed of that is made beside all other work."""
@@ -228,9 +229,7 @@ class GeofenceWatch:
 
     def _stop_by_task(self, stay: Stay) -> None:
         stay.outcome = "asked"
-        acting = asyncio.create_task(self._act(stay), name=f"geofence: {stay.action} {stay.robot}")
-        self._acting.add(acting)
-        acting.add_done_callback(self._acting.discard)
+        self._acting.start(self._act(stay), f"geofence: {stay.action} {stay.robot}")
 
     async def _act(self, stay: Stay) -> None:
         """Stop the robot; tried again for as long as it is there, under the same id."""

@@ -32,6 +32,7 @@ from ...core.logs import log_unforeseen
 from ...core.messages.base import MessageError
 from ...core.messages.plans import MOST_CONES, PlanReport, PlanState
 from ..commands.active_command import GATEWAY
+from ..monitoring import BackgroundTasks
 from ..queues.registry import TRIES, QueueContext
 from ..queues.requests import QueueEditor, QueueEntries
 from ..traffic.road_planning import RoadPlanner
@@ -146,7 +147,7 @@ class Replanner:
         self._plans = plans
         self._stops = stops
         self._making: dict[str, _Making] = {}
-        self._tasks: set[asyncio.Task[None]] = set()
+        self._tasks = BackgroundTasks()
 
     async def hold(self, one: model.FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
         """Hold the robots of a plan, to have what is left planned by the gateway that leads.
@@ -214,9 +215,7 @@ class Replanner:
         ground = ReplanGround(plan.terms, standing_cones(one.progress), standing, self._plans.planner)
         making = _Making(Replanning(plan.document, ground, situation), plan.revision)
         self._making[plan.name] = making
-        task = asyncio.create_task(self._make(plan.name, making, ground))
-        self._tasks.add(task)
-        task.add_done_callback(self._tasks.discard)
+        self._tasks.start(self._make(plan.name, making, ground))
 
     def cancel(self, plan: str) -> None:
         """Let nothing come of what is being planned of what is left of a plan, and have that end soon."""
@@ -275,7 +274,7 @@ class Replanner:
         # It stays stored as being planned again: the next gateway begins that again.
         for plan in list(self._making):
             self.cancel(plan)
-        await asyncio.gather(*self._tasks, return_exceptions=True)
+        await self._tasks.wait()
 
     async def _make(self, plan: str, making: _Making, ground: ReplanGround) -> None:
         try:

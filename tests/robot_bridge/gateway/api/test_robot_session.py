@@ -265,7 +265,7 @@ async def test_a_stop_of_a_link_outdates_what_each_of_its_robots_was_to_be_sent(
     connection.is_sending = True
     link.stop_all("emergency-stop-0001")
     assert len(connection.sent) == 1
-    await asyncio.gather(*link._tasks)
+    await link._tasks.wait()
     assert [frame["params"] for frame in connection.sent] == [stop, stop]
 
 
