@@ -172,10 +172,6 @@ class GeofenceWatch:
             fault=self._fault,
         )
 
-    async def settle(self) -> None:
-        """Wait until every stop that was begun is done or has failed once."""
-        await self._acting.wait()
-
     async def _fences(self) -> Fences:
         """Return what robots must not be in; what has changed of that is made beside all other work."""
         fences = await asyncio.to_thread(self._site.fences)

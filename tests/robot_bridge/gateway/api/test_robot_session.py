@@ -90,7 +90,7 @@ async def test_a_position_in_which_something_goes_wrong_is_answered_with_the_num
         assert own._take_at_once(POSITION)
     else:
         await own._receive(POSITION)
-    await own.session._settled()
+    await own.session._due.wait()
     (told,) = connection.sent
     assert told["error"]["code"] == jsonrpc.INTERNAL_ERROR
     assert NUMBER.match(told["error"]["message"])[1] == logged(caplog)
@@ -102,7 +102,7 @@ async def test_an_acknowledgement_in_which_something_goes_wrong_is_in_the_log_an
     own, connection, caplog, id
 ):
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
-    await own.session._settled()
+    await own.session._due.wait()
     assert logged(caplog)
     assert f"robot 'r1', acknowledgement {id}" in caplog.text
     assert connection.sent == []
@@ -120,7 +120,7 @@ async def test_what_a_robot_said_is_asked_for_again_unless_the_database_refuses_
     monkeypatch.setattr(own.session._delivery, "begin", lambda: begun.append("at once"))
     monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "error": {"code": 1, "message": "no"}}))
-    await own.session._settled()
+    await own.session._due.wait()
     assert begun == again
 
 
@@ -137,7 +137,7 @@ async def test_a_full_disk_is_told_to_the_log_of_all_that_a_robot_says_together(
         for id in range(9):
             await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "method": method, "params": params}))
             await own._receive(json.dumps({"jsonrpc": "2.0", "id": id, "result": {}}))
-    await own.session._settled()
+    await own.session._due.wait()
     assert caplog.text.count("the disk is full") == IN_FULL
 
 
@@ -152,7 +152,7 @@ async def test_nothing_is_sent_again_over_a_connection_that_has_ended(own, monke
     monkeypatch.setattr(own.session._delivery, "begin_later", lambda: begun.append(1))
     await own._receive(json.dumps({"jsonrpc": "2.0", "id": 7, "result": {}}))
     own.session.end()
-    await own.session._settled()
+    await own.session._due.wait()
     assert begun == []
 
 
@@ -177,7 +177,7 @@ async def test_a_robot_that_acknowledges_ever_more_waits_for_what_is_being_store
     assert len(begun) == MOST_DUE and not talking.done() and not own._take_at_once(POSITION)
     free.set()
     await talking
-    await own.session._settled()
+    await own.session._due.wait()
     assert len(begun) == MOST_DUE + 10 and own._take_at_once(POSITION)
 
 

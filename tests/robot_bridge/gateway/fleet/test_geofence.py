@@ -35,7 +35,7 @@ async def guarded(roads, monkeypatch):
     await roads.drive("one", [OUTSIDE, (100.0, 22.0)])
     await look(roads)
     yield roads
-    for acting in list(roads.fleet.geofence._acting):
+    for acting in list(roads.fleet.geofence._acting._tasks):
         acting.cancel()
 
 
@@ -43,7 +43,7 @@ async def look(yard):
     """Let the geofence judge, act, and tell."""
     async with asyncio.timeout(PATIENCE):
         await yard.fleet.geofence.watch()
-        await yard.fleet.geofence.settle()
+        await yard.fleet.geofence._acting.wait()
     return yard.fleet.geofence.report()
 
 
@@ -280,7 +280,7 @@ async def test_a_failed_stop_is_told_with_the_reason_and_given_up_when_the_robot
     guarded.now += 3
     await look(guarded)
     assert geofence.report().alarms == []
-    assert not geofence._acting
+    assert len(geofence._acting) == 0
 
 
 async def test_a_robot_that_cannot_be_paused_is_aborted(guarded, monkeypatch):
