@@ -16,7 +16,7 @@ from typing import Any
 from urllib.parse import urlsplit
 
 from benchmarks.sql_robots import Ear, where
-from robot_bridge.gateway.storage.dialects import GATEWAY_DOZES
+from robot_bridge.gateway.storage.dialects import NOTIFICATIONS_LOCK
 from robot_bridge.gateway.storage.wakeups import LONGEST_S, SHORTEST_S
 
 READ = "select id, robot, op, params from rr order by id limit 500"
@@ -142,7 +142,7 @@ class PostgreSQL(Server):
 
     def look_before_sleep(self) -> bool:
         """Have robots notify, which they do only while somebody dozes: their commits then wait in line."""
-        lock = f"select pg_try_advisory_lock({GATEWAY_DOZES})"
+        lock = f"select pg_try_advisory_lock({NOTIFICATIONS_LOCK})"
         self.dozes = bool(self.connection.execute(lock).fetchone()[0])
         return self.dozes and self.look()
 
@@ -152,7 +152,7 @@ class PostgreSQL(Server):
             return
         if not found:
             self.ear.wait()
-        self.connection.execute(f"select pg_advisory_unlock({GATEWAY_DOZES})")
+        self.connection.execute(f"select pg_advisory_unlock({NOTIFICATIONS_LOCK})")
         self.dozes = False
 
 

@@ -199,7 +199,7 @@ class ExpressionUpdater(QObject):
 
     def _pulled(self) -> None:
         self._watch_named()
-        if self._turn.has_come():
+        if self._turn.is_due():
             self.feed()
 
     def _watch_named(self) -> None:

@@ -432,10 +432,10 @@ class RobotRemoval:
         gone = self._gone()
         why = why_not(self._desk.state.link) or ("" if gone else tr("No robot is lost or offline."))
         if why:
-            self._desk.complained.emit(tr("No robot was removed: {why}", why=why))
+            self._desk.warning.emit(tr("No robot was removed: {why}", why=why))
             return
         if told := part_in_words(self._desk.state.robots):
-            self._desk.complained.emit(f"{told} {tr('Others cannot be chosen here.')}")
+            self._desk.warning.emit(f"{told} {tr('Others cannot be chosen here.')}")
         chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)
@@ -465,10 +465,10 @@ class RobotRemoval:
             "%n robots were removed: {names}",
             names=_in_words(removed),
         )
-        self._desk.noted.emit(text)
+        self._desk.info.emit(text)
         if kept:
             why = "; ".join(first_of([one["reason"] for one in kept]))
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr_count(
                     len(kept), "1 robot was not removed: {why}", "%n robots were not removed: {why}", why=why
                 )

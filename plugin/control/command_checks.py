@@ -70,16 +70,16 @@ def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
     )
 
 
-def check_map(placement: SiteToMapTransform) -> Findings:
+def check_map(transform: SiteToMapTransform) -> Findings:
     """Warn where the map has no CRS: then QGIS puts layers of every CRS into one map, each by its numbers."""
-    if placement.map_crs.isValid():
+    if transform.map_crs.isValid():
         return Findings()
     return Findings(
         warnings=(
             tr(
                 "The project has no CRS, so the map is taken to be in the site's, {crs}; a layer in another "
                 "CRS lies at a wrong place on it. Choose the project's CRS at the bottom right in QGIS.",
-                crs=placement.site_crs.authid(),
+                crs=transform.site_crs.authid(),
             ),
         )
     )
@@ -114,7 +114,7 @@ class LayerCheck(QObject):
         self._readings.remove()
 
     def check_command(
-        self, draft: PendingCommand, placement: SiteToMapTransform, afresh: bool = False
+        self, draft: PendingCommand, transform: SiteToMapTransform, afresh: bool = False
     ) -> Steps[Findings]:
         """Find what touches a keepout or an obstacle, warn of what leaves the road; ``afresh`` all of it.
 
@@ -126,7 +126,7 @@ class LayerCheck(QObject):
         if not is_looked_at(draft):
             return Findings()
         layers = {check: self._layers(check) for check in self._checks}
-        looked_at = (placement, *(tuple(layer.id() for layer in of_one) for of_one in layers.values()))
+        looked_at = (transform, *(tuple(layer.id() for layer in of_one) for of_one in layers.values()))
         if afresh or looked_at != self._kept_for:
             self._kept.clear()
         self._kept_for = looked_at
@@ -136,7 +136,7 @@ class LayerCheck(QObject):
         # By themselves for each draft: another one is checked beside it, and may find the layer read.
         unread: dict[str, Unread] = {}
         for number, check in enumerate(self._checks):
-            work = self._look_by(check, layers[check], draft, placement, unread)
+            work = self._look_by(check, layers[check], draft, transform, unread)
             findings += yield from scaled_progress(work, number, len(self._checks))
         return self._unseen(unread) + findings
 
@@ -145,7 +145,7 @@ class LayerCheck(QObject):
         check: Check,
         layers: Sequence[QgsVectorLayer],
         draft: PendingCommand,
-        placement: SiteToMapTransform,
+        transform: SiteToMapTransform,
         unread: dict[str, Unread],
     ) -> Steps[Findings]:
         kept = self._kept.get(check, {})
@@ -159,7 +159,7 @@ class LayerCheck(QObject):
         missing = list(new)
         ids = [layer.id() for layer in layers]
         for number, layer in enumerate(layers if missing else ()):
-            work = check.check_paths(layer, missing, placement)
+            work = check.check_paths(layer, missing, transform)
             try:
                 hits = yield from scaled_progress(work, number, len(layers))
             except UnreadError as error:
@@ -385,8 +385,8 @@ class OtherTarget(NamedTuple):
 class TargetCheck:
     """Knows the targets of all robots, now and in their queues; reads only those with news again."""
 
-    def __init__(self, book: CommandCache, queues: QueueCache):
-        self._book = book
+    def __init__(self, cache: CommandCache, queues: QueueCache):
+        self._cache = cache
         self._queues = queues
         self._of: dict[str, list[OtherTarget]] = {}
         self._with_news: set[str] = set()
@@ -423,7 +423,7 @@ class TargetCheck:
         if not self._with_news:
             return
         for robot in self._with_news:
-            self._of[robot] = [*_now(self._book.task_of(robot)), *self._later(robot)]
+            self._of[robot] = [*_now(self._cache.task_of(robot)), *self._later(robot)]
             if not self._of[robot]:
                 del self._of[robot]
         self._with_news.clear()
@@ -552,9 +552,9 @@ class CommandChecks(QObject):
 
         :raises FleetError: when there is no site or a layer cannot be read.
         """
-        placement = self._site_to_canvas.transform()
-        found = check_bounds(draft.points, placement.site) + check_map(placement)
-        found += yield from self._layers.check_command(draft, placement, afresh)
+        transform = self._site_to_canvas.transform()
+        found = check_bounds(draft.points, transform.site) + check_map(transform)
+        found += yield from self._layers.check_command(draft, transform, afresh)
         found += draft.way.findings
         # At the end, so that nobody is sent there meanwhile.
         found += self._targets.check_command(draft)

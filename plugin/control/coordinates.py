@@ -129,17 +129,17 @@ def read_site_place(
     :raises FarPlaceError: when the place is far from the site, or the site holds it with the numbers swapped.
     :raises MapTransformError: when the place cannot be expressed in the site's CRS.
     """
-    placement = SiteToMapTransform(site, crs, context)
+    transform = SiteToMapTransform(site, crs, context)
     x, y = read_place(text, geographic=crs.isGeographic())
     swapped = _swapped_pair(x, y, crs)
     try:
-        point = placement.to_site(QgsPointXY(x, y))
+        point = transform.to_site(QgsPointXY(x, y))
     except MapTransformError:
-        if _is_inside(swapped, placement):
+        if _is_inside(swapped, transform):
             raise _swapped_error(text, swapped, site, crs) from None
         raise
     away = metres_outside(point, site)
-    if away and _is_inside(swapped, placement):
+    if away and _is_inside(swapped, transform):
         raise _swapped_error(text, swapped, site, crs)
     if away > FURTHEST_M:
         raise _far_error(text, away, site, crs)
@@ -160,14 +160,14 @@ def _swapped_pair(x: float, y: float, crs: QgsCoordinateReferenceSystem) -> Poin
     return y, x
 
 
-def _is_inside(swapped: Point | None, placement: SiteToMapTransform) -> bool:
+def _is_inside(swapped: Point | None, transform: SiteToMapTransform) -> bool:
     if swapped is None:
         return False
     try:
-        point = placement.to_site(QgsPointXY(*swapped))
+        point = transform.to_site(QgsPointXY(*swapped))
     except MapTransformError:
         return False
-    return not metres_outside(point, placement.site)
+    return not metres_outside(point, transform.site)
 
 
 def _swapped_error(

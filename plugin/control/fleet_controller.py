@@ -67,13 +67,13 @@ class FleetController(QObject):
     """An emergency stop was asked for, or the gateway said how one stands."""
     failed = pyqtSignal(str)
     """Something that was asked for was not done: the text must not go unseen."""
-    settled = pyqtSignal(str)
+    resolved = pyqtSignal(str)
     """What ``failed`` told with this text is over: it need not hang there any longer."""
-    complained = pyqtSignal(str)
+    warning = pyqtSignal(str)
     """A text that the operator needs in order to go on."""
-    noted = pyqtSignal(str)
+    info = pyqtSignal(str)
     """What came of something small: a text that is seen for a while, whatever else is told of drafts."""
-    remarked = pyqtSignal(str)
+    hint = pyqtSignal(str)
     """A text that the operator may want to see where drafts are told of, while there is none."""
 
     def __init__(
@@ -141,27 +141,25 @@ class FleetController(QObject):
         """Tell as the desk's own what its parts have to say to the operator."""
         for signal, level in (
             (self.failed, Level.ERROR),
-            (self.complained, Level.WARNING),
-            (self.noted, Level.INFO),
+            (self.warning, Level.WARNING),
+            (self.info, Level.INFO),
         ):
             signal.connect(lambda text, level=level: self.messages.post(text, level))
-        self.settled.connect(self.messages.withdraw)
+        self.resolved.connect(self.messages.withdraw)
         self.state.replaced.connect(self.failed)
         self.sender.failed.connect(self.failed)
-        self.sender.settled.connect(self.settled)
+        self.sender.resolved.connect(self.resolved)
         self.orders.retried.connect(self.messages.end)
         self.sending.failed.connect(lambda text, topics: self.report_failure(text, *topics))
         self.selection.changed.connect(self._endings.selection_changed)
-        self.sending.complained.connect(
-            lambda text: self.messages.post(text, Level.WARNING, messages.NO_DRAFT)
-        )
-        self.orders.accepted.connect(self.remarked)
+        self.sending.warning.connect(lambda text: self.messages.post(text, Level.WARNING, messages.NO_DRAFT))
+        self.orders.accepted.connect(self.hint)
         self.orders.slow.connect(self.failed)
-        self.orders.settled.connect(self.settled)
+        self.orders.resolved.connect(self.resolved)
         for notices in (self._suspensions, self._links, self._site_problem):
             notices.began.connect(self.failed)
-            notices.over.connect(self.settled)
-        self.preview.refused.connect(self.complained)
+            notices.over.connect(self.resolved)
+        self.preview.refused.connect(self.warning)
 
     def open_link(
         self,
@@ -225,7 +223,7 @@ class FleetController(QObject):
 
     def _replanned(self, robot: ReplannedRobot) -> None:
         if robot.became == "another way":
-            self.remarked.emit(robot.text)
+            self.hint.emit(robot.text)
         else:
             self.messages.post(robot.text, Level.ERROR, messages.robot_topic(robot.robot))
 

@@ -101,7 +101,7 @@ def is_looked_at(draft: PendingCommand) -> bool:
 
 def lines_in(
     tracks: Sequence[CheckedPath],
-    placement: SiteToMapTransform,
+    transform: SiteToMapTransform,
     layer: QgsVectorLayer | None,
     project: QgsProject,
 ) -> Steps[list[QgsGeometry]]:
@@ -111,10 +111,10 @@ def lines_in(
     """
     flat = np.fromiter(chain.from_iterable(chain.from_iterable(tracks)), np.float64)
     yield 0.0
-    corners = placement.frame.to_crs(flat.reshape(-1, 2))
+    corners = transform.frame.to_crs(flat.reshape(-1, 2))
     if layer is not None and layer.crs().isValid():
         corners = transform_or_raise(
-            corners, QgsCoordinateTransform(placement.site_crs, layer.crs(), project)
+            corners, QgsCoordinateTransform(transform.site_crs, layer.crs(), project)
         )
     lines = []
     at = 0
@@ -363,11 +363,11 @@ class KeepoutCheck:
         return legs(draft)
 
     def check_paths(
-        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], transform: SiteToMapTransform
     ) -> Steps[dict[int, list[str]]]:
         """Find the names of the keepouts in ``layer`` by the numbers of the tracks that enter them."""
         found: dict[int, list[str]] = {}
-        lines = yield from lines_in(tracks, placement, layer, self._project)
+        lines = yield from lines_in(tracks, transform, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
         near = yield from self._readings.near(layer, boxes)
         for feature, numbers in near:
@@ -423,14 +423,14 @@ class ObstacleCheck:
         return drawn_by_hand(draft)
 
     def check_paths(
-        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], transform: SiteToMapTransform
     ) -> Steps[dict[int, list[Hit]]]:
         """Find the obstacles in ``layer`` by the numbers of the tracks that are too near to them.
 
         :raises MapTransformError: when the layer has no place in the site's CRS.
         """
-        way = QgsCoordinateTransform(layer.crs(), placement.site_crs, self._project)
-        lines = yield from lines_in(tracks, placement, None, self._project)
+        way = QgsCoordinateTransform(layer.crs(), transform.site_crs, self._project)
+        lines = yield from lines_in(tracks, transform, None, self._project)
         found: dict[int, list[Hit]] = {}
         try:
             check_transform(way)
@@ -516,11 +516,11 @@ class SurfaceCheck:
         yield from (track for track in drawn_by_hand(draft) if len(track) > 1)
 
     def check_paths(
-        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], placement: SiteToMapTransform
+        self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], transform: SiteToMapTransform
     ) -> Steps[dict[int, list[Share]]]:
         """Find what surfaces of ``layer`` hold of the tracks, by the tracks' numbers."""
         found: dict[int, list[Share]] = {}
-        lines = yield from lines_in(tracks, placement, layer, self._project)
+        lines = yield from lines_in(tracks, transform, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
         near = yield from self._readings.near(layer, boxes)
         for feature, numbers in near:

@@ -41,7 +41,7 @@ class RequestSender(QObject):
 
     failed = pyqtSignal(str)
     """What stops robots waits for the link: the text, which must not go unseen."""
-    settled = pyqtSignal(str)
+    resolved = pyqtSignal(str)
     """What ``failed`` told with this text is over."""
 
     def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
@@ -95,7 +95,7 @@ class RequestSender(QObject):
     def _link_changed(self) -> None:
         if self._state.link.phase is ConnectionPhase.CONNECTED:
             for text in self._not_sent_yet:
-                self.settled.emit(text)
+                self.resolved.emit(text)
             self._not_sent_yet.clear()
 
 
@@ -131,7 +131,7 @@ class RequestTracker(QObject):
     kept = pyqtSignal(str, str)
     """A command is in the gateway's keeping: its id, and what it is in words. Its steps follow as reports."""
     slow = pyqtSignal(str)
-    settled = pyqtSignal(str)
+    resolved = pyqtSignal(str)
     """An order that ``slow`` told of with this text has been answered."""
 
     def __init__(
@@ -263,7 +263,7 @@ class RequestTracker(QObject):
         if pending is None:
             return
         if pending.slow_notice:
-            self.settled.emit(pending.slow_notice)
+            self.resolved.emit(pending.slow_notice)
         if answer.error is not None:
             self.refused.emit(f"{pending.words}: {answer.error}", pending.draft, pending.topics)
             return

@@ -107,7 +107,7 @@ class CommandSender(QObject):
 
     failed = pyqtSignal(str, object)
     """A draft was not sent: the text, which must not go unseen, and its topics."""
-    complained = pyqtSignal(str)
+    warning = pyqtSignal(str)
     """There is none to be sent."""
     waiting_changed = pyqtSignal()
     """A target whose way is sought is to be sent as soon as that is known, or is not any more."""
@@ -140,7 +140,7 @@ class CommandSender(QObject):
         if self.is_second_press():
             return
         if draft is None:
-            self.complained.emit(
+            self.warning.emit(
                 tr(
                     "There is nothing to send. Select a robot, then set a cone target or draw a route on "
                     "the map."

@@ -256,10 +256,10 @@ class ViewSubscription(QObject):
 
     def _placed(self, extent: QgsRectangle, site: Bounds) -> Bounds:
         try:
-            placement = self._site_to_canvas.transform()
+            transform = self._site_to_canvas.transform()
             width, height = extent.width(), extent.height()
             points = [
-                placement.to_site(QgsPointXY(extent.xMinimum() + x * width, extent.yMinimum() + y * height))
+                transform.to_site(QgsPointXY(extent.xMinimum() + x * width, extent.yMinimum() + y * height))
                 for x, y in EDGE
             ]
         except MapTransformError:

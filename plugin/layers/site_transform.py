@@ -474,7 +474,7 @@ class PositionCrs(QObject):
         QgsSettings().setValue(POSITION_CRS_KEY, crs.authid() if crs.isValid() else "")
         self.changed.emit()
 
-    def placed(self, xy: Floats, placement: SiteToMapTransform) -> Floats:
+    def placed(self, xy: Floats, transform: SiteToMapTransform) -> Floats:
         """Return (n, 2) metres in the site frame in the chosen CRS, not finite where it has no such place.
 
         :raises MapTransformError: when the site's CRS is not usable.
@@ -482,11 +482,11 @@ class PositionCrs(QObject):
         if not self._crs.isValid():
             return xy
         known, way = self._way
-        if known is not placement or way is None:
-            way = QgsCoordinateTransform(placement.site_crs, self._crs, self._project)
-            self._way = placement, way
+        if known is not transform or way is None:
+            way = QgsCoordinateTransform(transform.site_crs, self._crs, self._project)
+            self._way = transform, way
         if not way.isValid():
-            site = placement.site_crs.authid()
+            site = transform.site_crs.authid()
             raise MapTransformError(
                 tr(
                     "There is no way from {site} to {crs}. Choose another CRS under Columns.",
@@ -497,15 +497,15 @@ class PositionCrs(QObject):
         out = np.full((len(xy), 2), np.nan)
         there = np.isfinite(xy).all(axis=1)
         if there.any():
-            out[there] = transform_points_or_nan(placement.frame.to_crs(xy[there]), way)
+            out[there] = transform_points_or_nan(transform.frame.to_crs(xy[there]), way)
         return out
 
-    def place_in_words(self, x: float, y: float, placement: SiteToMapTransform) -> str:
+    def place_in_words(self, x: float, y: float, transform: SiteToMapTransform) -> str:
         """Return a place of the site frame, in the chosen CRS, as text.
 
         :raises MapTransformError: as :meth:`placed`.
         """
-        ((x, y),) = self.placed(np.array([[x, y]]), placement).tolist()
+        ((x, y),) = self.placed(np.array([[x, y]]), transform).tolist()
         return self.in_words(x, y)
 
     def in_words(self, x: float, y: float) -> str:

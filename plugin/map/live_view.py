@@ -111,7 +111,7 @@ class LiveView(QObject):
             self.overlay.show_scene(self._placer.placed(self._scene(), self._placement))
         except MapTransformError as error:
             self.overlay.show_scene(None)
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
         self._last_frame = time.perf_counter()
         self._took = self._last_frame - began
         self.shown = self._desk.state.robots.generation, self._desk.state.robots.revision
@@ -155,7 +155,7 @@ class LiveView(QObject):
             self._complain_of_no_place(robot)
 
     def _complain_of_no_place(self, robot: str) -> None:
-        self._desk.complained.emit(
+        self._desk.warning.emit(
             tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
         )
 
@@ -168,7 +168,7 @@ class LiveView(QObject):
         try:
             corners = self._desk.site_to_canvas.transform().to_map((at[:, None, :] + around).reshape(-1, 2))
         except MapTransformError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             return
         show_places(self._desk.canvas, corners)
 
@@ -176,9 +176,9 @@ class LiveView(QObject):
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = mode
         if mode is FollowMode.ALL and (told := part_in_words(self._desk.state.robots)):
-            self._desk.complained.emit(f"{tr('All robots cannot be followed.')} {told}")
+            self._desk.warning.emit(f"{tr('All robots cannot be followed.')} {told}")
         if mode is FollowMode.SELECTED and not self._desk.selection.robots:
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")
             )
 
@@ -260,7 +260,7 @@ class LiveView(QObject):
         try:
             places = self._desk.site_to_canvas.transform().to_map(there)
         except MapTransformError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             return
         keep_in_view(self._desk.canvas, self.overlay.screen(), places)
 

@@ -258,15 +258,15 @@ class ObservationDock(ActionDock):
     def refresh(self) -> None:
         """Show what is known now."""
         chosen = self.chosen
-        book = self._desk.state.observations
+        cache = self._desk.state.observations
         everything = self.reviewed.isChecked()
         self.model.show(
-            [one for one in book.ordered() if everything or is_pending(one) or one.observation == chosen]
+            [one for one in cache.ordered() if everything or is_pending(one) or one.observation == chosen]
         )
         if chosen is not None:
             self.choose(chosen)
-        waiting = book.pending
-        if not len(book):
+        waiting = cache.pending
+        if not len(cache):
             text = tr("No robot has told of an object or image yet.")
         else:
             text = tr("{waiting} to be reviewed", waiting=waiting) if waiting else tr("All are reviewed.")
@@ -274,7 +274,7 @@ class ObservationDock(ActionDock):
         self.setWindowTitle(
             tr("Observations ({waiting})", waiting=waiting) if waiting else tr("Observations")
         )
-        self.layer.show(book, self._desk.state.site)
+        self.layer.show(cache, self._desk.state.site)
         self._show_chosen()
 
     @property
@@ -299,7 +299,7 @@ class ObservationDock(ActionDock):
         try:
             show_places(self._desk.canvas, self._desk.site_to_canvas.transform().to_map(around))
         except FleetError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
 
     def _wire(self) -> None:
         self._desk.state.observations_changed.connect(self._refresh_later)

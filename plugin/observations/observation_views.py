@@ -201,7 +201,7 @@ class ObservationFeed(QObject):
     def _take_page(self, answer: RequestResult) -> None:
         if answer.error is not None:
             if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
-                self._desk.complained.emit(tr("What robots saw is not known: {error}", error=answer.error))
+                self._desk.warning.emit(tr("What robots saw is not known: {error}", error=answer.error))
             return
         found = (answer.result or {}).get("observations") or []
         if len(found) == PAGE:
@@ -281,9 +281,9 @@ class ObservationLayer:
         """The layer, None while there is none."""
         return self._live.layer
 
-    def show(self, book: ObservationCache, site: SiteReport | None) -> None:
+    def show(self, cache: ObservationCache, site: SiteReport | None) -> None:
         """Write every observation."""
-        self._live.show([([(one.x, one.y)], self._values(one)) for one in book], site)
+        self._live.show([([(one.x, one.y)], self._values(one)) for one in cache], site)
 
     def remove(self) -> None:
         """Take the layer out of the project."""

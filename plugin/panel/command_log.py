@@ -80,7 +80,7 @@ class OlderCommands(QObject):
                 wish.waiting += 1
         except FleetError as error:
             wish.is_refused = True
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             return
         # What is asked once more need not be told of twice, should the gateway answer after all.
         self._wishes = {key: one for key, one in self._wishes.items() if not one.is_overdue}
@@ -92,12 +92,12 @@ class OlderCommands(QObject):
         wish.waiting -= 1
         if answer.error is not None:
             if not wish.is_refused:
-                self._desk.complained.emit(tr("Older commands: {why}", why=answer.error))
+                self._desk.warning.emit(tr("Older commands: {why}", why=answer.error))
             wish.is_refused = True
         else:
             self._look_at(_commands_in(answer), wish)
         if wish.waiting == 0 and not wish.is_refused:
-            self._desk.noted.emit(_in_words(wish))
+            self._desk.info.emit(_in_words(wish))
 
     def _watch(self) -> None:
         """Say so of a wish that waits for its answers too long, be it that the link is lost."""
@@ -109,7 +109,7 @@ class OlderCommands(QObject):
         }
         for wish in late.values():
             wish.is_overdue = True
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr(
                     "Older commands: the gateway has not answered for {seconds:g} s. Press Older to ask once "
                     "more.",
@@ -215,7 +215,7 @@ class CommandLog(QWidget):
         except FleetError as error:
             self._desk.report_failure(str(error), FILE)
             return
-        self._desk.noted.emit(
+        self._desk.info.emit(
             tr(
                 "{commands} and {steps} written to {path}",
                 commands=tr_count(len(self._model.shown), "1 command", "%n commands"),
@@ -308,7 +308,7 @@ class CommandLog(QWidget):
             return
         place = place_of(report)
         if place is None:
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr("{what} of {robot} leads to no place.", what=command_in_words(report), robot=report.robot)
             )
             return

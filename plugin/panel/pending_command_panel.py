@@ -55,10 +55,10 @@ class PendingCommandPanel(QWidget):
         desk.checks.progressed.connect(self._show)
         desk.sending.outgoing.changed.connect(self._show)
         desk.sending.waiting_changed.connect(self._show)
-        desk.remarked.connect(self._remarked)
+        desk.hint.connect(self._show_hint)
         desk.orders.kept.connect(self._follow)
         desk.state.commands_changed.connect(self._take_steps)
-        desk.state.site_changed.connect(lambda: self._remarked(""))
+        desk.state.site_changed.connect(lambda: self._show_hint(""))
 
     def _lay_out(self, actions: Actions) -> None:
         # The arrows are known from every program; with words they made the panel too broad.
@@ -78,7 +78,7 @@ class PendingCommandPanel(QWidget):
         rows.addLayout(above)
         rows.addLayout(_row([_button(one) for one in (actions.send, actions.enqueue, actions.cancel)]))
 
-    def _remarked(self, text: str) -> None:
+    def _show_hint(self, text: str) -> None:
         """Show a text for a while; QGIS's log of messages keeps it."""
         if text:
             QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Info, False)
@@ -320,7 +320,7 @@ class PendingCommandActions(QObject):
 
     def _overridden(self, draft: PendingCommand, text: str) -> None:
         if self._desk.drafts.draft is not draft:
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr(
                     "The draft has changed since it was looked at, so nothing was overridden. Press "
                     "Override again."

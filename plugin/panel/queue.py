@@ -192,7 +192,7 @@ class PauseActions(QObject):
 
     def _pause(self) -> None:
         if not self._desk.selection.robots:
-            self._desk.complained.emit(
+            self._desk.warning.emit(
                 tr("No robot is selected, so none was paused. Select it in the table or on the map.")
             )
         for robot in self._desk.selection.robots:
@@ -515,7 +515,7 @@ class QueuePanel(QWidget):
         try:
             ((x, y),) = self._desk.site_to_canvas.transform().to_map(np.array([(task.x, task.y)]))
         except FleetError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             return
         self._desk.canvas.setCenter(QgsPointXY(x, y))
         self._desk.canvas.refresh()

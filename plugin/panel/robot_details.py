@@ -316,7 +316,7 @@ class RobotDetails(QWidget):
         self._title.setText(robot if len(self._desk.selection.robots) == 1 else several)
         if self.isVisible() and self._requested_for != robot:
             self.ask()
-        book = self._desk.state.commands
+        cache = self._desk.state.commands
         at = (view.report.x, view.report.y) if view.has_pose else None
         off = self._deviations.of(robot, at)
         position = self._position(at)
@@ -324,7 +324,7 @@ class RobotDetails(QWidget):
             {
                 NOW: state_rows(
                     view,
-                    book.task_of(robot),
+                    cache.task_of(robot),
                     "" if off is None else f"{off:.2f} m",
                     position,
                     self._positions.name,
@@ -332,7 +332,7 @@ class RobotDetails(QWidget):
                 ALARMS: alarm_rows([] if self._alarms is None else self._alarms.of(robot)),
                 RECEIVED: received_rows(view.values),
                 QUEUE: queue_rows(self._desk.state.queues.get(robot)),
-                COMMANDS: command_rows(book.of(robot, MOST)),
+                COMMANDS: command_rows(cache.of(robot, MOST)),
             }
         )
 
@@ -373,7 +373,7 @@ class RobotDetails(QWidget):
         rows.addWidget(self._about)
 
     def _pulled(self) -> None:
-        if self._turn.has_come() and self.isVisible():
+        if self._turn.is_due() and self.isVisible():
             self.refresh()
 
     def _position(self, at: tuple[float, float] | None) -> str:

@@ -139,7 +139,7 @@ class FleetRows:
     ``numbers`` has (n,) by column title, NaN where unknown."""
 
     picture: RobotStates
-    book: CommandCache
+    cache: CommandCache
     deviations: PathDeviations
     names: list[str]
     shown_as: npt.NDArray[np.intp]
@@ -160,7 +160,7 @@ class FleetRows:
     def task(self, row: int) -> str:
         """Return what a robot is doing, in words."""
         name = self.names[row]
-        return task_in_words(self.book.task_of(name), self.row_values(row), paused=name in self.paused)
+        return task_in_words(self.cache.task_of(name), self.row_values(row), paused=name in self.paused)
 
     def off(self, row: int) -> float:
         """Return how far a robot is from where it was told to be, NaN where nobody can tell."""
@@ -181,7 +181,7 @@ class FleetRows:
             rows = rows[bad[rows]]
         elif which is not RobotChoice.ALL:
             busy = np.zeros(len(self), dtype=bool)
-            for task in self.book.under_way():
+            for task in self.cache.under_way():
                 row = self.picture.row(task.robot)
                 if row is not None:
                     busy[row] = True
@@ -218,7 +218,7 @@ class FleetRows:
 
     def _offs(self) -> Floats:
         """Return what :meth:`off` says of everybody; only who was told to be somewhere can be off."""
-        known = {report.robot for report in self.book}
+        known = {report.robot for report in self.cache}
         offs = np.full(len(self), np.nan)
         for robot in known:
             row = self.picture.row(robot)
@@ -243,7 +243,7 @@ class FleetRows:
         texts = [text or silent[bool(stands)] for text, stands in zip(says, stopped, strict=True)]
         for row in self._paused_rows():
             texts[row] = says[row] or idle_in_words(stopped=True, paused=True)
-        for task in self.book.under_way():
+        for task in self.cache.under_way():
             row = self.picture.row(task.robot)
             if row is not None:
                 texts[row] = task_in_words(task, {})
@@ -263,7 +263,7 @@ class FleetRows:
         known = ~self.picture.says("status", "")
         for row in self._paused_rows():
             has[row] |= bool(known[row]) and word in tr("paused").casefold()
-        for task in self.book.under_way():
+        for task in self.cache.under_way():
             row = self.picture.row(task.robot)
             if row is not None:
                 has[row] = word in task_in_words(task, {}).casefold()
@@ -274,7 +274,7 @@ class FleetRows:
 
 
 def fleet_rows(
-    picture: RobotStates, book: CommandCache, queues: QueueCache, deviations: PathDeviations, moment: float
+    picture: RobotStates, cache: CommandCache, queues: QueueCache, deviations: PathDeviations, moment: float
 ) -> FleetRows:
     """Return all robots at ``moment`` of the desk's clock."""
     robots = picture.arrays(moment)
@@ -285,7 +285,7 @@ def fleet_rows(
         "Ping": picture.column("latency"),
     }
     paused = frozenset(queue.robot for queue in queues if queue.state is QueueState.PAUSED)
-    return FleetRows(picture, book, deviations, robots.names, robots.shown_as, robots.xy, numbers, paused)
+    return FleetRows(picture, cache, deviations, robots.names, robots.shown_as, robots.xy, numbers, paused)
 
 
 # Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
@@ -379,7 +379,7 @@ class RobotModel(QAbstractTableModel):
     def show(self, moment: float) -> None:
         """Show what is known at ``moment`` of the desk's clock."""
         picture = self._fleet.picture
-        fleet = fleet_rows(picture, self._fleet.book, self._queues, self.deviations, moment)
+        fleet = fleet_rows(picture, self._fleet.cache, self._queues, self.deviations, moment)
         if picture.arrangement != self._arrangement:
             # Rows of another arrangement are other robots.
             self._arrangement = picture.arrangement
@@ -477,7 +477,7 @@ class RobotModel(QAbstractTableModel):
         x, y = fleet.xy[row].tolist()
         if np.isfinite(x) and np.isfinite(y):
             lines.append(tr("at {x:.2f}, {y:.2f} m in the site frame", x=x, y=y))
-        task = fleet.book.task_of(name)
+        task = fleet.cache.task_of(name)
         if task is not None:
             lines.append(f"{command_in_words(task)}: {COMMAND_STATES[task.state]}")
         elif fleet.task(row) and not values.get("status"):

@@ -201,7 +201,7 @@ class RobotTableView(QTableView):
     def _pulled(self) -> None:
         count = len(self._desk.state.robots)
         half_seconds = 1 if count <= MANY else 2 if count <= 10 * MANY else 4
-        if self._turn.has_come(half_seconds) or count != self._model.count():
+        if self._turn.is_due(half_seconds) or count != self._model.count():
             self.refresh()
 
     def _name(self, index: QModelIndex) -> str:

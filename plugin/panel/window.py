@@ -240,7 +240,7 @@ class FleetWindow(QObject):
     def _ask_to_clear(self) -> None:
         report = self.desk.state.emergency
         if report is None or not report.in_force:
-            self.desk.complained.emit(tr("No emergency stop is in force."))
+            self.desk.warning.emit(tr("No emergency stop is in force."))
         else:
             dialog = ClearDialog(report, self._iface.mainWindow())
             dialog.confirmed.connect(self.desk.clear_emergency)

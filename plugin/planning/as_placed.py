@@ -219,7 +219,7 @@ class AsPlacedPage(QWidget):
             self._desk.report_failure(str(error), FILE)
             return
         cones = tr_count(count, "1 cone", "%n cones")
-        self._desk.noted.emit(tr("{cones} written to {path}", cones=cones, path=path))
+        self._desk.info.emit(tr("{cones} written to {path}", cones=cones, path=path))
 
     def _chosen(self) -> list[PlacementReport]:
         what = self.which.currentData()

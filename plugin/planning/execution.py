@@ -62,7 +62,7 @@ class PlanExecution(QObject):
 
     changed = pyqtSignal()
     """Something new is known of the plan that is shown, or another one is."""
-    remarked = pyqtSignal(str)
+    hint = pyqtSignal(str)
 
     def __init__(self, desk: FleetController, drafts: PlanEditor, parent: QObject | None = None):
         super().__init__(parent)
@@ -322,7 +322,7 @@ class PlanExecution(QObject):
         self.changed.emit()
 
     def _submitted(self, result: dict[str, Any]) -> None:
-        self.remarked.emit(tr("The cone plan is in the robots' queues."))
+        self.hint.emit(tr("The cone plan is in the robots' queues."))
 
     def _went_on(self, result: dict[str, Any]) -> None:
         """Ask how the queues are: what is told of them may come after the answer of what let them go on."""
@@ -431,7 +431,7 @@ class PlanExecution(QObject):
         if report.state is plans.PlanState.PAUSED:
             self._desk.report_failure(tr("The cone plan is paused: {why}.", why=why), topic)
         elif report.state is plans.PlanState.DRIVEN and not report.problems:
-            self.remarked.emit(tr("A new plan was sent by itself, as was switched on: {why}", why=why))
+            self.hint.emit(tr("A new plan was sent by itself, as was switched on: {why}", why=why))
         elif report.state is before:
             self._desk.report_failure(tr("No new cone plan was sent by itself: {why}.", why=why), topic)
 

@@ -391,7 +391,7 @@ class PlanDock(ActionDock):
             self.layers.show_placed(self.placed.placements)
 
     def _pulled(self) -> None:
-        if self.isVisible() and self._turn.has_come():
+        if self.isVisible() and self._turn.is_due():
             self._show_robots()
         if self.drafts.task is not None:
             self.progress.setValue(round(100.0 * self.drafts.task.share))
@@ -481,7 +481,7 @@ class PlanDock(ActionDock):
         desk, bar = self._desk, self.bar
         self.form.changed.connect(lambda: self._keep(self.form.settings(self.drafts.settings)))
         self.robots.edited.connect(lambda name, one: self._keep(self.drafts.settings.with_robot(name, one)))
-        self.robots.refused.connect(desk.complained)
+        self.robots.refused.connect(desk.warning)
         self.preview.clicked.connect(lambda: self.make(preview=True))
         self.solve.clicked.connect(lambda: self.make(preview=False))
         self.cancel.clicked.connect(self.drafts.cancel)
@@ -502,7 +502,7 @@ class PlanDock(ActionDock):
         self.drafts.changed.connect(self._refresh)
         self.driven.changed.connect(self._refresh)
         self.drafts.refused.connect(self._refuse)
-        self.driven.remarked.connect(desk.remarked)
+        self.driven.hint.connect(desk.hint)
         self.collecting.refused.connect(lambda text: desk.messages.post(text, Level.WARNING, PLAN_REQUEST))
         self.placed.refresh_requested.connect(self._ask_for_placements)
         self.placed.collect_requested.connect(self.collect)

@@ -196,7 +196,7 @@ class PlanEditor(QObject):
     ) -> Steps[None]:
         stores = yield from plan_settings.read_stores(self._desk.project, self.settings, frame, self._layers)
         if not preview and (told := part_in_words(self._desk.state.robots)):
-            self._desk.complained.emit(f"{told} {tr('Others take no part in the plan.')}")
+            self._desk.warning.emit(f"{told} {tr('Others take no part in the plan.')}")
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
             objective = Objective(

@@ -179,9 +179,9 @@ class CommandSorter(QObject):
     done = pyqtSignal(object)
     """:attr:`commands` are others now: those before."""
 
-    def __init__(self, book: CommandCache, parent: QObject | None = None):
+    def __init__(self, cache: CommandCache, parent: QObject | None = None):
         super().__init__(parent)
-        self._book = book
+        self._cache = cache
         self._slices = CooperativeTask(self)
         self._is_outdated = False
         self.commands = PastCommands()
@@ -196,7 +196,7 @@ class CommandSorter(QObject):
         # News that comes faster than one look takes would otherwise never be seen.
         self._is_outdated = self._slices.is_busy
         if not self._is_outdated:
-            self._slices.begin_soon(sort_commands(list(self._book)), self._take)
+            self._slices.begin_soon(sort_commands(list(self._cache)), self._take)
 
     def forget(self) -> None:
         """Have no commands any more."""

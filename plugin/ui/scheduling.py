@@ -406,6 +406,6 @@ class UpdateSlot:
         self._beat = beat
         self._first = first
 
-    def has_come(self, half_seconds: int = 1) -> bool:
+    def is_due(self, half_seconds: int = 1) -> bool:
         """Tell whether it comes in this pull, if it is to come once in so many half seconds."""
         return (self._beat.pulls - self._first) % (half_seconds * PULLS_IN_HALF_A_SECOND) == 0

@@ -169,7 +169,7 @@ class Gateway:
         self._gate = gate
         self._tls = tls
         self.robots = WebSocketInterface(fleet)
-        metrics = Metrics(fleet.tally)
+        metrics = Metrics(fleet.counters)
         fleet.database.add_observer(metrics.database.observe)
         self._status = StatusPages(fleet, metrics)
         self._clock_watch = ClockWatch()
@@ -184,33 +184,33 @@ class Gateway:
 
     def works(self, address: str) -> dict[str, Work]:
         """Return what keeps a gateway at ``address`` going: liveness, trajectories, links, accounts."""
-        fleet, tally = self._fleet, self._fleet.tally
+        fleet, counters = self._fleet, self._fleet.counters
         works: dict[str, Work] = {
             "sql link": SqlInterface(fleet, fleet.database).run,
-            "latencies": lambda: every(LATENCY_INTERVAL, self._measure, "latencies", tally),
-            "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", tally),
+            "latencies": lambda: every(LATENCY_INTERVAL, self._measure, "latencies", counters),
+            "liveness": lambda: every(AGE_INTERVAL, self._age, "liveness", counters),
             "queues": fleet.driving.run,
             "maps": fleet.maps.run,
-            "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", tally),
-            "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", tally),
-            "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", tally),
-            "geofence": lambda: every(GEOFENCE_INTERVAL, fleet.geofence.watch, "geofence", tally),
-            "nearness": lambda: every(NEARNESS_INTERVAL, fleet.nearness.watch, "nearness", tally),
+            "save": lambda: every(SAVE_INTERVAL, fleet.save, "save", counters),
+            "prune": lambda: every(PRUNE_INTERVAL, self.retention.prune, "prune", counters),
+            "roads": lambda: every(ROADS_INTERVAL, fleet.watch_roads, "roads", counters),
+            "geofence": lambda: every(GEOFENCE_INTERVAL, fleet.geofence.watch, "geofence", counters),
+            "nearness": lambda: every(NEARNESS_INTERVAL, fleet.nearness.watch, "nearness", counters),
             "links": lambda: self._links.run(_for_links(address)),
             "accounts": self._gate.watch,
             "audit log": self._gate.journal.run,
-            "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", tally),
+            "garbage": lambda: every(GARBAGE_INTERVAL, self._clear_away, "garbage", counters),
         }
         if fleet.database.dialect.partitions_days:
             works["days of positions"] = lambda: every(
-                PRUNE_INTERVAL, self.retention.make_days, "days of positions", tally
+                PRUNE_INTERVAL, self.retention.make_days, "days of positions", counters
             )
         if has_accounts(fleet.database.dialect.name):
             works["stuck robots"] = lambda: every(
-                STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", tally
+                STUCK_INTERVAL, fleet.database.end_stuck, "stuck robots", counters
             )
             works["suspensions"] = lambda: every(
-                SUSPEND_INTERVAL, fleet.suspensions.update, "suspensions", tally
+                SUSPEND_INTERVAL, fleet.suspensions.update, "suspensions", counters
             )
         if self._tls is not None:
             works["certificates"] = self._tls.watch
@@ -233,32 +233,32 @@ class Gateway:
         self.robots.update()
         fleet.links.update(self.robots.links(), self._links.states)
 
-    async def _admit(self, visitor: ClientConnection, request: Request) -> Response | None:
+    async def _admit(self, connection: ClientConnection, request: Request) -> Response | None:
         path = urlsplit(request.path).path
         own = self._own_origin(request, path)
-        if (refusal := self._gate.refuse_page(visitor, request, own)) is not None:
+        if (refusal := self._gate.refuse_page(connection, request, own)) is not None:
             return refusal
         if path not in ENDPOINTS and (fault := self._host_fault(request)) is not None:
-            return visitor.respond(http.HTTPStatus.MISDIRECTED_REQUEST, f"{fault}.\n")
+            return connection.respond(http.HTTPStatus.MISDIRECTED_REQUEST, f"{fault}.\n")
         if path in (HEALTH, METRICS):
-            return await self._status_page(visitor, request, path)
+            return await self._status_page(connection, request, path)
         if self._field.serves(path):
-            return await self._field_page(visitor, request, path)
+            return await self._field_page(connection, request, path)
         if self._queries.serves(path):
-            refusal = await self._gate.may_read(visitor, request)
+            refusal = await self._gate.may_read(connection, request)
             return refusal if refusal is not None else await self._queries.answer(request)
         if (document := served(path)) is not None:
             header = ("Content-Type", "application/json")
             return http_response(http.HTTPStatus.OK, document.encode(), [header])
         if path not in ENDPOINTS:
             text = f"{path} is not served here; robots connect to /robot, operators to /desk, links to /link"
-            return visitor.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
+            return connection.respond(http.HTTPStatus.NOT_FOUND, f"{text}\n")
         try:
             name = _name_in(request.path, ENDPOINTS[path])
         except (MessageError, AccessError) as error:
-            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         kind = ENDPOINTS[path]
-        return await self._gate.admit(visitor, request, kind, name, self._largest_message(kind))
+        return await self._gate.admit(connection, request, kind, name, self._largest_message(kind))
 
     def _own_origin(self, request: Request, path: str) -> str | None:
         """Return the origin of the field page, of a request that it may make."""
@@ -268,10 +268,10 @@ class Gateway:
             return None
         return f"{'http' if self._tls is None else 'https'}://{host}"
 
-    async def _field_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
+    async def _field_page(self, connection: ClientConnection, request: Request, path: str) -> Response:
         if path != SITE:
             return await self._field.file(request)
-        if refusal := await self._gate.may_read(visitor, request):
+        if refusal := await self._gate.may_read(connection, request):
             return refusal
         return await self._field.site(request)
 
@@ -280,10 +280,12 @@ class Gateway:
         names = (*self._gate.limits.hosts, *(self._tls.names if self._tls is not None else ()))
         return host_fault(request.headers.get_all("Host"), names)
 
-    async def _status_page(self, visitor: ClientConnection, request: Request, path: str) -> Response:
+    async def _status_page(self, connection: ClientConnection, request: Request, path: str) -> Response:
         if path == HEALTH:
             return await self._status.health()
-        if not is_loopback(visitor.address) and (refusal := await self._gate.may_read(visitor, request)):
+        if not is_loopback(connection.address) and (
+            refusal := await self._gate.may_read(connection, request)
+        ):
             return refusal
         return await self._status.metrics()
 
@@ -295,15 +297,15 @@ class Gateway:
         image = self._fleet.site.settings.observations.largest_image_bytes
         return max(largest, image * 4 // 3 + 65_536)
 
-    async def _connected(self, visitor: ClientConnection) -> None:
-        assert visitor.identity is not None
-        kind = visitor.identity.kind
+    async def _connected(self, connection: ClientConnection) -> None:
+        assert connection.identity is not None
+        kind = connection.identity.kind
         if kind is TokenKind.OPERATOR:
-            await OperatorSession(self._fleet, visitor, self._gate, self._handlers).run()
+            await OperatorSession(self._fleet, connection, self._gate, self._handlers).run()
         elif kind is TokenKind.LINK:
-            await self.robots.serve_link(visitor, self._gate)
+            await self.robots.serve_link(connection, self._gate)
         else:
-            await self.robots.serve(visitor, visitor.identity.name)
+            await self.robots.serve(connection, connection.identity.name)
 
 
 def request_handlers(
@@ -362,7 +364,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         journal = await asyncio.to_thread(_journal, settings)
         gate = AuthGate(database, site.settings.limits, may_be_open=is_loopback(settings.host))
         await gate.open()
-        accounts = gate.book.has_operator(time.time())
+        accounts = gate.accounts.has_operator(time.time())
         check_reach(settings.host, tls=tls is not None, accounts=accounts)
         maps = SiteMaps(site)
         planner = await asyncio.to_thread(RoadPlanner, maps)
@@ -405,13 +407,13 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         started(address)
         works = {**gateway.works(address), "site": watch.run, **holding}
         if relays is None:
-            works["plans"] = lambda: every(PLANS_INTERVAL, plans.follow, "plans", fleet.tally)
+            works["plans"] = lambda: every(PLANS_INTERVAL, plans.follow, "plans", fleet.counters)
         else:
-            works = relays.works(works, fleet.tally)
+            works = relays.works(works, fleet.counters)
         if (copy := settings.site_copy) is not None:
             stack.push_async_callback(copy.close)
-            works["site copy"] = lambda: every(FETCH_INTERVAL, copy.refresh, "site copy", fleet.tally)
-        await _until_stopped(keep_all_going(works, fleet.tally), signals.stop)
+            works["site copy"] = lambda: every(FETCH_INTERVAL, copy.refresh, "site copy", fleet.counters)
+        await _until_stopped(keep_all_going(works, fleet.counters), signals.stop)
 
 
 async def _hold_database(

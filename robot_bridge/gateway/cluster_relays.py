@@ -56,7 +56,7 @@ class ClusterRelays:
         self._numbers = ChangeNumbers(exchange, membership)
         shared = fleet.listeners, fleet.events, exchange, self._numbers, database
         self._steps = StepFeed(fleet.robots, *shared)
-        self._queues = QueueFeed(fleet.robots, fleet.queue_context.book, *shared)
+        self._queues = QueueFeed(fleet.robots, fleet.queue_context.registry, *shared)
         self._placements = PlacementRelay(*shared)
         self._observations = ObservationRelay(fleet.observations, *shared)
         self._sites = Follower("site", sites, exchange, self._numbers)
@@ -72,14 +72,14 @@ class ClusterRelays:
         """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
         self.requests.reach(link)
 
-    def works(self, works: Mapping[str, Work], tally: Counters) -> dict[str, Work]:
+    def works(self, works: Mapping[str, Work], counters: Counters) -> dict[str, Work]:
         """Return ``works`` of a gateway as one of several does them, and what it does beside."""
         if "suspensions" in works:
             works = {
                 **works,
-                "suspensions": lambda: every(SUSPEND_INTERVAL_S, self._suspend, "suspensions", tally),
+                "suspensions": lambda: every(SUSPEND_INTERVAL_S, self._suspend, "suspensions", counters),
             }
-        once = {name: self._led(name, works[name], tally) for name in ONCE_PER_DATABASE if name in works}
+        once = {name: self._led(name, works[name], counters) for name in ONCE_PER_DATABASE if name in works}
         return {
             **works,
             **once,
@@ -98,12 +98,12 @@ class ClusterRelays:
             "site of others": self._sites.run,
             "closures of others": self._closures.run,
             "addresses": lambda: every(
-                ADDRESSES_INTERVAL_S, self._fleet.announce_gateways, "addresses", tally
+                ADDRESSES_INTERVAL_S, self._fleet.announce_gateways, "addresses", counters
             ),
             "old requests": self._led(
                 "old requests",
-                lambda: every(FORGET_INTERVAL_S, self._forget_old, "old requests", tally),
-                tally,
+                lambda: every(FORGET_INTERVAL_S, self._forget_old, "old requests", counters),
+                counters,
             ),
         }
 
@@ -136,7 +136,7 @@ class ClusterRelays:
         if wake.what == "owners":
             self._owners_changed.set()
 
-    def _led(self, name: str, work: Work, tally: Counters) -> Work:
+    def _led(self, name: str, work: Work, counters: Counters) -> Work:
         """Return the work that does ``work`` while this gateway leads."""
 
         async def led() -> None:
@@ -144,7 +144,7 @@ class ClusterRelays:
             while True:
                 while not membership.leads:
                     # It is well with what another gateway does.
-                    tally.beat(name)
+                    counters.beat(name)
                     await asyncio.sleep(LEADER_LOOK_S)
                 task = asyncio.ensure_future(work())
                 try:

@@ -84,9 +84,9 @@ class MetricReading:
 class Metrics:
     """The numbers of one gateway, in a registry of its own."""
 
-    def __init__(self, tally: Counters) -> None:
+    def __init__(self, counters: Counters) -> None:
         self._registry = CollectorRegistry()
-        self._readings: list[MetricReading] = list(_tallied(tally))
+        self._readings: list[MetricReading] = list(_counter_readings(counters))
         self.database = Histogram(
             "robot_bridge_database_transaction_seconds",
             "Time from handing a piece of work to the database to its commit.",
@@ -125,7 +125,7 @@ class _Collector:
         return []
 
 
-def _tallied(tally: Counters) -> Iterator[MetricReading]:
+def _counter_readings(counters: Counters) -> Iterator[MetricReading]:
     def single(counter: Mapping[str, int]) -> Callable[[], Values]:
         return lambda: {(label,): float(count) for label, count in counter.copy().items()}  # type: ignore[attr-defined]
 
@@ -133,18 +133,23 @@ def _tallied(tally: Counters) -> Iterator[MetricReading]:
         "robot_bridge_requests",
         "Requests of robots that were understood.",
         ("link", "op"),
-        lambda: {labels: float(count) for labels, count in tally.requests.copy().items()},
+        lambda: {labels: float(count) for labels, count in counters.requests.copy().items()},
         counts=True,
     )
     for name, text, label, counter in (
-        ("refused_requests", "Requests of robots that were refused.", "link", tally.refused),
-        ("desk_requests", "Requests of operators.", "method", tally.desk),
-        ("command_steps", "Steps in the lives of commands, by the state they led to.", "state", tally.steps),
+        ("refused_requests", "Requests of robots that were refused.", "link", counters.refused),
+        ("desk_requests", "Requests of operators.", "method", counters.desk),
+        (
+            "command_steps",
+            "Steps in the lives of commands, by the state they led to.",
+            "state",
+            counters.steps,
+        ),
         (
             "task_failures",
             "Failures of the gateway's own tasks; each was tried again.",
             "task",
-            tally.failures,
+            counters.failures,
         ),
     ):
         yield MetricReading(f"robot_bridge_{name}", text, (label,), single(counter), counts=True)
@@ -163,12 +168,12 @@ SOUND = 60.0
 """seconds of work without a failure after which earlier ones no longer count."""
 
 
-async def keep_all_going(works: Mapping[str, Work], tally: Counters) -> None:
+async def keep_all_going(works: Mapping[str, Work], counters: Counters) -> None:
     """Run every work side by side, as :func:`keep_going`, until one of them is hopeless.
 
     :raises FatalError: when one of them cannot go on.
     """
-    tasks = [asyncio.create_task(keep_going(name, work, tally), name=name) for name, work in works.items()]
+    tasks = [asyncio.create_task(keep_going(name, work, counters), name=name) for name, work in works.items()]
     try:
         await asyncio.gather(*tasks)
     finally:
@@ -177,7 +182,7 @@ async def keep_all_going(works: Mapping[str, Work], tally: Counters) -> None:
         await asyncio.gather(*tasks, return_exceptions=True)
 
 
-async def keep_going(name: str, work: Work, tally: Counters) -> None:
+async def keep_going(name: str, work: Work, counters: Counters) -> None:
     """Run ``work``, and again after a growing pause when it raises; returns when it returns.
 
     :raises FatalError: when ``work`` raises it, or fails again and again for a reason nobody foresaw.
@@ -190,7 +195,7 @@ async def keep_going(name: str, work: Work, tally: Counters) -> None:
         except FatalError:
             raise
         except Exception as error:
-            tally.failures[name] += 1
+            counters.failures[name] += 1
             pause = trouble.record_failure(error, lasted=time.monotonic() - began)
         await asyncio.sleep(pause)
 
@@ -295,12 +300,12 @@ async def wait_at_most(event: asyncio.Event, seconds: float) -> None:
             await event.wait()
 
 
-async def every(seconds: float, work: Work, name: str, tally: Counters) -> None:
+async def every(seconds: float, work: Work, name: str, counters: Counters) -> None:
     """Run ``work`` every so many seconds for ever, each success noted as a beat of ``name``."""
     while True:
         await asyncio.sleep(seconds)
         await work()
-        tally.beat(name)
+        counters.beat(name)
 
 
 # --- How often Python looks for objects that hold each other: rarely, since everybody waits while it does

@@ -144,7 +144,7 @@ class RobotSqlLink:
         if not (outgoing or read):
             return
         try:
-            await self._database.jot(_exchange, self._robot, self._magic, read, outgoing)
+            await self._database.write_relaxed(_exchange, self._robot, self._magic, read, outgoing)
         except StoreError:
             self._outgoing = [*_still_to_say(outgoing), *self._outgoing]
             raise

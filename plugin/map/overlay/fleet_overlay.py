@@ -64,7 +64,7 @@ class ScenePainter:
             self._viewed = None
             return
         view = self._view(placed, screen)
-        self._trails.extend(placed.robots, screen, placed.placement, placed.scene.now, view.pixels)
+        self._trails.extend(placed.robots, screen, placed.transform, placed.scene.now, view.pixels)
         self._circles = circles(placed, view)
         self.robots.prepare(placed, view, screen)
         self._plans.prepare(placed, screen, self.robots.marks)

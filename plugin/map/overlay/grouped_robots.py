@@ -224,9 +224,9 @@ class DensityPainter:
             self._made = None
             return
         density = fleet.density
-        if self._made is None or self._made[0] is not density or self._made[1] is not placed.placement:
-            self._made = density, placed.placement
-            self._image, self._corners = _picture(density), _corners(density, placed.placement)
+        if self._made is None or self._made[0] is not density or self._made[1] is not placed.transform:
+            self._made = density, placed.transform
+            self._image, self._corners = _picture(density), _corners(density, placed.transform)
         (x, y), along, up = screen.pixels(self._corners).tolist()
         columns, rows = density.columns, density.rows
         painter.save()
@@ -247,10 +247,10 @@ class DensityPainter:
         painter.drawPixmap(QPointF(LEGEND_AT, screen.height - LEGEND_AT - height), legend)
 
 
-def _corners(density: Density, placement: SiteToMapTransform) -> Points:
+def _corners(density: Density, transform: SiteToMapTransform) -> Points:
     x, y = density.x, density.y
     width, height = density.columns * density.cell, density.rows * density.cell
-    return placement.to_map(np.array([(x, y), (x + width, y), (x, y + height)]))
+    return transform.to_map(np.array([(x, y), (x + width, y), (x, y + height)]))
 
 
 def _picture(density: Density) -> QImage:

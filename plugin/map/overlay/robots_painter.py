@@ -420,7 +420,7 @@ def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
     if len(wide) == 0:
         return []
     corners = robots.xy[wide, None, :] + _CIRCLE * robots.accuracy[wide, None, None]
-    on_map = placed.placement.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
+    on_map = placed.transform.to_map(corners.reshape(-1, 2)).reshape(len(wide), CORNERS, 2)
     return list(zip(wide.tolist(), on_map, strict=True))
 
 

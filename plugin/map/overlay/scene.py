@@ -318,7 +318,7 @@ class SiteScene:
 class MapScene:
     """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the way to 1 m before each
     robot, or along the site's x of one whose heading is not known. It is empty where the axes of
-    ``placement``, which places more, tell it.
+    ``transform``, which places more, tell it.
 
     Robots without a place have NaN.
     """
@@ -329,14 +329,14 @@ class MapScene:
     plans: list[Points]
     draft: Points
     cursor: Points
-    placement: SiteToMapTransform
+    transform: SiteToMapTransform
 
 
 class SceneTransformer:
     """Places scenes, each plan and each draft once for as long as the map keeps its CRS."""
 
     def __init__(self) -> None:
-        self._placement: SiteToMapTransform | None = None
+        self._transform: SiteToMapTransform | None = None
         self._plans: dict[TaskPath, Points] = {}
         self._of: list[TaskPath] | None = None
         self._ways: list[Points] = []
@@ -344,13 +344,13 @@ class SceneTransformer:
         self._outline: object = None
         self._draft = _NOWHERE
 
-    def placed(self, scene: SiteScene, placement: SiteToMapTransform) -> MapScene:
+    def placed(self, scene: SiteScene, transform: SiteToMapTransform) -> MapScene:
         """Place everything.
 
         :raises MapTransformError: when a position has no place in the map's CRS.
         """
-        if placement is not self._placement:
-            self._placement, self._plans, self._of, self._outline = placement, {}, None, None
+        if transform is not self._transform:
+            self._transform, self._plans, self._of, self._outline = transform, {}, None, None
         known = self._plans
         new = [] if scene.plans is self._of else [plan for plan in scene.plans if plan not in known]
         outline = scene.draft.outline if scene.draft else ()
@@ -359,7 +359,7 @@ class SceneTransformer:
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
         # To take rows with [] instead takes numpy ten times as long.
         known_places = robots.xy if len(there) == len(robots.xy) else robots.xy.take(there, axis=0)
-        is_uneven = placement.axes is None
+        is_uneven = transform.axes is None
         parts = [
             known_places,
             known_places + _forward(robots.theta.take(there)) if is_uneven else _NOWHERE,
@@ -367,7 +367,7 @@ class SceneTransformer:
             _points([scene.cursor] if scene.cursor else ()),
             *[plan.points for plan in new],
         ]
-        at, before, draft, cursor, *ways = _parted(placement.to_map(np.concatenate(parts)), parts)
+        at, before, draft, cursor, *ways = _parted(transform.to_map(np.concatenate(parts)), parts)
         if scene.plans is not self._of:
             known.update(zip(new, ways, strict=True))
             self._plans = {plan: known[plan] for plan in scene.plans}
@@ -381,7 +381,7 @@ class SceneTransformer:
             self._ways,
             self._draft,
             cursor,
-            placement,
+            transform,
         )
 
 
@@ -441,7 +441,7 @@ def in_view(placed: MapScene, screen: Screen) -> InView:
     rows = np.flatnonzero(screen.seen(pixels, BESIDE))
     # To take rows with [] instead takes numpy ten times as long.
     there = pixels.take(rows, axis=0)
-    axes = placed.placement.axes
+    axes = placed.transform.axes
     if axes is None:
         x, y = screen.ways(placed.metre.take(rows, axis=0)).T
         # Floats of half the size are exact enough, and numpy is several times as fast with them. To take

@@ -70,7 +70,7 @@ class PathsImage:
 
     def prepare(self, placed: MapScene, screen: Screen) -> None:
         """Paint some more of the ways into what is shown of them on ``screen``."""
-        if self._next is not None and self._next.placement is not placed.placement:
+        if self._next is not None and self._next.transform is not placed.transform:
             self.forget()
         if self._next is None or (self._next.is_full and not self._next.is_of(placed, screen)):
             self._next = _PathsSheet(placed, screen)
@@ -95,7 +95,7 @@ class _PathsSheet:
 
     def __init__(self, placed: MapScene, screen: Screen) -> None:
         self.screen = screen
-        self.placement = placed.placement
+        self.transform = placed.transform
         self._plans = placed.plans
         pairs = zip(placed.scene.plans, placed.plans, strict=True)
         self._left = [points for plan, points in pairs if plan.is_way]

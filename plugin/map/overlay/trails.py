@@ -168,17 +168,17 @@ NEVER = -1e9
 
 
 class TrailSheet:
-    """The trails as ``screen`` shows them; ``placement`` takes metres of the site to map coordinates.
+    """The trails as ``screen`` shows them; ``transform`` takes metres of the site to map coordinates.
 
     It is made empty and filled from the newest to the oldest, over as many frames as that takes.
     """
 
-    def __init__(self, trails: Trails, screen: Screen, placement: SiteToMapTransform, now: float) -> None:
+    def __init__(self, trails: Trails, screen: Screen, transform: SiteToMapTransform, now: float) -> None:
         width, height = math.ceil(screen.width * screen.ratio), math.ceil(screen.height * screen.ratio)
         self.screen = screen
         self.filled = False
         self._trails = trails
-        self._placement = placement
+        self._transform = transform
         self._epoch = now
         self._times = np.full((height, width), NEVER, dtype=np.float32)
         self._argb = np.zeros((height, width), dtype=np.uint32)
@@ -217,7 +217,7 @@ class TrailSheet:
                 return
             earlier = np.full((len(sample), 2), np.nan)
             places = sample.take(there, axis=0)[:, :2]
-            earlier[there] = self.screen.pixels(self._placement.to_map(places)) * self.screen.ratio
+            earlier[there] = self.screen.pixels(self._transform.to_map(places)) * self.screen.ratio
             later, times = self._later
             self._stamp(earlier, later, times)
             self._later = earlier, sample[:, 2]
@@ -395,7 +395,7 @@ class TrailImage:
         self,
         xy: Points,
         screen: Screen,
-        placement: SiteToMapTransform,
+        transform: SiteToMapTransform,
         now: float,
         pixels: Points | None = None,
     ) -> None:
@@ -404,14 +404,14 @@ class TrailImage:
         ``now`` is on the clock of the trails' samples. ``pixels`` is ``xy`` on the ``screen``, where that is
         computed already.
         """
-        view = (self._trails.generation, placement, screen)
+        view = (self._trails.generation, transform, screen)
         if view[:2] != self._made_for[:2]:
             self.forget()
         # While the view moves a new sheet would be out of date before it is filled.
         at_rest = view == self._view or self._newest is None
         self._view = view
         if view != self._made_for and at_rest:
-            self._newest = TrailSheet(self._trails, screen, placement, now)
+            self._newest = TrailSheet(self._trails, screen, transform, now)
             self._made_for = view
         if pixels is None or screen != self._newest.screen:
             pixels = self._newest.screen.pixels(xy)

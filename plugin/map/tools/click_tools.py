@@ -192,7 +192,7 @@ class ClosureTool(QgsMapTool):
         try:
             place, reach = self._place(pixel)
         except FleetError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             return
         closed = self._closed_at(place, reach)
         if closed is None:
@@ -202,10 +202,10 @@ class ClosureTool(QgsMapTool):
 
     def _place(self, pixel: QPoint) -> tuple[Point, float]:
         """Return the place of a click in the site frame, and the metres by which it may miss a road."""
-        placement = self._desk.site_to_canvas.transform()
-        place = placement.to_site(self.toMapCoordinates(pixel))
+        transform = self._desk.site_to_canvas.transform()
+        place = transform.to_site(self.toMapCoordinates(pixel))
         beside = self.toMapCoordinates(pixel + QPoint(round(REACH), 0))
-        return place, max(math.dist(place, placement.to_site(QgsPointXY(beside))), LEAST_REACH)
+        return place, max(math.dist(place, transform.to_site(QgsPointXY(beside))), LEAST_REACH)
 
     def _closed_at(self, place: Point, reach: float) -> ClosureReport | None:
         found, least = None, reach

@@ -44,10 +44,10 @@ def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Poi
     """
     aside = _ASIDE[event.key()]
     coarse = event.modifiers() & Qt.KeyboardModifier.ShiftModifier
-    placement, screen = desk.site_to_canvas.transform(), desk.canvas.getCoordinateTransform()
-    ((x, y),) = placement.to_map(np.array([point]))
+    transform, screen = desk.site_to_canvas.transform(), desk.canvas.getCoordinateTransform()
+    ((x, y),) = transform.to_map(np.array([point]))
     pixel = screen.transform(QgsPointXY(x, y))
-    beside = placement.to_site(
+    beside = transform.to_site(
         screen.toMapCoordinatesF(pixel.x() + aside[0] * _PIXELS, pixel.y() + aside[1] * _PIXELS)
     )
     dx, dy = beside[0] - point[0], beside[1] - point[1]
@@ -213,7 +213,7 @@ class DrawingTool(QgsMapTool):
         try:
             change()
         except FleetError as error:
-            self.desk.complained.emit(str(error))
+            self.desk.warning.emit(str(error))
 
     def _check_robot(self) -> None:
         if self.desk.selection.last is None and self.draft is None:
@@ -226,7 +226,7 @@ class DrawingTool(QgsMapTool):
 
     def _undo(self, done: bool, otherwise: str) -> None:
         if not done:
-            self.desk.remarked.emit(otherwise)
+            self.desk.hint.emit(otherwise)
 
 
 def _is_ours(event: QKeyEvent) -> bool:
@@ -392,7 +392,7 @@ class ConeTool(DrawingTool):
     def clicked(self, point: Point) -> None:
         other = self.on_map
         if other is not None and other.kind != CONE:
-            self.desk.complained.emit(
+            self.desk.warning.emit(
                 tr(
                     "{in_words} is still on the map. Send it (Enter) or cancel it (Esc) first.",
                     in_words=other.in_words(),
@@ -435,8 +435,8 @@ class StartTool(DrawingTool):
         super().canvasPressEvent(event)
         self._begun = None
         with suppress(MapTransformError):
-            placement = self.desk.site_to_canvas.transform()
-            self._begun = placement, placement.to_site(self.toMapCoordinates(event.pos()))
+            transform = self.desk.site_to_canvas.transform()
+            self._begun = transform, transform.to_site(self.toMapCoordinates(event.pos()))
 
     def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
         pressed = self._pressed_at
@@ -462,14 +462,14 @@ class StartTool(DrawingTool):
 
     def _drawn(self, pressed: QPoint, end: QgsPointXY) -> None:
         self._check_robot()
-        placement = self.desk.site_to_canvas.transform()
+        transform = self.desk.site_to_canvas.transform()
         # Where it is not known, this says why.
-        begun = self._begun or (placement, placement.to_site(self.toMapCoordinates(pressed)))
-        if begun[0] is not placement:
+        begun = self._begun or (transform, transform.to_site(self.toMapCoordinates(pressed)))
+        if begun[0] is not transform:
             raise FleetError(
                 tr("The site or the map's CRS has changed meanwhile. Draw the start position again.")
             )
-        place, ahead = begun[1], placement.to_site(end)
+        place, ahead = begun[1], transform.to_site(end)
         self._put(place, math.atan2(ahead[1] - place[1], ahead[0] - place[0]))
 
     def _put(self, place: Point, theta: float | None) -> None:

@@ -109,7 +109,7 @@ class RoadRouteTool(RouteTool):
         """Say that the way to the last click comes too late: the draft was sent, or is another."""
         self._clicks.clear()
         self._way.clear()
-        self.desk.complained.emit(
+        self.desk.warning.emit(
             tr("The way to where you clicked last was not known yet, so it is not in the route.")
         )
 
@@ -137,7 +137,7 @@ class RoadRouteTool(RouteTool):
         if following:
             self._lead_on()
         if route.note:
-            self.desk.complained.emit(tr("This leg does not follow the roads: {note}", note=route.note))
+            self.desk.warning.emit(tr("This leg does not follow the roads: {note}", note=route.note))
 
 
 # --- The road surface at the mouse ---

@@ -76,10 +76,10 @@ class RouteHandles:
         self._marker.setColor(MARK)
 
     def _pixels(self, draft: PendingCommand, which: list[int]) -> np.ndarray:
-        placement = self._desk.site_to_canvas.transform()
-        if self._placed[:2] != (id(draft.points), placement):
+        transform = self._desk.site_to_canvas.transform()
+        if self._placed[:2] != (id(draft.points), transform):
             flat = np.fromiter(chain.from_iterable(draft.points), np.float64).reshape(-1, 2)
-            self._placed = id(draft.points), placement, draft.points, placement.to_map(flat)
+            self._placed = id(draft.points), transform, draft.points, transform.to_map(flat)
         return _on_screen(self._placed[3][which], self._desk.canvas)
 
 
@@ -141,7 +141,7 @@ class RouteDrag:
             to = self._desk.site_to_canvas.transform().to_site(event.snapPoint())
             self._shown = change(self._from, self._vertex, to)
         except FleetError as error:
-            self._desk.complained.emit(str(error))
+            self._desk.warning.emit(str(error))
             self.give_up()
             return
         self._desk.drafts.drag(self._shown)
@@ -264,7 +264,7 @@ class RouteTool(DrawingTool):
         if draft is None:
             return
         if len(draft.points) < LEAST_POINTS:
-            self.desk.complained.emit(
+            self.desk.warning.emit(
                 tr("A route needs at least two points, so its drawing goes on: click the next one.")
             )
             return
@@ -290,7 +290,7 @@ class RouteTool(DrawingTool):
         """Tell whether the draft is for the robot that is selected; say so where it is for another."""
         if self.desk.selection.last in (None, draft.robot):
             return True
-        self.desk.complained.emit(
+        self.desk.warning.emit(
             tr(
                 "The route on the map is for {robot}, but {selected} is selected. Send it (Enter) or "
                 "cancel it (Esc) first, or select {robot} again.",
@@ -344,7 +344,7 @@ class RouteTool(DrawingTool):
 
     def _insert(self, draft: PendingCommand, vertex: int) -> None:
         if vertex == 0:
-            self.desk.complained.emit(
+            self.desk.warning.emit(
                 tr("This is the first vertex: another is put before one that comes later.")
             )
             return

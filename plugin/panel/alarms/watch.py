@@ -44,7 +44,9 @@ class RoadGround(QObject):
         store.forgotten.connect(self._forgotten)
         store.ended.connect(self._have_read)
 
-    def judge(self, xy: Floats, placement: SiteToMapTransform, margin: float) -> tuple[Bools, Bools] | None:
+    def evaluate(
+        self, xy: Floats, transform: SiteToMapTransform, margin: float
+    ) -> tuple[Bools, Bools] | None:
         """Return of (n, 2) metres in the site frame which are off the road by ``margin``, and which on it.
 
         None where no surfaces are known (see :attr:`why_not`). A robot without a place is neither.
@@ -54,11 +56,11 @@ class RoadGround(QObject):
             return None
         there = np.isfinite(xy).all(axis=1)
         on = np.zeros(len(xy), dtype=bool)
-        on[there] = _on_a_surface(xy[there], placement, surfaces)
+        on[there] = _on_a_surface(xy[there], transform, surfaces)
         off = np.zeros(len(xy), dtype=bool)
         beside = np.flatnonzero(there & ~on)
         rim = (xy[beside, None, :] + AROUND * margin).reshape(-1, 2)
-        off[beside] = ~_on_a_surface(rim, placement, surfaces).reshape(-1, len(AROUND)).any(axis=1)
+        off[beside] = ~_on_a_surface(rim, transform, surfaces).reshape(-1, len(AROUND)).any(axis=1)
         return off, on
 
     def report_failure(self, why: str) -> None:
@@ -105,11 +107,11 @@ class RoadGround(QObject):
         self.why_not = ""
 
 
-def _on_a_surface(xy: Floats, placement: SiteToMapTransform, surfaces: SurfaceMap) -> Bools:
+def _on_a_surface(xy: Floats, transform: SiteToMapTransform, surfaces: SurfaceMap) -> Bools:
     if len(xy) == 0:
         return np.zeros(0, dtype=bool)
-    way = surfaces.way_from(placement.site_crs)
-    return surfaces.index.at_many(transform_points_or_nan(placement.frame.to_crs(xy), way)) != NOWHERE
+    way = surfaces.way_from(transform.site_crs)
+    return surfaces.index.at_many(transform_points_or_nan(transform.frame.to_crs(xy), way)) != NOWHERE
 
 
 class SnapshotBuilder:
@@ -170,7 +172,7 @@ class SnapshotBuilder:
         if AlarmKind.OFF_ROAD not in limits.kinds:
             return None, None
         try:
-            judged = self._ground.judge(xy, self._site_to_canvas.transform(), limits.road_margin)
+            judged = self._ground.evaluate(xy, self._site_to_canvas.transform(), limits.road_margin)
         except MapTransformError as error:
             self._ground.report_failure(str(error))
             return None, None
@@ -330,7 +332,7 @@ class AlarmWatch(QObject):
             self._generation = self._state.robots.generation
             self.board.clear()
             self.changed.emit()
-        if self._turn.has_come(1 if len(self._state.robots) <= MANY else 2):
+        if self._turn.is_due(1 if len(self._state.robots) <= MANY else 2):
             self.evaluate()
 
     def _drop(self, gone: RemovedRobots) -> None:

@@ -141,7 +141,7 @@ class Delivery:
 
     async def _deliver(self, after: float = 0.0) -> None:
         await asyncio.sleep(after)
-        event = self._fleet.mailboxes.event(self._robot)
+        event = self._fleet.outboxes.event(self._robot)
         # Of this task alone: one that was ended may still be on its way out.
         last = self._last = {False: 0, True: 0}
         while True:
@@ -162,12 +162,12 @@ class Delivery:
     async def _send_waiting(self, last: dict[bool, int]) -> bool:
         """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
         stops = self._stops
-        for row in await self._fleet.mailboxes.outbox(self._robot, last[False], last[True]):
+        for row in await self._fleet.outboxes.outbox(self._robot, last[False], last[True]):
             # Noted first: it must never be taken back as something that the robot cannot have. All else is
             # noted afterwards, so that no Abort waits for the database, nor behind what does.
             drives = row.op in HELD_BACK
             checked_at = steady_time()
-            is_due = not drives or await self._fleet.mailboxes.hand_over(self._robot, row.id)
+            is_due = not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
             if self._stops != stops:
                 return False
             if is_due and (frame := await self._framed(row)) is not None:
@@ -175,12 +175,12 @@ class Delivery:
                     # While this waited for its turn the robot may have been told to stop.
                     if self._stops != stops:
                         return False
-                    if drives and not self._fleet.mailboxes.may_send(self._robot, checked_at):
+                    if drives and not self._fleet.outboxes.may_send(self._robot, checked_at):
                         return False
                     await self._channel.send(frame)
             last[row.urgent] = row.id
             if not drives:
-                await self._fleet.mailboxes.delivered([row.id])
+                await self._fleet.outboxes.delivered([row.id])
         return True
 
     async def _framed(self, row: AnswerRow) -> str | None:

@@ -104,7 +104,7 @@ class StatusPages:
         return None if report is None else asdict(report)
 
     def _task(self, name: str) -> dict[str, Any]:
-        age = self._fleet.tally.age(name)
+        age = self._fleet.counters.age(name)
         since = time.monotonic() - self._began if age is None else age
         return {"ok": since < TOO_OLD, "age_s": None if age is None else round(age, 3)}
 
@@ -172,8 +172,8 @@ class StatusPages:
         return {(state.value,): float(count) for state, count in self._fleet.open_commands().items()}
 
     def _task_ages(self) -> Values:
-        tally = self._fleet.tally
-        return {(name,): age for name in list(tally.beats) if (age := tally.age(name)) is not None}
+        counters = self._fleet.counters
+        return {(name,): age for name in list(counters.beats) if (age := counters.age(name)) is not None}
 
 
 def _cluster_readings(cluster: Cluster) -> Iterator[MetricReading]:

@@ -360,7 +360,7 @@ class OperatorSession:
         )
 
     async def _do(self, request: DeskRequest[Any]) -> dict[str, Any]:
-        self._fleet.tally.desk[request.method] += 1
+        self._fleet.counters.desk[request.method] += 1
         if isinstance(request, Hello):
             return self._hello(request)
         if isinstance(request, Subscribe):

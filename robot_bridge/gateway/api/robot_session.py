@@ -210,7 +210,7 @@ class RobotSession:
             outcome = await work
             if outcome.answer is not None or outcome.admitted:
                 reader = self._delivery.reader
-                await self._fleet.mailboxes.finish([outcome], [], acks=False, reader=reader)
+                await self._fleet.outboxes.finish([outcome], [], acks=False, reader=reader)
         except (MessageError, BridgeError) as error:
             self._warn(self._key_of(call.method, error), f"{self._who}: {error}")
             await channel.send(channel.error(call.id, error_code(error), str(error)))
@@ -282,7 +282,7 @@ class RobotSession:
 
     def _warn(self, key: Key, line: str) -> None:
         """Count a refusal, and write it into the log unless it comes again and again."""
-        self._fleet.tally.refused[self._channel.name] += 1
+        self._fleet.counters.refused[self._channel.name] += 1
         self._fleet.repeated.warn(log, key, line)
 
     def _note_unforeseen(self, method: str, who: str) -> str:

@@ -57,9 +57,9 @@ class SqlInterface:
             while True:
                 try:
                     found = await self.poll()
-                    if not found and await wakeup.doze():
+                    if not found and await wakeup.enable_notifications():
                         found = await self.poll()
-                    self._fleet.tally.beat(BEAT)
+                    self._fleet.counters.beat(BEAT)
                     self._news.is_over("link sql")
                     await wakeup.wait(found=found)
                 except StoreError as error:
@@ -85,9 +85,9 @@ class SqlInterface:
         if version is not None and version == self._seen_version:
             return False
         if self._waited_up_to is None:
-            self._waited_up_to = await self._fleet.mailboxes.take_up()
+            self._waited_up_to = await self._fleet.outboxes.load_backlog()
         found = False
-        while rows := await self._fleet.mailboxes.read_requests(NAME):
+        while rows := await self._fleet.outboxes.read_requests(NAME):
             found = True
             await self._deal_with_all(rows)
             if len(rows) < AT_ONCE:
@@ -127,7 +127,7 @@ class SqlInterface:
         outcomes = [outcome for one in dealt for outcome in one.outcomes]
         ids = [id for one in dealt for id in one.ids]
         try:
-            await self._fleet.mailboxes.finish(outcomes, ids, acks=True)
+            await self._fleet.outboxes.finish(outcomes, ids, acks=True)
         except DataRefusedError:
             if len(dealt) > 1:
                 for one in dealt:
@@ -135,7 +135,7 @@ class SqlInterface:
                 return
             # Nothing that the gateway writes should be refused; what is must not come back for ever.
             log_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
-            await self._fleet.mailboxes.finish([], ids, acks=True)
+            await self._fleet.outboxes.finish([], ids, acks=True)
 
     async def _deal_with(self, row: RequestRow) -> RequestOutcome | None:
         try:
@@ -147,7 +147,7 @@ class SqlInterface:
         except NotReadyError:
             return self._greet(row.robot)
         except (MessageError, RefusedError, DataRefusedError) as error:
-            self._fleet.tally.refused[NAME] += 1
+            self._fleet.counters.refused[NAME] += 1
             text = f"link sql: request {row.id} of robot {row.robot!r}: {error}"
             self._fleet.repeated.warn(log, _key_of(row), text)
             if isinstance(error, OtherRunError) and not REQUESTS[row.op].acknowledged:

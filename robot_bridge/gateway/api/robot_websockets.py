@@ -343,7 +343,7 @@ class LinkConnection:
         self, id: int | str | None, error: Exception, robot: object = None, code: int | None = None
     ) -> None:
         """Tell the link why a message counts for nothing, and which robot that concerns."""
-        self._fleet.tally.refused[self.name] += 1
+        self._fleet.counters.refused[self.name] += 1
         sender = f"link {self.name}:" if robot is None else f"link {self.name}: robot {str(robot)[:63]!r}:"
         self._fleet.repeated.warn(log, (f"link {self.name}:", type(error).__name__), f"{sender} {error}")
         data = None if robot is None else {"robot": robot}

@@ -55,12 +55,12 @@ class ConnectionRegistry:
     def sessions(self) -> dict[str, ClientConnection]:
         """The desks by their sessions' ids."""
         operator = TokenKind.OPERATOR
-        return {i.session: visitor for visitor, i in self._inside.items() if i.kind is operator}
+        return {i.session: connection for connection, i in self._inside.items() if i.kind is operator}
 
-    def arrived(self, visitor: ClientConnection) -> None:
+    def arrived(self, connection: ClientConnection) -> None:
         """Count a connection that has not said yet what it wants; with one too many the oldest ends."""
-        pending = self._pending[visitor.address]
-        pending[visitor] = None
+        pending = self._pending[connection.address]
+        pending[connection] = None
         if len(pending) <= self._limits.pending_per_address:
             return
         # Whoever has asked for something is about to be let in or refused.
@@ -69,19 +69,19 @@ class ConnectionRegistry:
         if self._shed_lines.consume():
             log.warning(
                 "%s has more than %s that have not said what they want; the oldest are ended",
-                visitor.address,
+                connection.address,
                 counted(self._limits.pending_per_address, "connection"),
             )
         oldest.transport.abort()
 
-    def left(self, visitor: ClientConnection) -> None:
+    def left(self, connection: ClientConnection) -> None:
         """Count a connection that is gone."""
-        if visitor.identity is None:
-            self._forget_pending(visitor)
-        elif (identity := self._take_out(visitor)) is not None and identity.kind is TokenKind.OPERATOR:
-            self._journal.ended(identity.session, visitor.close_reason or "the connection ended")
+        if connection.identity is None:
+            self._forget_pending(connection)
+        elif (identity := self._take_out(connection)) is not None and identity.kind is TokenKind.OPERATOR:
+            self._journal.ended(identity.session, connection.close_reason or "the connection ended")
 
-    def crowded(self, visitor: ClientConnection, identity: Identity) -> str | None:
+    def crowded(self, connection: ClientConnection, identity: Identity) -> str | None:
         """Return why one more connection is not taken, None when it is."""
         robots, limits = identity.kind is not TokenKind.OPERATOR, self._limits
         what, most = {
@@ -91,9 +91,9 @@ class ConnectionRegistry:
         }[identity.kind]
         if not self._has_room(identity.kind, most, robots):
             return f"there is room for {counted(most, what)}, and it is taken; try later."
-        if not self._has_room(("from", visitor.address, identity.kind), limits.per_address, robots):
+        if not self._has_room(("from", connection.address, identity.kind), limits.per_address, robots):
             open_ones = counted(limits.per_address, what)
-            return f"{visitor.address} has {open_ones} open, and gets no more; close some."
+            return f"{connection.address} has {open_ones} open, and gets no more; close some."
         if not robots and not self._has_room(("of", identity.token), limits.desks_per_account):
             open_ones = counted(limits.desks_per_account, "desk")
             return f"{identity.name} has {open_ones} open, and gets no more; close one."
@@ -106,29 +106,29 @@ class ConnectionRegistry:
         if keeps:
             # A fleet larger than the limit comes back in one moment: robots would end one another for ever.
             return False
-        for visitor, identity in self._inside.items():
-            if not visitor.has_sent and kind in _kinds(visitor, identity):
-                self.end(visitor, CloseCode.TRY_AGAIN_LATER, "it said nothing, and others need its place")
+        for connection, identity in self._inside.items():
+            if not connection.has_sent and kind in _kinds(connection, identity):
+                self.end(connection, CloseCode.TRY_AGAIN_LATER, "it said nothing, and others need its place")
                 return True
         return False
 
-    def enter(self, visitor: ClientConnection, identity: Identity, largest_message: int) -> None:
+    def enter(self, connection: ClientConnection, identity: Identity, largest_message: int) -> None:
         """Let a connection in."""
-        self._forget_pending(visitor)
-        self._inside[visitor] = identity
-        self._counts.update(_kinds(visitor, identity))
-        visitor.let_in(identity, largest_message)
+        self._forget_pending(connection)
+        self._inside[connection] = identity
+        self._counts.update(_kinds(connection, identity))
+        connection.let_in(identity, largest_message)
 
-    def end(self, visitor: ClientConnection, code: int, reason: str) -> None:
+    def end(self, connection: ClientConnection, code: int, reason: str) -> None:
         """End a connection at once, with ``code`` as its close code."""
-        identity = self._take_out(visitor)
+        identity = self._take_out(connection)
         if identity is None:
             return
-        log.warning("%s from %s: connection ended: %s", visitor.who, visitor.address, reason)
+        log.warning("%s from %s: connection ended: %s", connection.who, connection.address, reason)
         self._journal.note(
             identity.name or f"{identity.kind.value} without an account",
             "session ended",
-            address=visitor.address,
+            address=connection.address,
             subject=identity.session,
             detail=reason,
         )
@@ -136,20 +136,20 @@ class ConnectionRegistry:
             self._journal.ended(identity.session, reason)
         # A close frame carries at most 123 bytes of reason.
         short = reason.encode()[:120].decode(errors="ignore")
-        self._endings.start(visitor.expel(code, short))
+        self._endings.start(connection.expel(code, short))
 
-    def _take_out(self, visitor: ClientConnection) -> Identity | None:
-        identity = self._inside.pop(visitor, None)
+    def _take_out(self, connection: ClientConnection) -> Identity | None:
+        identity = self._inside.pop(connection, None)
         if identity is not None:
-            for kind in _kinds(visitor, identity):
+            for kind in _kinds(connection, identity):
                 self._uncount(kind)
         return identity
 
-    def _forget_pending(self, visitor: ClientConnection) -> None:
-        pending = self._pending[visitor.address]
-        pending.pop(visitor, None)
+    def _forget_pending(self, connection: ClientConnection) -> None:
+        pending = self._pending[connection.address]
+        pending.pop(connection, None)
         if not pending:
-            del self._pending[visitor.address]
+            del self._pending[connection.address]
 
     def _uncount(self, kind: object) -> None:
         self._counts[kind] -= 1
@@ -157,10 +157,10 @@ class ConnectionRegistry:
             del self._counts[kind]
 
 
-def _kinds(visitor: ClientConnection, identity: Identity) -> list[object]:
+def _kinds(connection: ClientConnection, identity: Identity) -> list[object]:
     """Return everything that a connection is counted under."""
     account: list[object] = [] if identity.token is None else [("of", identity.token)]
-    return [identity.kind, ("from", visitor.address, identity.kind), *account]
+    return [identity.kind, ("from", connection.address, identity.kind), *account]
 
 
 # --- Who is let in, and who is shown the door again ---
@@ -204,7 +204,7 @@ class AuthGate:
     ) -> None:
         self.limits = limits
         self.journal = AuditJournal(database, clock)
-        self.book = AccountCache(database)
+        self.accounts = AccountCache(database)
         self._guests = ConnectionRegistry(limits, self.journal)
         self.gone = 0
         """Connections that have gone since the start."""
@@ -218,7 +218,7 @@ class AuthGate:
     async def open(self) -> None:
         """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
         await self._database.run(audit.end_all_sessions, self._clock.time())
-        await self.book.refresh()
+        await self.accounts.refresh()
 
     def warn(self) -> None:
         """Say in the log what is open to everybody."""
@@ -240,12 +240,12 @@ class AuthGate:
 
     async def refresh(self) -> None:
         """Take over changed accounts, and end what does not hold any more; raises StoreError."""
-        await self.book.refresh()
+        await self.accounts.refresh()
         without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
-        for visitor, identity in self._guests:
+        for connection, identity in self._guests:
             fault = without_token[identity.kind] if identity.token is None else self._fault(identity)
             if fault is not None:
-                self._guests.end(visitor, REVOKED, fault)
+                self._guests.end(connection, REVOKED, fault)
         desks = self._guests.sessions
         ended = await self._database.read(audit.ended_sessions, list(desks))
         # A gateway that starts cannot tell which are those of the one that it was before.
@@ -264,43 +264,43 @@ class AuthGate:
 
     # --- connections come and go ----------------------------------------------------------------------
 
-    def arrived(self, visitor: ClientConnection) -> None:
+    def arrived(self, connection: ClientConnection) -> None:
         """Count a connection that has not said yet what it wants; it may end an older one."""
-        self._guests.arrived(visitor)
+        self._guests.arrived(connection)
 
-    def left(self, visitor: ClientConnection) -> None:
+    def left(self, connection: ClientConnection) -> None:
         """Count a connection that is gone."""
         self.gone += 1
-        self._guests.left(visitor)
+        self._guests.left(connection)
 
-    def name_desk(self, visitor: ClientConnection, operator: str) -> str:
+    def name_desk(self, connection: ClientConnection, operator: str) -> str:
         """Return the operator of a desk that says to be ``operator``: its account, where there are any."""
-        assert visitor.identity is not None
-        if visitor.identity.name is not None:
-            return visitor.identity.name
-        self.journal.renamed(visitor.identity.session, operator)
+        assert connection.identity is not None
+        if connection.identity.name is not None:
+            return connection.identity.name
+        self.journal.renamed(connection.identity.session, operator)
         return operator
 
-    def role(self, visitor: ClientConnection) -> Role:
+    def role(self, connection: ClientConnection) -> Role:
         """Return what a desk may do now."""
-        assert visitor.identity is not None
-        if visitor.identity.token is None:
+        assert connection.identity is not None
+        if connection.identity.token is None:
             return Role.SUPERVISOR
-        grant = self.book.grant(visitor.identity.token)
+        grant = self.accounts.grant(connection.identity.token)
         return (grant.role if grant is not None else None) or Role.VIEWER
 
-    def robots_of_link(self, visitor: ClientConnection) -> tuple[str, ...]:
+    def robots_of_link(self, connection: ClientConnection) -> tuple[str, ...]:
         """Return the patterns of the robots that a link may speak for now."""
-        assert visitor.identity is not None
-        if visitor.identity.token is None:
+        assert connection.identity is not None
+        if connection.identity.token is None:
             return ANY_ROBOT
-        grant = self.book.grant(visitor.identity.token)
+        grant = self.accounts.grant(connection.identity.token)
         return grant.robots if grant is not None else ()
 
     # --- who is let in --------------------------------------------------------------------------------
 
     def refuse_page(
-        self, visitor: ClientConnection, request: Request, own: str | None = None
+        self, connection: ClientConnection, request: Request, own: str | None = None
     ) -> Response | None:
         """Return what a script of a web page that may not connect is told, None for everybody else.
 
@@ -309,26 +309,26 @@ class AuthGate:
         allowed = {*self.limits.origins, own}
         if all(origin in allowed for origin in request.headers.get_all("Origin")):
             return None
-        return visitor.respond(
+        return connection.respond(
             http.HTTPStatus.FORBIDDEN,
             "Web pages may not connect here; 'origins' in [limits] of site.toml names those that may.\n",
         )
 
-    async def may_read(self, visitor: ClientConnection, request: Request) -> Response | None:
+    async def may_read(self, connection: ClientConnection, request: Request) -> Response | None:
         """Return what somebody is told who may not read the gateway's own pages, None for a viewer."""
-        found = await self._identify(visitor, request, TokenKind.OPERATOR)
+        found = await self._identify(connection, request, TokenKind.OPERATOR)
         return found if isinstance(found, Response) else None
 
     async def admit(
         self,
-        visitor: ClientConnection,
+        connection: ClientConnection,
         request: Request,
         kind: TokenKind,
         name: str | None,
         largest_message: int,
     ) -> Response | None:
         """Let a visitor in as a desk, or as the robot it says to be, or return what it is told instead."""
-        found = await self._identify(visitor, request, kind)
+        found = await self._identify(connection, request, kind)
         if isinstance(found, Response):
             return found
         if kind is not TokenKind.OPERATOR:
@@ -336,47 +336,47 @@ class AuthGate:
                 found = Identity(kind, name, None, found.session)
             elif name not in (None, found.name):
                 what = kind.value
-                self._note_refusal(visitor, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
+                self._note_refusal(connection, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
                 text = f"This token is {what} {found.name}'s, not {name}'s; give each {what} its own.\n"
-                return visitor.respond(http.HTTPStatus.FORBIDDEN, text)
-        if visitor.is_gone:
-            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, "The connection has ended.", 5)
-        if (text := self._guests.crowded(visitor, found) or "") != "":
-            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
-        self._guests.enter(visitor, found, largest_message)
-        self._note_login(visitor, found)
+                return connection.respond(http.HTTPStatus.FORBIDDEN, text)
+        if connection.is_gone:
+            return _later(connection, http.HTTPStatus.SERVICE_UNAVAILABLE, "The connection has ended.", 5)
+        if (text := self._guests.crowded(connection, found) or "") != "":
+            return _later(connection, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+        self._guests.enter(connection, found, largest_message)
+        self._note_login(connection, found)
         return None
 
     async def _identify(
-        self, visitor: ClientConnection, request: Request, kind: TokenKind
+        self, connection: ClientConnection, request: Request, kind: TokenKind
     ) -> Identity | Response:
         headers = request.headers
         try:
             token = token_in(headers.get_all("Authorization"), headers.get_all("Sec-WebSocket-Protocol"))
         except AccessError as error:
-            return visitor.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
+            return connection.respond(http.HTTPStatus.BAD_REQUEST, f"{error}\n")
         try:
-            if token is not None and self.book.find(token) is None:
+            if token is not None and self.accounts.find(token) is None:
                 async with asyncio.timeout(LOOK_UP_SHARE * self.limits.handshake_s):
                     await self._read_again()
         except (StoreError, TimeoutError) as error:
             reason = str(error) or f"database {self._database.where} does not answer"
             log.error("%s; a token could not be looked up", reason)
             text = "The accounts cannot be read now: the database is away. Try again."
-            return _later(visitor, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
+            return _later(connection, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
         if self._is_open(kind):
             return Identity(kind, None, None, new_id())
         if token is None:
-            return self._refuse(visitor, kind, "nobody", "no token came with the request")
-        grant = self.book.find(token)
+            return self._refuse(connection, kind, "nobody", "no token came with the request")
+        grant = self.accounts.find(token)
         if grant is None:
-            return self._refuse(visitor, kind, "nobody", "this token is not known")
+            return self._refuse(connection, kind, "nobody", "this token is not known")
         if grant.kind is not kind:
             fault = f"this token is {OWNERS[grant.kind]}, and {PATHS[kind]} takes {OWNERS[kind]}"
-            return self._refuse(visitor, kind, grant.owner, fault)
+            return self._refuse(connection, kind, grant.owner, fault)
         identity = Identity(kind, grant.owner, grant.token, new_id())
         if (wrong := self._fault(identity)) is not None:
-            return self._refuse(visitor, kind, grant.owner, wrong)
+            return self._refuse(connection, kind, grant.owner, wrong)
         return identity
 
     async def _read_again(self) -> None:
@@ -387,14 +387,14 @@ class AuthGate:
                 return
             await asyncio.sleep(max(0.0, self._tried_at + READ_AGAIN_AFTER - time.monotonic()))
             self._tried_at = began = time.monotonic()
-            await self.book.refresh()
+            await self.accounts.refresh()
             # Where that failed, those who wait behind must not take their tokens for unknown ones.
             self._read_at = began
 
     def _fault(self, identity: Identity) -> str | None:
         if identity.token is None:
             return self._fault_without_token(identity.kind)
-        grant = self.book.grant(identity.token)
+        grant = self.accounts.grant(identity.token)
         if grant is None or (identity.kind is TokenKind.OPERATOR and grant.role is None):
             return "this token is not known any more"
         return grant.fault(self._clock.time())
@@ -402,7 +402,7 @@ class AuthGate:
     def _fault_without_token(self, kind: TokenKind) -> str | None:
         return None if self._is_open(kind) else "accounts are in use now: connect with a token"
 
-    def _note_login(self, visitor: ClientConnection, identity: Identity) -> None:
+    def _note_login(self, connection: ClientConnection, identity: Identity) -> None:
         if identity.token is not None:
             self.journal.used(identity.token)
         if identity.kind is TokenKind.ROBOT:
@@ -410,29 +410,29 @@ class AuthGate:
             return
         if identity.kind is TokenKind.LINK:
             name = identity.name or ANY_LINK
-            self.journal.note(f"link {name}", "login", address=visitor.address, subject=identity.session)
+            self.journal.note(f"link {name}", "login", address=connection.address, subject=identity.session)
             return
-        role, address, session = self.role(visitor).value, visitor.address, identity.session
+        role, address, session = self.role(connection).value, connection.address, identity.session
         who = identity.name or f"desk {address}"
         if identity.token is not None:
             self.journal.note(who, "login", role=role, address=address, subject=session)
         self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock.time()))
 
-    def _refuse(self, visitor: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
+    def _refuse(self, connection: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
         # Whoever knocks with wrong tokens is to fill neither the log nor the disk.
-        failures = self._failures_of(visitor.address)
+        failures = self._failures_of(connection.address)
         if not failures.consume():
             text = "Too many refused logins came from this address."
-            return _later(visitor, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
-        self._note_refusal(visitor, who, f"{PATHS[kind]}: {fault}")
+            return _later(connection, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
+        self._note_refusal(connection, who, f"{PATHS[kind]}: {fault}")
         text = f"{fault[:1].upper()}{fault[1:]}. Ask whoever runs the site for a token.\n"
-        response = visitor.respond(http.HTTPStatus.UNAUTHORIZED, text)
+        response = connection.respond(http.HTTPStatus.UNAUTHORIZED, text)
         response.headers["WWW-Authenticate"] = 'Bearer realm="fleet"'
         return response
 
-    def _note_refusal(self, visitor: ClientConnection, who: str, why: str) -> None:
-        log.warning("%s from %s was not let in: %s", who, visitor.address, why)
-        self.journal.note(who, "login", done=False, address=visitor.address, detail=why)
+    def _note_refusal(self, connection: ClientConnection, who: str, why: str) -> None:
+        log.warning("%s from %s was not let in: %s", who, connection.address, why)
+        self.journal.note(who, "login", done=False, address=connection.address, detail=why)
 
     def _failures_of(self, address: str) -> RateLimit:
         if len(self._failures) > MOST_ADDRESSES:
@@ -443,10 +443,10 @@ class AuthGate:
     def _is_open(self, kind: TokenKind) -> bool:
         # A link speaks for robots: where those need tokens, so does it.
         kinds = (kind, TokenKind.ROBOT) if kind is TokenKind.LINK else (kind,)
-        return self._may_be_open and all(self.book.is_open(one) for one in kinds)
+        return self._may_be_open and all(self.accounts.is_open(one) for one in kinds)
 
 
-def _later(visitor: ClientConnection, status: http.HTTPStatus, text: str, seconds: float) -> Response:
-    response = visitor.respond(status, f"{text}\n")
+def _later(connection: ClientConnection, status: http.HTTPStatus, text: str, seconds: float) -> Response:
+    response = connection.respond(status, f"{text}\n")
     response.headers["Retry-After"] = str(int(seconds))
     return response

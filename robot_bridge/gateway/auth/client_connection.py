@@ -218,10 +218,10 @@ class ConnectionLimiter(Protocol):
     def limits(self) -> LimitSettings:
         """The limits that hold now."""
 
-    def arrived(self, visitor: ClientConnection) -> None:
+    def arrived(self, connection: ClientConnection) -> None:
         """Count a new connection."""
 
-    def left(self, visitor: ClientConnection) -> None:
+    def left(self, connection: ClientConnection) -> None:
         """Count a connection that is gone."""
 
 

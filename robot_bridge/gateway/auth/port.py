@@ -325,15 +325,15 @@ def http_response(status: http.HTTPStatus, body: bytes, headers: Iterable[tuple[
     return Response(status.value, status.phrase, Headers(every), body)
 
 
-async def _ask(doorman: Doorman, visitor: ClientConnection, request: Request) -> Response | None:
+async def _ask(doorman: Doorman, connection: ClientConnection, request: Request) -> Response | None:
     """Ask whether a visitor is let in; who meets a fault of the gateway's stays outside."""
     if not _is_path(request.path):
-        return visitor.respond(http.HTTPStatus.BAD_REQUEST, "The path of the request cannot be read.\n")
+        return connection.respond(http.HTTPStatus.BAD_REQUEST, "The path of the request cannot be read.\n")
     try:
-        return await doorman(visitor, request)
+        return await doorman(connection, request)
     except Exception:
-        text = log_unforeseen(log, f"somebody from {visitor.address}")
-        return visitor.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, f"{text}\n")
+        text = log_unforeseen(log, f"somebody from {connection.address}")
+        return connection.respond(http.HTTPStatus.INTERNAL_SERVER_ERROR, f"{text}\n")
 
 
 def _is_path(path: str) -> bool:
@@ -344,10 +344,10 @@ def _is_path(path: str) -> bool:
     return path.isascii() and path.isprintable()
 
 
-async def _serve(handler: Handler, visitor: ClientConnection) -> None:
+async def _serve(handler: Handler, connection: ClientConnection) -> None:
     """Serve one connection; what goes wrong in that ends it alone, and is told to the log alone."""
     try:
-        await handler(visitor)
+        await handler(connection)
     except Exception:
-        text = log_unforeseen(log, f"{visitor.who} from {visitor.address}")
-        await visitor.expel(CloseCode.INTERNAL_ERROR, text)
+        text = log_unforeseen(log, f"{connection.who} from {connection.address}")
+        await connection.expel(CloseCode.INTERNAL_ERROR, text)

@@ -320,7 +320,7 @@ class RobotLocks:
         self._doubts = self._settled = 0
 
     @property
-    def are_in_doubt(self) -> bool:
+    def has_uncertain_commit(self) -> bool:
         """Whether nobody knows what holds."""
         return self._doubts > self._settled
 
@@ -328,7 +328,7 @@ class RobotLocks:
     async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
         """Hold some robots, in the one order in which everybody does; none only looks up what is in doubt."""
         async with self._locks.of(names):
-            if self.are_in_doubt:
+            if self.has_uncertain_commit:
                 before = self._doubts
                 await self._known.read_again()
                 # What came into doubt meanwhile may not have been seen.
@@ -378,10 +378,10 @@ MOST_WAITING = 500
 """that one robot said and that waits; from then on the oldest positions are left out."""
 
 
-class PositionJudge(Protocol):
+class ArrivalEvaluator(Protocol):
     """What judges the commands of robots by where they are."""
 
-    def judge(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+    def evaluate_arrival(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
         """Return what stores the commands that are done, None where none is."""
 
     def lose_sight(self, robot: str) -> None:
@@ -402,8 +402,8 @@ class RobotSequences:
     judged, and those who watch a robot do not wait for a database.
     """
 
-    def __init__(self, judge: PositionJudge) -> None:
-        self._judge = judge
+    def __init__(self, evaluator: ArrivalEvaluator) -> None:
+        self._evaluator = evaluator
         self._waiting: dict[str, deque[_Work | SendPos]] = {}
         self._tasks = BackgroundTasks()
 
@@ -416,7 +416,7 @@ class RobotSequences:
             oldest = next((entry for entry in waiting if isinstance(entry, SendPos)), None)
             if oldest is not None:
                 waiting.remove(oldest)
-            self._judge.lose_sight(robot)
+            self._evaluator.lose_sight(robot)
         waiting.append(pose)
         return True
 
@@ -450,7 +450,7 @@ class RobotSequences:
     async def _judge_position(self, robot: str, pose: SendPos) -> None:
         with log_and_continue(log, f"a position of robot {robot!r}"):
             try:
-                if (work := self._judge.judge(robot, pose)) is not None:
+                if (work := self._evaluator.evaluate_arrival(robot, pose)) is not None:
                     await work
             except StoreError as error:
                 # Its command is open still, and judged by the next position.

@@ -44,10 +44,12 @@ class CommandRequests:
     when it cannot be stored.
     """
 
-    def __init__(self, site: ServedSite, robots: Robots, book: CommandService, database: Database) -> None:
+    def __init__(
+        self, site: ServedSite, robots: Robots, commands: CommandService, database: Database
+    ) -> None:
         self._site = site
         self._robots = robots
-        self._book = book
+        self._commands = commands
         self._database = database
         self._links: list[Callable[[str, str], bool]] = []
 
@@ -69,7 +71,7 @@ class CommandRequests:
         reason = "; ".join(text for text in remarks if text) or None
         fenced = send.override is None
         order = replace(order, reason=reason, expires_in=send.expires_in, fenced=fenced)
-        issue = self._issue_aborts if isinstance(order.message, Abort) else self._book.issue
+        issue = self._issue_aborts if isinstance(order.message, Abort) else self._commands.issue
         return (await issue([order]))[0]
 
     @handles(SetPositions)
@@ -84,7 +86,7 @@ class CommandRequests:
             target = {name: value for name, value in to_json(position).items() if name != "robot"}
             order = await self._order(str(uuid.uuid4()), position.robot, "SetPosEnd", target, operator)
             orders.append(replace(order, fenced=True))
-        return Commands(await self._book.issue(orders))
+        return Commands(await self._commands.issue(orders))
 
     @handles(AbortTask)
     async def abort(self, request: AbortTask, operator: str) -> CommandReport:
@@ -111,7 +113,7 @@ class CommandRequests:
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
         """Store Aborts; those that are not stored within a second are sent over open connections as well."""
-        storing = asyncio.ensure_future(self._book.issue(orders))
+        storing = asyncio.ensure_future(self._commands.issue(orders))
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):
@@ -145,7 +147,7 @@ class CommandRequests:
         return known
 
     def _robot_of(self, request: AbortTask) -> str:
-        robot = request.robot or self._book.robot_of(request.aborts or "")
+        robot = request.robot or self._commands.robot_of(request.aborts or "")
         if robot is None:
             raise RefusedError(
                 f"command {request.aborts} has ended or was never issued, so there is nothing to abort"

@@ -78,9 +78,9 @@ class CommandService(CommandReader):
     async def restore(self) -> None:
         """Take up the commands that an earlier gateway left open."""
         stored = await self._database.run(commands.still_open)
-        self.take_up(command for command in stored if self._fence.owns(command.report.robot))
+        self.adopt(command for command in stored if self._fence.owns(command.report.robot))
 
-    def take_up(self, stored: Iterable[StoredCommand]) -> None:
+    def adopt(self, stored: Iterable[StoredCommand]) -> None:
         """Take up commands of robots that another gateway had."""
         for command in stored:
             self._open.add(self._restored(command))
@@ -114,7 +114,7 @@ class CommandService(CommandReader):
         """
         await to_its_end(self._lead(robot, task, path, write))
 
-    async def hand_over(self, robot: str, sa_id: int) -> bool:
+    async def mark_sending(self, robot: str, sa_id: int) -> bool:
         """Note that message ``sa_id`` is delivered, before it is sent; false where its command has ended.
 
         Were it noted afterwards, a gateway that is killed in between would leave a command queued that the
@@ -133,7 +133,7 @@ class CommandService(CommandReader):
         return known
 
     def may_send(self, robot: str, checked_at: float) -> bool:
-        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` may be sent still.
+        """Tell whether what :meth:`mark_sending` allowed at ``checked_at`` may be sent still.
 
         ``checked_at`` is of :func:`.steady_time`.
 
@@ -163,10 +163,10 @@ class CommandService(CommandReader):
         """
         if self._sequences.add_position(robot, pose):
             return None
-        work = self.judge(robot, pose)
+        work = self.evaluate_arrival(robot, pose)
         return None if work is None else self._sequences.add(robot, work)
 
-    def judge(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
+    def evaluate_arrival(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
         """Judge the robot's acknowledged commands by ``pose``.
 
         Return what stores those that are done, to be awaited; None where none is.
@@ -199,7 +199,7 @@ class CommandService(CommandReader):
         for command in self._open.of(robot):
             command.lose_sight()
 
-    async def rests(self, robot: str, pose: SendPos | None) -> None:
+    async def on_idle(self, robot: str, pose: SendPos | None) -> None:
         """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do."""
         await self._sequences.add(robot, self._rests(robot, pose))
 
@@ -232,7 +232,7 @@ class CommandService(CommandReader):
 
     async def look_up(self) -> None:
         """Find out what became of a transaction that may have been done or not; raises StoreError."""
-        if self._held.are_in_doubt:
+        if self._held.has_uncertain_commit:
             async with self._held.of(()):
                 # Whoever holds robots looks it up.
                 return
@@ -283,7 +283,7 @@ class CommandService(CommandReader):
         async with self._turns.of(() if all(order.is_emergency for order in orders) else robots):
             # What takes long first: nothing may come between the checks and the transaction. And before the
             # robots are held: while a long path is looked at for one, an emergency stop is stored for all.
-            found = await self.drafting.consider(orders)
+            found = await self.drafting.prepare(orders)
             try:
                 async with self._held.of(robots):
                     if not all(order.is_emergency for order in orders):
@@ -376,7 +376,7 @@ class CommandService(CommandReader):
             (command, deviation, pose)
             for command in self._open.of(robot)
             if isinstance(command.arrival, PathArrival)
-            and (deviation := command.arrival.rests(pose)) is not None
+            and (deviation := command.arrival.idle_deviation(pose)) is not None
             and pose is not None
         ]
         await self._all_done(done)

@@ -129,7 +129,7 @@ class CommandRule(Protocol):
 class SlowCommandRule(CommandRule, Protocol):
     """A rule that has to find out before what takes long."""
 
-    async def consider(self, message: Command) -> None:
+    async def prepare(self, message: Command) -> None:
         """Find out what :meth:`check` needs to know about a message."""
 
 
@@ -150,11 +150,11 @@ class CommandRules:
         for rule in self._rules:
             rule.check(message)
 
-    async def consider(self, message: Command) -> None:
+    async def prepare(self, message: Command) -> None:
         """Find out what takes long about a message."""
         for rule in self._rules:
             if isinstance(rule, SlowCommandRule):
-                await rule.consider(message)
+                await rule.prepare(message)
 
     async def check_keepouts(self, orders: Sequence[CommandOrder]) -> Sequence[RefusedError | None]:
         """Return for each order why it must not be sent, None where it leads into no keepout."""
@@ -182,10 +182,10 @@ class CommandValidator(CommandReader):
         self._rules = rules
         self._waiting = waiting
 
-    async def consider(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
+    async def prepare(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
         """Find out what takes long about orders; return why each must not be sent, None where it may be."""
         for order in orders:
-            await self._rules.consider(order.message)
+            await self._rules.prepare(order.message)
         refusals = iter(await self._rules.check_keepouts([order for order in orders if order.fenced]))
         return [next(refusals) if order.fenced else None for order in orders]
 
@@ -205,7 +205,7 @@ class CommandValidator(CommandReader):
 
     async def consider_way(self, way: Command) -> None:
         """Find out what takes long about a way that a robot will be sent."""
-        await self._rules.consider(way)
+        await self._rules.prepare(way)
 
     def check_way(self, robot: str, task: str, way: Command) -> None:
         """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""

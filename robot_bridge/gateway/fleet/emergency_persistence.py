@@ -184,8 +184,8 @@ HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
 class StopWriter:
     """Writes stops into the database; knows the robots whose Abort is not stored yet."""
 
-    def __init__(self, book: CommandService, database: Database) -> None:
-        self._book = book
+    def __init__(self, commands: CommandService, database: Database) -> None:
+        self._commands = commands
         self._database = database
         self._news = TroubleNews()
         self._owed: dict[str, StopRow] = {}
@@ -203,7 +203,7 @@ class StopWriter:
 
     def end(self) -> None:
         """Leave the Aborts that are owed still to the book, which stores them first: the stop is over."""
-        self._book.keep_aborts(
+        self._commands.keep_aborts(
             order for robot, stop in self._owed.items() for order in orders_of(stop, [robot])
         )
         self._owed.clear()
@@ -222,7 +222,7 @@ class StopWriter:
         :raises StoreError: when the database cannot be used; the stop is then to be written again.
         """
         try:
-            await self._book.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
+            await self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
             return True
         except UncertainError:
             raise
@@ -268,7 +268,7 @@ class StopWriter:
         return True
 
     async def _issue(self, stop: StopRow, robots: Sequence[str]) -> None:
-        await self._book.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
+        await self._commands.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
 
     async def _send_bare(self, robots: Sequence[str]) -> None:
         await self._database.run(_write_bare, robots)

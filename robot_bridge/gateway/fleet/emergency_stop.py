@@ -87,7 +87,7 @@ class EmergencyStops:
 
     def __init__(
         self,
-        book: CommandService,
+        commands: CommandService,
         database: Database,
         clock: Clock,
         robots: Robots,
@@ -95,7 +95,7 @@ class EmergencyStops:
         events: EventBus,
         journal: StopJournal | None = None,
     ) -> None:
-        self._book = book
+        self._commands = commands
         self._database = database
         self._clock = clock
         self._robots = robots
@@ -110,7 +110,7 @@ class EmergencyStops:
         self._unstored: list[StopRow] = []
         self._unlisted: list[StopRow] = []
         """what the database refuses as data: noted on the disk alone, and stored no more."""
-        self._writer = StopWriter(book, database)
+        self._writer = StopWriter(commands, database)
         self._seen: set[str] = set()
         self._tally = StopAnswers()
         self._writing = asyncio.Lock()
@@ -298,7 +298,7 @@ class EmergencyStops:
             return
         for robot in robots:
             self._tally.note_sent(robot)
-            if not self._book.awaits_stop(robot):
+            if not self._commands.awaits_stop(robot):
                 self._writer.owe(stop, [robot])
         self.announce()
 
@@ -349,9 +349,9 @@ class EmergencyStops:
         if stop is None or not self.in_force:
             return
         self._tally.note_sent(robot)
-        if not self._book.awaits_stop(robot):
+        if not self._commands.awaits_stop(robot):
             order = CommandOrder(str(uuid.uuid4()), robot, Abort(emergency=True), stop.by, stop.reason)
-            await self._book.issue([order])
+            await self._commands.issue([order])
         self._announce_answers()
 
     def answered(self, robot: str, call_id: str, refused: bool) -> None:
@@ -391,14 +391,14 @@ class EmergencyStops:
             return
         # Of a motion from a time to come, by a wrong clock of its gateway, nobody knows how old it is.
         doubted_from = now + AHEAD_S if now - stop.cleared_at < DOUBTED_S else math.inf
-        overdue = [r for r in robots if self._book.drives_since(r, stop.cleared_at, doubted_from)]
+        overdue = [r for r in robots if self._commands.drives_since(r, stop.cleared_at, doubted_from)]
         if overdue:
             log.warning(
                 "%s: sent the Abort of the emergency stop by %s, which was over before that was stored",
                 listed_names(overdue),
                 stop.by,
             )
-            self._book.keep_aborts(orders_of(stop, overdue))
+            self._commands.keep_aborts(orders_of(stop, overdue))
 
     def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._events.publish(StopBegun(stop.id))

@@ -203,12 +203,12 @@ class RobotOutboxes:
             rows = await self._database.read(answers.read_outbox, *reader)
         return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
 
-    async def hand_over(self, robot: str, id: int) -> bool:
+    async def mark_sending(self, robot: str, id: int) -> bool:
         """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
-        return await self._commands.hand_over(robot, id)
+        return await self._commands.mark_sending(robot, id)
 
     def may_send(self, robot: str, checked_at: float) -> bool:
-        """Tell whether what :meth:`hand_over` allowed at ``checked_at`` (steady clock) may be sent still."""
+        """Return whether what :meth:`mark_sending` allowed at ``checked_at`` (steady clock) still counts."""
         return self._commands.may_send(robot, checked_at)
 
     async def delivered(self, ids: Iterable[int]) -> None:
@@ -221,7 +221,7 @@ class RobotOutboxes:
         if sent:
             await self._commands.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
 
-    async def take_up(self) -> int:
+    async def load_backlog(self) -> int:
         """Take note of what waits in RR from before it was read; return the id of the newest of it.
 
         Acknowledgements among that may have been dealt with already: their commands are judged by positions
@@ -313,12 +313,10 @@ class MapSender:
     A robot never waits for a map to be made: it is sent a window, and the whole one when it is there.
     """
 
-    def __init__(
-        self, site: ServedSite, robots: Robots, mailboxes: RobotOutboxes, database: Database
-    ) -> None:
+    def __init__(self, site: ServedSite, robots: Robots, outboxes: RobotOutboxes, database: Database) -> None:
         self._site = site
         self._robots = robots
-        self._mailboxes = mailboxes
+        self._outboxes = outboxes
         self._database = database
         self._parts: dict[str, Border] = {}
         """what the newest map of a robot covers that was not sent the whole one."""
@@ -343,7 +341,7 @@ class MapSender:
         if self._unplaced:
             for robot in self._unplaced.intersection([robot for robot, _ in poses]):
                 self._unplaced.discard(robot)
-                self._mailboxes.parts.put_nowait(robot)
+                self._outboxes.parts.put_nowait(robot)
 
     @handles(SendMap)
     async def send_requested(self, request: SendMap) -> Done:
@@ -392,12 +390,12 @@ class MapSender:
         """Send what follows the parts that robots were sent, until cancelled."""
         await asyncio.to_thread(self._site.whole_map)
         while True:
-            robot = await self._mailboxes.parts.get()
+            robot = await self._outboxes.parts.get()
             try:
                 await self._follow(robot)
             except StoreError as error:
                 log.error("the map for robot %r: %s; trying again in %g s", robot, error, RETRY_AFTER)
-                self._mailboxes.parts.put_nowait(robot)
+                self._outboxes.parts.put_nowait(robot)
                 await asyncio.sleep(RETRY_AFTER)
             except Exception:
                 # The maps of all other robots go out; again and again it would end the gateway.
@@ -437,4 +435,4 @@ class MapSender:
         await self._store(robot, SetMap(content) if reads_itself else WHOLE_SITE)
 
     async def _store(self, robot: str, message: SetMap) -> None:
-        await self._mailboxes.finish([RequestOutcome(robot, answer=message)], [], acks=False)
+        await self._outboxes.finish([RequestOutcome(robot, answer=message)], [], acks=False)

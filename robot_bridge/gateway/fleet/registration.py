@@ -204,7 +204,7 @@ class Takeover:
         self._queues.drop(some)
         stored = await self._database.run(_load, some)
         known = stored.robots
-        self._commands.take_up(stored.commands)
+        self._commands.adopt(stored.commands)
         for robot in known:
             self._robots.restore(robot, self._clock.time())
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
@@ -212,7 +212,7 @@ class Takeover:
         for name in set(some) - {robot.name for robot in known}:
             self._robots.remove(name)
         self._saving.begin([robot.name for robot in known])
-        self._queues.take_up(stored.queues)
+        self._queues.adopt(stored.queues)
         self._emergency.take_over([robot.name for robot in known if robot.abilities != ""], stored.stop)
         self._events.publish(RobotsTakenUp(tuple(some)))
 
@@ -293,7 +293,7 @@ class Registration:
         robots: Robots,
         commands: CommandService,
         emergency: EmergencyStops,
-        mailboxes: RobotOutboxes,
+        outboxes: RobotOutboxes,
         maps: MapSender,
         saving: TrajectoryWriter,
         database: Database,
@@ -308,7 +308,7 @@ class Registration:
         self._robots = robots
         self._commands = commands
         self._emergency = emergency
-        self._mailboxes = mailboxes
+        self._outboxes = outboxes
         self._maps = maps
         self._saving = saving
         self._database = database
@@ -355,7 +355,7 @@ class Registration:
         """Let a robot in; tell whether it starts again, and ``welcome`` is written before all else for it."""
         if starts_anew := self._robots.starts_anew(robot, ready.magic):
             # Before it is known by its new number: after a failure it must be seen to start again once more.
-            await self._mailboxes.delivered_by_deletion(self._robots.get(robot).link)
+            await self._outboxes.delivered_by_deletion(self._robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
             expire_after = self._site.settings.commands.expire_after_s
             # In one transaction: a gateway that dies next must not take it for another new start,
@@ -412,7 +412,7 @@ class Decommissioning:
         self,
         robots: Robots,
         saving: TrajectoryWriter,
-        book: CommandService,
+        commands: CommandService,
         emergency: EmergencyStops,
         waiting: YieldManager,
         queues: QueueEditor,
@@ -420,7 +420,7 @@ class Decommissioning:
     ) -> None:
         self._robots = robots
         self._saving = saving
-        self._book = book
+        self._commands = commands
         self._emergency = emergency
         self._waiting = waiting
         self._queues = queues
@@ -431,7 +431,7 @@ class Decommissioning:
     def begin(self, known: Iterable[str]) -> None:
         """Take note of the robots that are stored: others were removed while no gateway ran."""
         self._saving.begin(known)
-        self._leaving = self._book.robots().difference(known)
+        self._leaving = self._commands.robots().difference(known)
 
     @handles(RemoveRobots)
     async def remove(self, request: RemoveRobots, operator: str) -> RobotsRemoved:
@@ -492,7 +492,7 @@ class Decommissioning:
 
     async def _take_out(self, robot: str) -> None:
         if robot not in self._robots:
-            await self._book.give_up(robot, REASON)
+            await self._commands.give_up(robot, REASON)
             await self._waiting.forget(robot)
             # Behind the end of its Abort, which would count as its answer.
             self._emergency.forget(robot)

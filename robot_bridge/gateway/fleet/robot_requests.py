@@ -84,14 +84,14 @@ class RobotAnswers:
         maps: Maps,
         database: Database,
         robots: Robots,
-        book: CommandService,
+        commands: CommandService,
         planner: Planner,
         ways: RobotPaths,
     ) -> None:
         self._maps = maps
         self._database = database
         self._robots = robots
-        self._book = book
+        self._commands = commands
         self._planner = planner
         self._ways = ways
 
@@ -113,7 +113,7 @@ class RobotAnswers:
         return await asyncio.to_thread(self._maps.map_around, *around)
 
     async def _path(self, robot: str) -> RobotReply:
-        task = self._book.task(robot)
+        task = self._commands.task(robot)
         if task is None:
             raise RefusedError(f"GetPath: robot {robot!r} has no task; wait for SetPosEnd or SetPath")
         known = self._robots.get(robot)

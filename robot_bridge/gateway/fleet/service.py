@@ -99,26 +99,26 @@ class Fleet:
         self.snapshots = Snapshots(self.robots, clock)
         self.views = FleetViews(self.robots, site, clock)
         rules, waiting = CommandRules(site, self.robots), WaitingRobots()
-        self._book = CommandService(
+        self._commands = CommandService(
             database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
         )
-        self.orders = CommandRequests(site, self.robots, self._book, database)
+        self.orders = CommandRequests(site, self.robots, self._commands, database)
         # A stop that one gateway clears ends at others what was begun before that.
         stop_clock = clock if cluster is None else cluster.membership.shared_clock
         self.emergency = EmergencyStops(
-            self._book, database, stop_clock, self.robots, self.listeners, self.events, stops
+            self._commands, database, stop_clock, self.robots, self.listeners, self.events, stops
         )
-        self._queue_book = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
+        self._queue_registry = QueueRegistry(database, self.robots, self.listeners, self.events, fence)
         planner = planner or StraightPlanner()
         self.queue_context = QueueContext(
-            site, self.robots, self._book, self._queue_book, database, clock, waiting, planner, fence
+            site, self.robots, self._commands, self._queue_registry, database, clock, waiting, planner, fence
         )
         self.queues = QueueEditor(self.queue_context)
         self.driving = QueueRunner(self.queue_context)
         self.roads = RoadTraffic(
             site,
             self.robots,
-            self._book,
+            self._commands,
             self.orders,
             self.driving,
             waiting,
@@ -147,15 +147,15 @@ class Fleet:
         )
         self.recorder = TrajectoryRecorder(site)
         self._saving = TrajectoryWriter(database, self.robots, self.recorder, clock, fence)
-        self.mailboxes = RobotOutboxes(database, self.robots, self._book, self.emergency, self._saving)
-        self.maps = MapSender(site, self.robots, self.mailboxes, database)
+        self.outboxes = RobotOutboxes(database, self.robots, self._commands, self.emergency, self._saving)
+        self.maps = MapSender(site, self.robots, self.outboxes, database)
         self.takeover = None if cluster is None else self._follow_owners(cluster)
         self.reception = Registration(
             site,
             self.robots,
-            self._book,
+            self._commands,
             self.emergency,
-            self.mailboxes,
+            self.outboxes,
             self.maps,
             self._saving,
             database,
@@ -166,19 +166,19 @@ class Fleet:
         self.removals = Decommissioning(
             self.robots,
             self._saving,
-            self._book,
+            self._commands,
             self.emergency,
             self.roads.waiting,
             self.queues,
             database,
         )
         self.observations = ObservationService(site, database, clock, self.events)
-        self._answering = RobotAnswers(site, database, self.robots, self._book, planner, self.roads.ways)
+        self._answering = RobotAnswers(site, database, self.robots, self._commands, planner, self.roads.ways)
         self._tracks = GroundTracks()
         self._places = PlaceChecks(site)
         self._steps = Steps("save")
-        self.suspensions = AccountSuspensions(database, self._book, self.listeners, clock)
-        self.tally = Counters()
+        self.suspensions = AccountSuspensions(database, self._commands, self.listeners, clock)
+        self.counters = Counters()
         self.repeated = RepeatedLines()
         self._subscribe()
 
@@ -188,8 +188,8 @@ class Fleet:
             cluster.ownership,
             cluster.exchange,
             self.robots,
-            self._book,
-            self._queue_book,
+            self._commands,
+            self._queue_registry,
             self.emergency,
             self._saving,
             self._database,
@@ -200,7 +200,7 @@ class Fleet:
     def _subscribe(self) -> None:
         """Say who is told of what; each is told in this order, whatever becomes of those before."""
         subscribe = self.events.subscribe
-        subscribe(events.OutboxChanged, lambda event: self.mailboxes.changed(event.robot))
+        subscribe(events.OutboxChanged, lambda event: self.outboxes.changed(event.robot))
         subscribe(events.CommandChanged, self._assign)
         subscribe(events.CommandChanged, lambda event: self.emergency.note_step(event.report))
         subscribe(events.CommandChanged, lambda event: self.driving.note_step(event.report))
@@ -215,10 +215,10 @@ class Fleet:
 
     def _assign(self, event: events.CommandChanged) -> None:
         robot = event.report.robot
-        self.robots.assign(robot, self._book.busy_with(robot))
+        self.robots.assign(robot, self._commands.busy_with(robot))
 
     def _announce_command(self, event: events.CommandChanged) -> None:
-        self.tally.steps[event.report.state.value] += 1
+        self.counters.steps[event.report.state.value] += 1
         self.listeners.announce("command", event.report.command, to_json(event.report))
 
     def _announce_observation(self, event: events.ObservationChanged) -> None:
@@ -241,16 +241,16 @@ class Fleet:
             known = [robot for robot in known if self._fence.owns(robot.name)]
         for robot in known:
             self.robots.restore(robot, self._clock.time())
-        await self._book.restore()
+        await self._commands.restore()
         self.removals.begin([robot.name for robot in known])
         for robot in known:
-            self.robots.assign(robot.name, self._book.busy_with(robot.name))
+            self.robots.assign(robot.name, self._commands.busy_with(robot.name))
         await self.emergency.restore()
         if self.takeover is None:
             await self.roads.restore()
         else:
             await self.roads.closures.restore()
-        await self._queue_book.restore()
+        await self._queue_registry.restore()
         await self.observations.restore()
         await self.suspensions.restore()
         if self.takeover is not None:
@@ -259,7 +259,7 @@ class Fleet:
             return
         start = self.reception.greeting()
         greetings = [RequestOutcome(robot.name, answer=start) for robot in known if robot.link == "sql"]
-        await self.mailboxes.finish(greetings, [], acks=False)
+        await self.outboxes.finish(greetings, [], acks=False)
 
     # --- robots ---------------------------------------------------------------------------------------
 
@@ -305,7 +305,7 @@ class Fleet:
             why; MessageError for what is wrong in itself.
         """
         now = self._clock.time()
-        self.tally.requests[link, type(request).__name__] += 1
+        self.counters.requests[link, type(request).__name__] += 1
         if isinstance(request, Ready):
             return await self.reception.receive(robot, link, request, id)
         self.robots.check_run(robot, request.magic, link)
@@ -331,7 +331,7 @@ class Fleet:
 
         That is its storing, behind that of what the robot acknowledged before. Positions go on meanwhile.
         """
-        self.tally.requests[link, "OpAck"] += 1
+        self.counters.requests[link, "OpAck"] += 1
         self.robots.check_run(robot, ack.magic, link)
         return self._acknowledge(robot, link, ack, self._clock.time())
 
@@ -341,7 +341,7 @@ class Fleet:
         That is the storing of a command that the robot has carried out, nearly always None.
         """
         now = self._clock.time()
-        self.tally.requests[link, "SendPos"] += 1
+        self.counters.requests[link, "SendPos"] += 1
         moved = self.robots.follow(robot, pose, link, now, self._places.near())
         if moved is None:
             return self._consider_pose(robot, link, pose, now)
@@ -353,7 +353,7 @@ class Fleet:
         Return what is left for some: what is to be awaited, or what is wrong with a position.
         """
         now, near, follow = self._clock.time(), self._places.near(), self.robots.follow
-        self.tally.requests[link, "SendPos"] += len(poses)
+        self.counters.requests[link, "SendPos"] += len(poses)
         moved, others = [], []
         for one in poses:
             has_moved = follow(*one, link, now, near)
@@ -365,8 +365,8 @@ class Fleet:
         self.maps.located(moved)
         rests = [
             *(
-                (robot, _attempt(self._book.observe, robot, pose))
-                for robot, pose in self._book.with_open_commands(moved)
+                (robot, _attempt(self._commands.observe, robot, pose))
+                for robot, pose in self._commands.with_open_commands(moved)
             ),
             *((robot, _attempt(self._consider_pose, robot, link, pose, now)) for robot, pose in others),
         ]
@@ -398,13 +398,13 @@ class Fleet:
 
     def open_commands(self) -> Counter[CommandState]:
         """Return how many commands with a step to come are in each state."""
-        return self._book.count()
+        return self._commands.count()
 
     async def site_changed(self) -> None:
         """Go by the site's newest facts and settings from now on, and tell operators of them."""
         report = self.site.report
         self.robots.limit(report.stale_after, report.lost_after)
-        self._book.set_tolerance(report.reached_tolerance)
+        self._commands.set_tolerance(report.reached_tolerance)
         await self.observations.restore()
         await self.roads.closures.site_changed()
         self.announce_site()
@@ -442,8 +442,8 @@ class Fleet:
                 "positions": self._saving.save,
                 "removed robots": self.removals.carry_out,
                 "observations": self.observations.catch_up,
-                "progress": self._book.save_progress,
-                "expiry": lambda: self._book.expire(expire_after),
+                "progress": self._commands.save_progress,
+                "expiry": lambda: self._commands.expire(expire_after),
             }
         )
 
@@ -467,7 +467,7 @@ class Fleet:
         known = self._hear(robot, link, ack, now, waited=waited)
         if ack.reason is not None:
             ack = replace(ack, reason=one_line(ack.reason, LONGEST_REFUSAL))
-        return self._measured(known, self._book.acknowledge(robot, ack))
+        return self._measured(known, self._commands.acknowledge(robot, ack))
 
     async def _measured(self, robot: Robot, storing: Awaitable[float | None]) -> None:
         self._measure(robot, await storing)
@@ -477,7 +477,7 @@ class Fleet:
     ) -> tuple[Answer | None, str]:
         """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
         if isinstance(request, Stopped):
-            await self._book.rests(robot.name, robot.pose if robot.located else None)
+            await self._commands.on_idle(robot.name, robot.pose if robot.located else None)
         elif isinstance(request, Observed):
             await self.observations.add(robot, link, request, id)
         elif isinstance(request, Question):
@@ -521,14 +521,14 @@ class Fleet:
         if not self.robots.observe(robot, pose, link, now, waited=waited):
             return None
         if unseen:
-            self._book.lose_sight(robot)
+            self._commands.lose_sight(robot)
         return self._moved(robot, pose, now)
 
     def _moved(self, robot: str, pose: SendPos, now: float) -> Awaitable[None] | None:
         self._saving.observe(now, [(robot, pose)])
         self.maps.located([(robot, pose)])
         # A place where it was a while ago says neither that it stands nor that it has arrived.
-        return None if self.robots.is_doubted(robot) else self._book.observe(robot, pose)
+        return None if self.robots.is_doubted(robot) else self._commands.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
         """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""

@@ -62,7 +62,7 @@ class PathArrival:
     A robot is looked for a few metres ahead of where it was, further where it has left its path and comes
     back to it, and on all of what is left where it was out of sight and has moved. Where it may be at two
     places of its path the sooner one counts: a robot that stands blocked at the beginning of a loop has not
-    come to its end. Whether it has it says itself: see :meth:`rests`.
+    come to its end. Whether it has it says itself: see :meth:`idle_deviation`.
     """
 
     def __init__(
@@ -105,7 +105,7 @@ class PathArrival:
         self._unseen_from = self.driven
         self._is_lost = True
 
-    def rests(self, pose: SendPos | None) -> float | None:
+    def idle_deviation(self, pose: SendPos | None) -> float | None:
         """Take it that the robot, at ``pose`` for all that is known, has nothing left to do.
 
         Its word decides where its poses cannot: when it was out of sight and stands at the end of a path that

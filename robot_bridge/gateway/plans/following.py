@@ -193,7 +193,7 @@ MOST_PLACED = 5000
 class FollowedPlans:
     """The plans that robots drive, by name; whoever changes one holds :attr:`lock`.
 
-    Other gateways may change them, too: :meth:`take_up` learns of that, and what is stored of one that was
+    Other gateways may change them, too: :meth:`refresh` learns of that, and what is stored of one that was
     changed since is refused with PlanMovedError. PlanChanged is published for what is stored here.
     """
 
@@ -224,7 +224,7 @@ class FollowedPlans:
         """Return the plans that are driven, oldest first."""
         return sorted(self._plans.values(), key=lambda one: one.plan.submitted_at)
 
-    async def take_up(self) -> None:
+    async def refresh(self) -> None:
         """Take in what an earlier gateway, or others, submitted, changed and ended; raises StoreError."""
         stored = await self._context.database.read(open_revisions)
         for name in [*stored, *(self._plans.keys() - stored.keys())]:
@@ -315,7 +315,7 @@ class FollowedPlans:
 
     async def follow(self, one: FollowedPlan) -> bool:
         """Take in how the plan's queues, robots and roads are; false when nothing has changed."""
-        await self._context.book.look_elsewhere(one.plan.staying)
+        await self._context.registry.look_elsewhere(one.plan.staying)
         closed = None if self.planner is None else self.planner.closed
         present = [robot for robot in one.plan.staying if robot in self._context.robots]
         seen = [(robot, self.queue(robot), self._context.robots.get(robot).state) for robot in present]
@@ -340,7 +340,7 @@ class FollowedPlans:
 
     def queue(self, robot: str) -> Queue:
         """Return a robot's queue."""
-        return self._context.book.get(robot)
+        return self._context.registry.get(robot)
 
     def has_failed(self, robot: str) -> bool:
         """Tell whether a task of a robot's queue has failed."""

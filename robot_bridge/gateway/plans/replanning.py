@@ -295,7 +295,7 @@ class Replanner:
             async with self._plans.lock:
                 if self._making.get(plan) is not making:
                     return
-                await self._plans.take_up()
+                await self._plans.refresh()
                 del self._making[plan]
                 one = self._plans.get(plan)
                 if one.plan.revision != making.revision:

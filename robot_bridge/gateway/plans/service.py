@@ -84,7 +84,7 @@ class PlanService:
     async def restore(self) -> None:
         """Go on with the plans that an earlier gateway left."""
         async with self._plans.lock:
-            await self._plans.take_up()
+            await self._plans.refresh()
             for one in self._plans.all():
                 self._keep_planning(one)
 
@@ -104,7 +104,7 @@ class PlanService:
             return await self._enter(request, document, operator)
 
     async def _enter(self, request: SubmitPlan, document: ConePlan, operator: str) -> PlanReport:
-        await self._plans.take_up()
+        await self._plans.refresh()
         if (known := await self._plans.find(request.plan)) is not None:
             return known.report()
         self._check_no_emergency()
@@ -127,7 +127,7 @@ class PlanService:
             await self._editor.enter(entries, operator, also)
         except (OutdatedError, StoreError):
             # Asked at two gateways at once, one of them has entered it.
-            await self._plans.take_up()
+            await self._plans.refresh()
             if request.plan not in self._plans:
                 raise
             return self._plans.get(request.plan).report()
@@ -137,7 +137,7 @@ class PlanService:
     async def read(self, request: GetPlans) -> Plans:
         """Return plans as they are; raises RefusedError for one that is not known."""
         async with self._plans.lock:
-            await self._plans.take_up()
+            await self._plans.refresh()
         if request.plan is not None:
             one = await self._plans.find(request.plan)
             if one is None:
@@ -153,7 +153,7 @@ class PlanService:
         """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
         if request.plan not in self._plans:
             async with self._plans.lock:
-                await self._plans.take_up()
+                await self._plans.refresh()
         one = self._plans.get(request.plan)
         why = f"plan {request.plan}" + (f": {request.reason}" if request.reason else "")
         failed: list[BridgeError] = []
@@ -227,7 +227,7 @@ class PlanService:
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
         """Follow a plan no more; its tasks stay in the queues."""
         async with self._plans.lock:
-            await self._plans.take_up()
+            await self._plans.refresh()
             if request.plan not in self._plans and (known := await self._plans.find(request.plan)):
                 return known.report()
         async with self._changing(request.plan) as one:
@@ -243,7 +243,7 @@ class PlanService:
     async def follow(self) -> None:
         """Follow all plans; called twice a second. Raises StoreError."""
         async with self._plans.lock:
-            await self._plans.take_up()
+            await self._plans.refresh()
         for one in self._plans.all():
             # What nobody foresaw of one plan must not keep the others from being followed.
             with log_and_continue(log, f"plan {one.plan.name}", except_for=StoreError):
@@ -312,13 +312,13 @@ class PlanService:
             RefusedError where it is not driven, and StoreError.
         """
         async with self._plans.lock:
-            await self._plans.take_up()
+            await self._plans.refresh()
             one = self._plans.get(name) if revision is None else self._plans.of_revision(name, revision)
-            await self._context.book.look_elsewhere(one.plan.staying)
+            await self._context.registry.look_elsewhere(one.plan.staying)
             try:
                 yield one
             except PlanMovedError as error:
-                await self._plans.take_up()
+                await self._plans.refresh()
                 raise self._plans.outdated(name, str(error)) from None
 
     async def _let_go_on(self, one: FollowedPlan, robots: Sequence[str], operator: str) -> PlanReport:

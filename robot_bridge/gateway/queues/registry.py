@@ -97,7 +97,7 @@ class QueueRegistry:
         for robot in self.names():
             self._events.publish(QueueChanged(robot))
 
-    def take_up(self, stored: Iterable[tuple[Queue, list[QueuedTask]]]) -> None:
+    def adopt(self, stored: Iterable[tuple[Queue, list[QueuedTask]]]) -> None:
         """Take up queues of robots that another gateway had, each with its newest tasks that ended."""
         for queue, ended in stored:
             self._ended[queue.robot] = ended
@@ -276,7 +276,7 @@ def _fenced(
 
 @dataclass(frozen=True)
 class QueueContext:
-    """The queues in their ``book``, and what they depend on: site, robots, commands, database, clock (s).
+    """The queues in their ``registry``, and what they depend on: site, robots, commands, database, clock (s).
 
     ``planner`` finds the ways to tasks without a path; ``waiting`` robots let another pass first; ``fence``
     tells which robots this gateway has.
@@ -285,7 +285,7 @@ class QueueContext:
     site: ServedSite
     robots: Robots
     commands: CommandService
-    book: QueueRegistry
+    registry: QueueRegistry
     database: Database
     clock: Clock
     waiting: WaitingRobots

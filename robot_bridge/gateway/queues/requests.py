@@ -49,7 +49,7 @@ class PauseService:
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
-        self._book = context.book
+        self._registry = context.registry
         self._clock = context.clock
         self._waiting = context.waiting
 
@@ -61,7 +61,7 @@ class PauseService:
         path that is too long to be kept, and StoreError.
         """
         self._robots.check_known(request.robot)
-        async with self._book.holding([request.robot]):
+        async with self._registry.holding([request.robot]):
             for _ in range(_TRIES - 1):
                 try:
                     return await self._pause(request, operator)
@@ -71,13 +71,13 @@ class PauseService:
             return await self._pause(request, operator)
 
     async def _pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
-        robot, queue = request.robot, self._book.get(request.robot)
+        robot, queue = request.robot, self._registry.get(request.robot)
         reason, now = because(f"paused by {operator}", request.reason), self._clock.time()
         doing = self._commands.carried_out(robot)
         own = None if doing is None else _task_by(queue, doing.report.command)
         kept = self._kept(robot, doing) if own is None else []
         if own is None and not kept:
-            return await self._book.save(queue, queue.paused(reason, operator, now))
+            return await self._registry.save(queue, queue.paused(reason, operator, now))
         after = pause_with_task(queue, kept, reason, operator, now)
         abort = CommandOrder(
             str(uuid.uuid4()),
@@ -89,8 +89,8 @@ class PauseService:
             task=(own or kept[0]).id,
         )
         write = partial(queues.save, before=queue, after=after)
-        await self._book.stored([robot], self._commands.issue([abort], write))
-        return self._book.accept(after)
+        await self._registry.stored([robot], self._commands.issue([abort], write))
+        return self._registry.accept(after)
 
     def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
         """Return as tasks what the robot does beside its queue, and is to do after another has passed."""
@@ -182,7 +182,7 @@ class QueueEditor:
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
-        self._book = context.book
+        self._registry = context.registry
         self._database = context.database
         self._clock = context.clock
         self._fence = context.fence
@@ -253,11 +253,11 @@ class QueueEditor:
         names = [request.robot, *(share.robot for share in request.shares)]
         revisions = {request.robot: request.revision}
         revisions.update({share.robot: share.revision for share in request.shares})
-        async with self._book.holding(names):
+        async with self._registry.holding(names):
             for name in names:
                 self._robots.check_known(name)
                 self._check_revision(name, revisions[name])
-            before = {name: self._book.get(name) for name in names}
+            before = {name: self._registry.get(name) for name in names}
             after = task_life.transfer_tasks(before, request, operator, self._clock.time())
             for share in request.shares:
                 paths = [task.path for task in share.tasks if task.path]
@@ -269,7 +269,7 @@ class QueueEditor:
             taken = task_life.transferred_current_task(before[request.robot], request)
             ended = [] if taken is None else [(request.robot, taken)]
             await self._stored(list(before.values()), write, ended, operator)
-            return messages.Queues([self._book.accept(after[name]) for name in names])
+            return messages.Queues([self._registry.accept(after[name]) for name in names])
 
     async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[messages.QueueReport]:
         """Give several robots their tasks in one transaction, in which ``also`` is written; see there.
@@ -280,12 +280,12 @@ class QueueEditor:
 
     async def _enter(self, entries: QueueEntries, operator: str, also: Also) -> list[messages.QueueReport]:
         names = [*entries.tasks, *(name for name in entries.away if name not in entries.tasks)]
-        async with self._book.holding(names):
+        async with self._registry.holding(names):
             for name in names:
                 self._robots.check_known(name)
-                self._check_revision(name, entries.revisions.get(name, self._book.get(name).revision))
+                self._check_revision(name, entries.revisions.get(name, self._registry.get(name).revision))
                 self._check_seen(name, entries.seen)
-            leaving = {task.id for name in entries.tasks for task in self._book.get(name).waiting}
+            leaving = {task.id for name in entries.tasks for task in self._registry.get(name).waiting}
             leaving |= set(entries.withdrawn)
             changes = [await self._entered(name, entries, leaving, operator) for name in entries.tasks]
             changes += [self._withdrawn(name, entries, operator) for name in entries.away]
@@ -296,7 +296,7 @@ class QueueEditor:
             ]
             write = partial(_write_entries, changes, also)
             await self._stored([before for before, _, _ in changes], write, taken, operator)
-            return [self._book.accept(after, ended) for _, after, ended in changes]
+            return [self._registry.accept(after, ended) for _, after, ended in changes]
 
     async def _stored(
         self, before: Sequence[Queue], write: Also, taken: Sequence[tuple[str, QueuedTask]], operator: str
@@ -324,14 +324,14 @@ class QueueEditor:
             for order in orders
             if order not in others and order.aborts is not None and self._commands.is_open(order.aborts)
         ]
-        write = self._book.fenced(before, partial(_write_taking, write, self._fence, orders, others))
+        write = self._registry.fenced(before, partial(_write_taking, write, self._fence, orders, others))
         writing = self._commands.issue(own, write) if own else self._database.run(write)
-        await self._book.stored([queue.robot for queue in before], writing)
+        await self._registry.stored([queue.robot for queue in before], writing)
 
     async def _entered(
         self, name: str, entries: QueueEntries, leaving: Collection[str], operator: str
     ) -> QueueChange:
-        before, tasks, now = self._book.get(name), entries.tasks[name], self._clock.time()
+        before, tasks, now = self._registry.get(name), entries.tasks[name], self._clock.time()
         after = before
         if tasks is not None:
             request = messages.SetQueue(name, before.revision, list(tasks), entries.override)
@@ -349,7 +349,7 @@ class QueueEditor:
         return before, after, _removed(gone, "another list took its place", operator, now)
 
     def _withdrawn(self, name: str, entries: QueueEntries, operator: str) -> QueueChange:
-        before, now = self._book.get(name), self._clock.time()
+        before, now = self._registry.get(name), self._clock.time()
         gone = [task for task in before.tasks if task.id in entries.withdrawn]
         kept = [task for task in before.tasks if task.id not in entries.withdrawn]
         reason = because("its tasks were taken over", entries.reason)
@@ -358,8 +358,8 @@ class QueueEditor:
 
     async def end(self, robot: str, operator: str, reason: str) -> None:
         """End every task of a robot's queue, begun or not: nobody is left to do it."""
-        async with self._book.holding([robot]):
-            queue = self._book.get(robot)
+        async with self._registry.holding([robot]):
+            queue = self._registry.get(robot)
             if robot in self._robots and queue.tasks:
                 await self._edit(queue, queue.with_tasks((), edited=True), operator, reason)
 
@@ -368,8 +368,8 @@ class QueueEditor:
         """Return queues as they are."""
         if request.robot is not None:
             self._robots.check_known(request.robot)
-        names = [request.robot] if request.robot is not None else self._book.names()
-        asked = {name: self._book.get(name) for name in names}
+        names = [request.robot] if request.robot is not None else self._registry.names()
+        asked = {name: self._registry.get(name) for name in names}
         if request.robot is None and (others := self._robots.commanded_elsewhere()):
             # What other gateways of the fleet have stored.
             asked |= await self._database.read(queues.load, others)
@@ -390,7 +390,7 @@ class QueueEditor:
     async def collecting(self, request: CollectLayout) -> CollectingTasks:
         """Return a task for each cone that stands and is in no queue yet."""
         found = await self._database.read(records.standing, request.layout)
-        queued = {task.task.placement for queue in await self._book.everywhere() for task in queue.tasks}
+        queued = {task.task.placement for queue in await self._registry.everywhere() for task in queue.tasks}
         turns = self._site.settings.cones.offset != (0.0, 0.0)
         tasks = [_collecting(cone, turns) for cone in found if cone.placement not in queued]
         return CollectingTasks(tasks, len(found) - len(tasks))
@@ -399,17 +399,17 @@ class QueueEditor:
         return task.command is not None and self._commands.is_being_aborted(robot, task.command)
 
     async def _pause(self, robot: str, reason: str, operator: str) -> messages.QueueReport:
-        async with self._book.holding([robot]):
+        async with self._registry.holding([robot]):
             self._robots.check_known(robot)
-            queue = self._book.get(robot)
+            queue = self._registry.get(robot)
             return await self._edit(queue, queue.paused(reason, operator, self._clock.time()), operator)
 
     @contextlib.asynccontextmanager
     async def _editing(self, robot: str, revision: int) -> AsyncIterator[Queue]:
-        async with self._book.holding([robot]):
+        async with self._registry.holding([robot]):
             self._robots.check_known(robot)
             self._check_revision(robot, revision)
-            yield self._book.get(robot)
+            yield self._registry.get(robot)
 
     async def _edit(
         self, before: Queue, after: Queue, operator: str, reason: str | None = None
@@ -422,18 +422,18 @@ class QueueEditor:
             for task in before.tasks
             if task.id not in kept
         ]
-        return await self._book.save(before, after, gone)
+        return await self._registry.save(before, after, gone)
 
     def _check_revision(self, robot: str, revision: int) -> None:
-        now = self._book.get(robot).revision
+        now = self._registry.get(robot).revision
         if revision != now:
-            raise self._book.outdated(
+            raise self._registry.outdated(
                 robot, f"the queue of robot {robot!r} is at revision {now}, not {revision}; look at it again"
             )
 
     def _check_seen(self, robot: str, seen: Mapping[str, Queue]) -> None:
-        if robot in seen and self._book.get(robot) != seen[robot]:
-            raise self._book.outdated(
+        if robot in seen and self._registry.get(robot) != seen[robot]:
+            raise self._registry.outdated(
                 robot, f"the queue of robot {robot!r} has changed since it was looked at; look again"
             )
 
@@ -453,7 +453,7 @@ class QueueEditor:
             new = [leg for task in tasks if waiting.get(task.task) != task for leg in driven[task.task]]
             await check_keepouts(self._site, new)
         tasks_by_placement = {task.placement: task.task for task in tasks if task.placement is not None}
-        for other in await self._book.everywhere() if tasks_by_placement else ():
+        for other in await self._registry.everywhere() if tasks_by_placement else ():
             for queued in other.tasks:
                 if queued.id in leaving or queued.task.placement not in tasks_by_placement:
                     continue

@@ -39,14 +39,14 @@ class QueueOutcomes:
     def __init__(self, context: QueueContext) -> None:
         self._site = context.site
         self._commands = context.commands
-        self._book = context.book
+        self._registry = context.registry
         self._database = context.database
         self._clock = context.clock
 
     async def settle(self, queue: Queue) -> None:
         """Write down what came of the current task's command, if that has ended."""
         await self._settle_current(queue)
-        await self._settle_given_back(self._book.get(queue.robot))
+        await self._settle_given_back(self._registry.get(queue.robot))
 
     async def _settle_current(self, queue: Queue) -> None:
         current = queue.current
@@ -55,7 +55,7 @@ class QueueOutcomes:
         found = (await self._database.run(stored_commands.find_all, [current.command])).get(current.command)
         if found is None:
             reason = "what its command came to is not stored any more"
-            await self._book.save(
+            await self._registry.save(
                 queue, task_life.mark_failed(queue, reason, self._clock.time(), skips=False).queue
             )
             return
@@ -90,12 +90,12 @@ class QueueOutcomes:
                 task, at = ended.task, report.steps[-1].at
                 collected = CollectedCone(before.robot, at, task.placement, task.cone, task.layout)
         gone = [] if ended is None else [ended]
-        write = self._book.fenced([before], write_outcome)
+        write = self._registry.fenced([before], write_outcome)
         writing = self._database.run(write, before, outcome.queue, gone, placed, collected)
-        written = await self._book.stored([before.robot], writing)
-        self._book.accept(outcome.queue, gone)
+        written = await self._registry.stored([before.robot], writing)
+        self._registry.accept(outcome.queue, gone)
         if written is not None:
-            self._book.announce_placement(written)
+            self._registry.announce_placement(written)
 
     def _legs_of(self, current: QueuedTask) -> int:
         try:
@@ -152,8 +152,8 @@ _MOST_NAMED = 2
 class TaskPrecedence:
     """Tells which tasks are still waited for; those that are done once are never asked for again."""
 
-    def __init__(self, book: QueueRegistry, database: Database) -> None:
-        self._book = book
+    def __init__(self, registry: QueueRegistry, database: Database) -> None:
+        self._registry = registry
         self._database = database
         self._done: set[str] = set()
 
@@ -166,7 +166,9 @@ class TaskPrecedence:
         unfinished = [id for id in task.after or () if id not in self._done]
         if not unfinished:
             return None
-        queued = {one.id: (name, one) for name in self._book.names() for one in self._book.get(name).tasks}
+        queued = {
+            one.id: (name, one) for name in self._registry.names() for one in self._registry.get(name).tasks
+        }
         elsewhere = [id for id in unfinished if id not in queued]
         known = await self._database.read(queues.whereabouts, elsewhere) if elsewhere else {}
         done = {id for id, found in known.items() if found.state is TaskState.DONE}
@@ -227,9 +229,9 @@ class QueueRunner:
         self._site = context.site
         self._robots = context.robots
         self._commands = context.commands
-        self._book = context.book
+        self._registry = context.registry
         self._settling = QueueOutcomes(context)
-        self._precedence = TaskPrecedence(context.book, context.database)
+        self._precedence = TaskPrecedence(context.registry, context.database)
         self._planner = context.planner
         self._database = context.database
         self._clock = context.clock
@@ -258,7 +260,7 @@ class QueueRunner:
 
     def note_step(self, report: CommandReport) -> None:
         """Note what became of a command; called with each step of every one."""
-        queue = self._book.get(report.robot)
+        queue = self._registry.get(report.robot)
         head = queue.head
         if head is None:
             return
@@ -267,13 +269,13 @@ class QueueRunner:
                 self.schedule(report.robot)
         elif report.state is CommandState.QUEUED and self._is_beside(queue, report):
             # It has paused the queue in its own transaction.
-            self._book.doubt(report.robot)
+            self._registry.doubt(report.robot)
 
     def look_at_all(self) -> None:
         """Look at every queue that has something to do; tell of robots that are lost, or back."""
-        for robot in self._book.names():
-            queue = self._book.get(robot)
-            if self._book.is_doubtful(robot):
+        for robot in self._registry.names():
+            queue = self._registry.get(robot)
+            if self._registry.is_doubtful(robot):
                 self.schedule(robot)
             if not queue.tasks:
                 self._last_states.pop(robot, None)
@@ -281,7 +283,7 @@ class QueueRunner:
             state = self._robots.get(robot).state
             if self._last_states.setdefault(robot, state) is not state:
                 self._last_states[robot] = state
-                self._book.announce(robot)
+                self._registry.announce(robot)
             if queue.running or queue.current is not None:
                 self.schedule(robot)
 
@@ -300,8 +302,8 @@ class QueueRunner:
         Return the command that does it, None when the robot is not doing a task of its queue. Raises
         MessageError for a path that ends elsewhere, RefusedError and StoreError.
         """
-        async with self._book.holding([robot]):
-            queue, current = self._book.get(robot), self._current(robot)
+        async with self._registry.holding([robot]):
+            queue, current = self._registry.get(robot), self._current(robot)
             if current is None:
                 return None
             check_path(current.id, path.points, (current.task.x, current.task.y))
@@ -316,8 +318,8 @@ class QueueRunner:
         transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
         RefusedError for a robot that does no task of its queue any more, and StoreError.
         """
-        async with self._book.holding([robot]):
-            queue = self._book.get(robot)
+        async with self._registry.holding([robot]):
+            queue = self._registry.get(robot)
             current = self._current(robot)
             if current is None:
                 raise RefusedError(f"robot {robot!r} has been told otherwise in the meantime")
@@ -337,7 +339,7 @@ class QueueRunner:
         return path_to_task_end(task, self._site.settings.cones.offset, left)
 
     def _current(self, robot: str) -> QueuedTask | None:
-        current = self._book.get(robot).current
+        current = self._registry.get(robot).current
         if current is None or current.command is None or not self._commands.is_open(current.command):
             return None
         return current
@@ -346,10 +348,10 @@ class QueueRunner:
 
     async def _advance(self, robot: str) -> None:
         try:
-            async with self._book.holding([robot]):
-                await self._settling.settle(self._book.get(robot))
-                await self._hold_back(self._book.get(robot))
-                await self._go_on(self._book.get(robot))
+            async with self._registry.holding([robot]):
+                await self._settling.settle(self._registry.get(robot))
+                await self._hold_back(self._registry.get(robot))
+                await self._go_on(self._registry.get(robot))
         except OutdatedError:
             self.schedule(robot)
         except StoreError as error:
@@ -360,7 +362,7 @@ class QueueRunner:
 
     def note_return(self, robot: str, away: float) -> None:
         """Note that a robot is heard again that was lost or offline for ``away`` seconds."""
-        queue = self._book.get(robot)
+        queue = self._registry.get(robot)
         if away > self._longest_silence and queue.running and queue.tasks:
             self._returned.add(robot)
             self.schedule(robot)
@@ -381,7 +383,7 @@ class QueueRunner:
                 f"the robot was not heard for longer than {self._longest_silence:g} s, or no gateway was "
                 "there to hear it; resume when it may drive again"
             )
-            await self._book.save(queue, queue.paused(reason, task_life.GATEWAY, self._clock.time()))
+            await self._registry.save(queue, queue.paused(reason, task_life.GATEWAY, self._clock.time()))
         self._returned.discard(robot.name)
 
     def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
@@ -398,7 +400,7 @@ class QueueRunner:
             return
         if (why := await self._why_not_yet(queue.robot, head)) is not None:
             if head.reason != why:
-                await self._book.save(queue, task_life.mark_waiting(queue, why))
+                await self._registry.save(queue, task_life.mark_waiting(queue, why))
             return
         busy, own = self._commands.busy_with(queue.robot), {task.command for task in queue.tasks}
         try:
@@ -409,7 +411,9 @@ class QueueRunner:
         except OutdatedError:
             raise
         except RefusedError as error:
-            await self._book.save(queue, task_life.pause_before_head(queue, str(error), self._clock.time()))
+            await self._registry.save(
+                queue, task_life.pause_before_head(queue, str(error), self._clock.time())
+            )
 
     async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
         """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
@@ -487,10 +491,10 @@ class QueueRunner:
         try:
             more = None if also is None else also(order.command)
             issuing = self._commands.issue([order], partial(_save, before, after, more))
-            (report,) = await self._book.stored([before.robot], issuing)
+            (report,) = await self._registry.stored([before.robot], issuing)
         finally:
             self._sending.discard(order.command)
-        self._book.accept(after)
+        self._registry.accept(after)
         return report
 
     async def _stored(self, command: str) -> StoredCommand | None:

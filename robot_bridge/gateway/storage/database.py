@@ -195,7 +195,7 @@ class DatabaseWorker:
     def _do(self, jobs: list[DatabaseJob]) -> list[Outcome]:
         began = time.monotonic()
         try:
-            return [(jobs[done.number], done.result, None) for done in self._insist(jobs)]
+            return [(jobs[done.number], done.result, None) for done in self._run_with_retry(jobs)]
         except StoreError as error:
             # One piece of work may be at fault; but not each of them is to wait for the database as long.
             at_once = time.monotonic() - began < WRONG_AT_ONCE_S
@@ -213,7 +213,7 @@ class DatabaseWorker:
         half = len(jobs) // 2
         return [*self._do(jobs[:half]), *self._do(jobs[half:])]
 
-    def _insist(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
+    def _run_with_retry(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""
         for attempt in range(1, ATTEMPTS + 1):
             fresh = self._connection is None
@@ -234,12 +234,12 @@ class DatabaseWorker:
         if self._dialect.deadlocked(error):
             return True
         if self._dialect.kept_waiting(error):
-            return self._make_way()
+            return self._end_blockers()
         # The server was restarted since this connection was last used; on a new one it may well go on.
         patience = self._patience or took
         return error.connection_invalidated and not fresh and took < patience
 
-    def _make_way(self) -> bool:
+    def _end_blockers(self) -> bool:
         """End robots' transactions that may hold what the gateway waits for; tell whether that was done."""
         try:
             with self._connected().begin():
@@ -399,9 +399,9 @@ class Database:
         """
         return await self._timed(work, arguments, Durability.WRITE)
 
-    async def jot(self, work: Callable[..., T], *arguments: Any) -> T:
+    async def write_relaxed(self, work: Callable[..., T], *arguments: Any) -> T:
         """As :meth:`run`, but a power cut may undo it, though never before what was done earlier."""
-        return await self._timed(work, arguments, Durability.JOT)
+        return await self._timed(work, arguments, Durability.RELAXED)
 
     async def read(self, work: Callable[..., T], *arguments: Any) -> T:
         """As :meth:`run`, for work that changes nothing; its statements may each see a newer state."""
@@ -433,13 +433,13 @@ class Database:
             return listening
         return AdaptiveWakeup(listening, self)
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Let those that write tell of new rows; false while somebody writes who does not. See StoreError."""
-        return await self.read(self.dialect.doze)
+        return await self.read(self.dialect.enable_notifications)
 
-    async def rouse(self) -> None:
+    async def disable_notifications(self) -> None:
         """Let those that write tell of nothing; raises StoreError."""
-        await self.read(self.dialect.rouse)
+        await self.read(self.dialect.disable_notifications)
 
     @property
     def session(self) -> int:

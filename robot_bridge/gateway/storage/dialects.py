@@ -41,7 +41,7 @@ class Durability(IntEnum):
 
     READ = 1
     """It changes nothing."""
-    JOT = 2
+    RELAXED = 2
     """What it changes may be lost in a power cut, though never before what was changed earlier."""
     WRITE = 3
     """What it changes outlives a power cut."""
@@ -81,11 +81,11 @@ class Dialect:
         """Return the number under which notifications of this connection come, or None."""
         return None
 
-    def doze(self, connection: Connection) -> bool:
+    def enable_notifications(self, connection: Connection) -> bool:
         """Have those who write into RR tell of it from now on; false while one writes who does not."""
         return False
 
-    def rouse(self, connection: Connection) -> None:
+    def disable_notifications(self, connection: Connection) -> None:
         """Let those who write into RR tell nobody of it."""
 
     def interrupt(self, driver_connection: Any) -> None:
@@ -192,7 +192,7 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
     "keepalives_interval": 2,
     "keepalives_count": 3,
 }
-GATEWAY_DOZES = 0x666C656574
+NOTIFICATIONS_LOCK = 0x666C656574
 """The number of the lock that a gateway holds while it wants to be told of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
 _READ_ONLY = "25006"
@@ -228,7 +228,7 @@ class PostgreSQL(Dialect):
             # Saves a reader two of three round trips to the server.
             driver.autocommit = mode is Durability.READ
         transaction = connection.begin()
-        if mode is Durability.JOT:
+        if mode is Durability.RELAXED:
             connection.exec_driver_sql("set local synchronous_commit = off")
         return transaction
 
@@ -237,16 +237,16 @@ class PostgreSQL(Dialect):
         assert driver is not None
         return int(driver.info.backend_pid)
 
-    def doze(self, connection: Connection) -> bool:
+    def enable_notifications(self, connection: Connection) -> bool:
         # Taken twice the lock would have to be given back twice.
-        if not connection.info.get("dozes"):
-            text = f"select pg_try_advisory_lock({GATEWAY_DOZES})"
-            connection.info["dozes"] = connection.exec_driver_sql(text).scalar_one()
-        return bool(connection.info["dozes"])
+        if not connection.info.get("notified"):
+            text = f"select pg_try_advisory_lock({NOTIFICATIONS_LOCK})"
+            connection.info["notified"] = connection.exec_driver_sql(text).scalar_one()
+        return bool(connection.info["notified"])
 
-    def rouse(self, connection: Connection) -> None:
-        if connection.info.pop("dozes", False):
-            connection.exec_driver_sql(f"select pg_advisory_unlock({GATEWAY_DOZES})")
+    def disable_notifications(self, connection: Connection) -> None:
+        if connection.info.pop("notified", False):
+            connection.exec_driver_sql(f"select pg_advisory_unlock({NOTIFICATIONS_LOCK})")
 
     def interrupt(self, driver_connection: Any) -> None:
         # One that was lost meanwhile has no number any more, which is the driver's error.

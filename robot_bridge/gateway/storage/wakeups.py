@@ -49,7 +49,7 @@ def robot_channel(robot: str) -> str:
 class Wakeup(Protocol):
     """Tells when to look for new rows."""
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Ask to be told of new rows from now on; false where nobody tells, or not yet.
 
         When it is true, look once more before :meth:`wait`: what came before it may not be told.
@@ -73,10 +73,10 @@ class OwnBackend(Protocol):
 class ReaderLock(Protocol):
     """The lock by which those that write know whether the reader is awake."""
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Hold it; false while somebody writes who thinks that the reader is awake."""
 
-    async def rouse(self) -> None:
+    async def disable_notifications(self) -> None:
         """Let it go."""
 
 
@@ -90,7 +90,7 @@ class PollingWakeup:
         self._pause = SHORTEST_S
         self._found_at = time.monotonic()
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Return false: nobody tells."""
         return False
 
@@ -155,7 +155,7 @@ class NotifiedWakeup:
         self._news = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Return true: every new row is told of."""
         return True
 
@@ -278,21 +278,21 @@ class AdaptiveWakeup:
         self._listening = listening
         self._polling = PollingWakeup()
         self._lock = lock
-        self._dozes = False
+        self._is_notified = False
         self._pace = 0.0
         """Seconds to wait after a notification, as long as there was nothing behind the last ones."""
 
-    async def doze(self) -> bool:
+    async def enable_notifications(self) -> bool:
         """Begin to doze; false while somebody writes who thinks that the reader is awake."""
         # While nobody listens it would sleep until the second is over.
-        self._dozes = not self._listening.is_flooded and await self._lock.doze()
-        return self._dozes
+        self._is_notified = not self._listening.is_flooded and await self._lock.enable_notifications()
+        return self._is_notified
 
     async def wait(self, *, found: bool) -> None:
         """Return when something was written, or after a second; while awake, after a pause."""
         if found:
             self._pace = 0.0
-        if not self._dozes:
+        if not self._is_notified:
             await self._polling.wait(found=found)
             return
         if not found:
@@ -300,8 +300,8 @@ class AdaptiveWakeup:
             # However many come, each look at the tables answers all of them.
             await asyncio.sleep(self._pace)
             self._pace = min(max(2 * self._pace, FIRST_PACE_S), LONGEST_S)
-        self._dozes = False
-        await self._lock.rouse()
+        self._is_notified = False
+        await self._lock.disable_notifications()
 
     async def close(self) -> None:
         """End the connection."""

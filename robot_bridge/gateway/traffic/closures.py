@@ -71,14 +71,14 @@ class Detours:
         roads: RoadPlanner | None,
         orders: CommandRequests,
         queues: DetourQueues,
-        book: CommandService,
+        commands: CommandService,
         site: ServedSite,
     ) -> None:
         self._ways = ways
         self._roads = roads
         self._orders = orders
         self.queues = queues
-        self._book = book
+        self._commands = commands
         self._site = site
         self._later: set[str] = set()
 
@@ -129,13 +129,13 @@ class Detours:
         """
         if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
             more = None if also is None else also(way.command)
-            await self._book.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
+            await self._commands.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
             self._ways.note_reported(way.robot, way.task, path)
             return way.command
         done = await self.queues.redirect(way.robot, path, operator, reason)
         if done is None:
             order = CommandOrder(str(uuid.uuid4()), way.robot, path, operator, reason, instead_of=way.command)
-            (done,) = await self._book.issue([order], None if also is None else also(order.command))
+            (done,) = await self._commands.issue([order], None if also is None else also(order.command))
         return done.command
 
     async def stop(self, robot: str, reason: str, operator: str) -> str:
@@ -329,7 +329,7 @@ class ClosureService:
             for row in [row for row in self._rows.values() if row.until is not None and row.until <= now]:
                 await self._open(row, GATEWAY)
 
-    async def consider(self, message: Command) -> None:
+    async def prepare(self, message: Command) -> None:
         """Find out in a thread what :meth:`check` asks about a path: for a long one that takes a while."""
         if self._roads is not None and self._rows and isinstance(message, SetPath):
             closed = self._roads.closed

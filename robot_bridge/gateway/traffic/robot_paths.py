@@ -96,9 +96,9 @@ class TaskElsewhere(NamedTuple):
 class RobotPaths:
     """Remembers what GetPath was answered with, and knows what was commanded."""
 
-    def __init__(self, robots: Robots, book: CommandService) -> None:
+    def __init__(self, robots: Robots, commands: CommandService) -> None:
         self._robots = robots
-        self._book = book
+        self._commands = commands
         self._reported: dict[str, tuple[SetPosEnd, ReportedPath]] = {}
         self._elsewhere: dict[str, TaskElsewhere] = {}
 
@@ -131,14 +131,14 @@ class RobotPaths:
         """Return what a robot is doing, None for one that has no task or has not said where it is."""
         if self._robots.gateway_of(robot) is not None:
             return self._of_elsewhere(robot)
-        given, command = self._book.task(robot), self._book.busy_with(robot)
+        given, command = self._commands.task(robot), self._commands.busy_with(robot)
         pose = self._robots.get(robot).pose if robot in self._robots else None
         if given is None or command is None or pose is None:
             return None
         task, driven = given
         reported = self._reported.get(robot)
         known_way = reported[1] if reported is not None and reported[0] == task else None
-        line = self._book.line(robot)
+        line = self._commands.line(robot)
         return DrivenTask(robot, command, task, (pose.x, pose.y), driven, known_way, line)
 
     def names(self) -> list[str]:
@@ -147,7 +147,7 @@ class RobotPaths:
 
     def own(self) -> list[DrivenTask]:
         """Return what the robots of this gateway are doing that have a task."""
-        underway = (self.of(robot) for robot in self._book.robots())
+        underway = (self.of(robot) for robot in self._commands.robots())
         return sorted((one for one in underway if one is not None), key=lambda one: one.robot)
 
     def all(self) -> list[DrivenTask]:

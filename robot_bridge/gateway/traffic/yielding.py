@@ -246,13 +246,13 @@ class YieldManager:
         self,
         database: Database,
         robots: Robots,
-        book: CommandService,
+        commands: CommandService,
         detours: Detours,
         waiting: WaitingRobots,
     ) -> None:
         self._database = database
         self._robots = robots
-        self._book = book
+        self._commands = commands
         self._detours = detours
         self._rows = waiting
         self._doubtful = False
@@ -287,7 +287,7 @@ class YieldManager:
     async def catch_up(self) -> None:
         """Take up robots that were stored as waiting without that being known; raises StoreError."""
         if self._doubtful:
-            await self._book.look_up()
+            await self._commands.look_up()
             await self.restore()
             self._doubtful = False
 
@@ -336,7 +336,7 @@ class YieldManager:
     def check(self, robot: str) -> None:
         """Raise RefusedError for a robot that asks for its way while it is to wait."""
         row = self._rows.get(robot)
-        if row is not None and self._book.busy_with(robot) == row.command:
+        if row is not None and self._commands.busy_with(robot) == row.command:
             raise RefusedError(
                 f"GetPath: robot {robot!r} waits for {row.other!r}; it is told its way when that has passed"
             )
@@ -355,7 +355,7 @@ class YieldManager:
                 log_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
 
     async def _see_to(self, row: HoldRow, seen: TrafficSnapshot) -> None:
-        task = self._book.busy_with(row.robot)
+        task = self._commands.busy_with(row.robot)
         if not self._goes_on(row, task, seen):
             log.warning("robot %s has been told otherwise, or gave up; it waits no longer", row.robot)
             await self._forget(row.robot)
@@ -369,7 +369,7 @@ class YieldManager:
             await self._forget(row.robot)
             self._detours.queues.schedule(row.robot)
             return
-        given = self._book.task(row.robot)
+        given = self._commands.task(row.robot)
         target = given[0] if given is not None else rest
         points = _from_here(seen, row.robot, rest)
         way = RobotPath(row.robot, task or NOTHING, target, points, True)

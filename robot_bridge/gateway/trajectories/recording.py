@@ -240,7 +240,7 @@ class TrajectoryWriter:
     async def _write_with(
         self, work: Callable[..., None], arguments: tuple[Any, ...], *, lasting: bool
     ) -> None:
-        write = self._database.run if lasting else self._database.jot
+        write = self._database.run if lasting else self._database.write_relaxed
         async with self._writing:
             fixes, session = self._recorder.next_batch(self._clock.time()), self._database.session
             try:

@@ -28,7 +28,7 @@ from ..ros.site_maps import Grids, Masks
 from ..ros.tasks import Tasks
 from .connection import Answer, Inbox, JsonMessages, RosbridgeConnection, Subscription, encode
 from .decoding import ServiceResponse, convert
-from .goals import ActionGoals, GoalBook
+from .goals import ActionGoals, GoalStore
 from .graph import Graph, GraphWatch
 from .messages import READABLE, CancelReply, TriggerReply
 from .settings import RosbridgeSettings, Server, check, server_of
@@ -314,7 +314,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         self._settings = settings
         self._connection = RosbridgeConnection(server)
         self._watch = GraphWatch(self._connection, self)
-        self._books = self._notes.read(GoalBook.from_json)
+        self._books = self._notes.read(GoalStore.from_json)
         self._acting: list[RosbridgeActions] = []
         self._goals: list[ActionGoals] = []
 
@@ -353,7 +353,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
 
         def make(name: str) -> RosRobot[Graph]:
             sensing = Sensing(name, settings, link.frame)
-            goals = ActionGoals(name, self._connection, self._book(name), self)
+            goals = ActionGoals(name, self._connection, self._store(name), self)
             acting = RosbridgeActions(name, settings, self._connection, outgoing, goals)
             self._acting.append(acting)
             self._goals.append(goals)
@@ -389,12 +389,12 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         """The topics of its robots of which it matters how many publish them."""
         return [topic for goals in self._goals for topic in goals.watched]
 
-    def _book(self, robot: str) -> GoalBook:
-        return self._books.setdefault(robot, GoalBook())
+    def _store(self, robot: str) -> GoalStore:
+        return self._books.setdefault(robot, GoalStore())
 
     def note_goals(self) -> None:
         """Write down which goals are open, so that the next process of this link sends none of them twice."""
-        noted = {robot: rows for robot, book in self._books.items() if (rows := book.to_json())}
+        noted = {robot: rows for robot, store in self._books.items() if (rows := store.to_json())}
         self._notes.write(noted)
 
 

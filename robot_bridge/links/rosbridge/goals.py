@@ -49,7 +49,7 @@ class Entry:
     was_shown: bool = field(default=False, compare=False)
 
 
-class GoalBook:
+class GoalStore:
     """The goals of one robot, the newest last."""
 
     def __init__(self) -> None:
@@ -115,14 +115,14 @@ class GoalBook:
         ]
 
     @classmethod
-    def from_json(cls, rows: Any) -> GoalBook:
+    def from_json(cls, rows: Any) -> GoalStore:
         """Return what was written down; raises ValueError, TypeError or KeyError where it was not by us."""
-        book = cls()
+        store = cls()
         for row in rows[-MOST_ENTRIES:]:
             real = bytes.fromhex(row["real"]) if row["real"] is not None else None
             before = frozenset(bytes.fromhex(one) for one in row["before"])
-            book.entries.append(Entry(RosAction(row["action"]), bytes.fromhex(row["goal"]), before, real))
-        return book
+            store.entries.append(Entry(RosAction(row["action"]), bytes.fromhex(row["goal"]), before, real))
+        return store
 
 
 # --- The goals of one robot's action servers over rosbridge: sent, found on the status topic, lost and told
@@ -150,12 +150,14 @@ class GoalNotes(Protocol):
 class ActionGoals:
     """Sends goals and says what becomes of them; ``notes`` has its book written down."""
 
-    def __init__(self, robot: str, connection: RosbridgeConnection, book: GoalBook, notes: GoalNotes) -> None:
+    def __init__(
+        self, robot: str, connection: RosbridgeConnection, store: GoalStore, notes: GoalNotes
+    ) -> None:
         self._robot = robot
         self._connection = connection
-        self._book = book
+        self._store = store
         self._notes = notes
-        self._earlier = {one.goal for one in book.entries}
+        self._earlier = {one.goal for one in store.entries}
         """Goals that an earlier process of this link sent."""
         self._topics: dict[RosAction, str] = {}
         self._statuses: dict[RosAction, Inbox] = {}
@@ -188,7 +190,7 @@ class ActionGoals:
     @property
     def watched(self) -> list[str]:
         """The status topics whose publishers are to be counted: those of goals that are open."""
-        open_ones = {one.action for one in self._book.entries if not one.is_over}
+        open_ones = {one.action for one in self._store.entries if not one.is_over}
         return [f"{self._topics[one]}/_action/status" for one in open_ones if one in self._topics]
 
     def meet(self, action: RosAction, topic: str, network: Graph) -> None:
@@ -221,7 +223,7 @@ class ActionGoals:
 
     def send(self, request: SendGoal, goal: Any) -> None:
         """Send a goal as soon as those are known that are there; one that was sent is not sent again."""
-        entry = self._book.find(request.goal_id)
+        entry = self._store.find(request.goal_id)
         if entry is None or entry.is_over or entry.doomed:
             self._held = (request, goal)
 
@@ -231,7 +233,7 @@ class ActionGoals:
             self._held = None
         if request.goal_id is None:
             return {}
-        entry = self._book.find(request.goal_id)
+        entry = self._store.find(request.goal_id)
         if entry is None:
             return None
         if entry.real is None:
@@ -266,13 +268,13 @@ class ActionGoals:
         self._known.clear()
         self._answers.clear()
         self.feedback = None
-        for entry in self._book.entries:
+        for entry in self._store.entries:
             entry.was_shown = False
 
     def _renew(self) -> None:
         """Take it that the servers have started anew and know no goal."""
         self._epoch += 1
-        self._book.forget()
+        self._store.forget()
         self._known.clear()
         self._held = None
         self._notes.note_goals()
@@ -282,8 +284,8 @@ class ActionGoals:
     ) -> list[Effect]:
         is_first = action not in self._known
         self._known[action] = statuses
-        open_before = [one for one in self._book.entries if one.action is action and not one.is_over]
-        translated, was_found = self._book.translate(action, statuses)
+        open_before = [one for one in self._store.entries if one.action is action and not one.is_over]
+        translated, was_found = self._store.translate(action, statuses)
         if was_found or any(one.is_over for one in open_before):
             self._notes.note_goals()
         if GoalStatus.EXECUTING not in statuses.values():
@@ -310,7 +312,7 @@ class ActionGoals:
     def _missing(self, tasks: Tasks, now: float) -> list[Effect]:
         """Return what is to be said of goals that were sent over an earlier connection and are on no list."""
         effects: list[Effect] = []
-        for entry in self._book.entries:
+        for entry in self._store.entries:
             sent_now = self._sent_in.get(entry.goal) == self._session
             if entry.is_over or entry.was_shown or sent_now or not self._is_settled(entry.action, now):
                 continue
@@ -330,7 +332,7 @@ class ActionGoals:
         return is_read and now - self._since[action] >= SETTLED_AFTER
 
     def _translated(self, action: RosAction) -> dict[bytes, GoalStatus]:
-        return self._book.translate(action, self._known.get(action, {}))[0]
+        return self._store.translate(action, self._known.get(action, {}))[0]
 
     def _send_held(self, now: float) -> None:
         """Send the goal that waits: one that is new afterwards must be told from those before it."""
@@ -340,11 +342,11 @@ class ActionGoals:
         if request.action not in self._known and not self._is_settled(request.action, now):
             return
         self._held = None
-        entry = self._book.add(
+        entry = self._store.add(
             request.action, request.goal_id, frozenset(self._known.get(request.action, {}))
         )
         self._sent_in[request.goal_id] = self._session
-        while len(self._sent_in) > len(self._book.entries):
+        while len(self._sent_in) > len(self._store.entries):
             self._sent_in.pop(next(iter(self._sent_in)))
         self._notes.note_goals()
         self._connection.send_goal(

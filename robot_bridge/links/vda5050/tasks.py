@@ -370,7 +370,7 @@ class VehicleTask:
             return False
         return state.order_id == plan.order_id and state.order_update_id >= plan.update_id
 
-    def judge(self, state: State) -> tuple[Progress, str]:
+    def evaluate(self, state: State) -> tuple[Progress, str]:
         """Return what a state says of the task, with the vehicle's reason where it is none of its ends."""
         plan = self.plan
         if plan is None:

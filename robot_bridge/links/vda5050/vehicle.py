@@ -240,7 +240,7 @@ class VehicleController:
 
     def _judge_task(self, task: VehicleTask, state: State, now: float) -> None:
         ledger = self._ledger
-        progress, reason = task.judge(state)
+        progress, reason = task.evaluate(state)
         if task.accepted and not task.acknowledged:
             task.acknowledged = True
             ledger.keep()

@@ -102,7 +102,7 @@ def test_a_draft_for_other_robots_is_taken_away_and_that_is_said(drawn, gateway,
 def test_a_gateway_that_does_not_serve_what_was_chosen_is_named_until_it_does(at_desk, gateway, site, wait):
     began, over = [], []
     at_desk.desk.failed.connect(began.append)
-    at_desk.desk.settled.connect(over.append)
+    at_desk.desk.resolved.connect(over.append)
     tell(gateway, replace(site, problem="site south cannot be read"), wait, at_desk)
     text = "This gateway serves another site than the rest of the fleet: site south cannot be read."
     assert began == [text] and over == []

@@ -121,7 +121,7 @@ def test_the_line_leaves_a_command_for_what_happens_after_it(at_desk, gateway, w
     at_desk.desk.selection.select("r1")
     press(at_desk, QToolButton, "fleet_abort_button")
     wait(lambda: line.text() == "Queued. Abort of r1.", what="the abort being kept")
-    at_desk.desk.remarked.emit("3 commands written")
+    at_desk.desk.hint.emit("3 commands written")
     (command,) = gateway.commands
     gateway.step(command, CommandState.REACHED, "r1")
     wait(lambda: at_desk.desk.state.commands.get(command).state is CommandState.REACHED)

@@ -62,7 +62,7 @@ def test_no_button_moves_whatever_is_reported(panel, gateway, make_robot, wait, 
     watched.check("a draft is taken back")
     desk.drafts.done()
     for text in (LONG, ""):
-        desk.remarked.emit(text)
+        desk.hint.emit(text)
         watched.check("something is remarked")
     gateway._queue("c1", names[0], "SetPosEnd", {"x": 60.0, "y": 50.0, "cone": True})
     gateway.step("c1", CommandState.DELIVERED, names[0])

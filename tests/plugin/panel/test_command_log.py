@@ -266,7 +266,7 @@ def test_a_command_of_another_day_tells_its_date_and_has_room_for_it(at_desk, ga
 
 def notes(at_desk):
     told = []
-    at_desk.desk.noted.connect(told.append)
+    at_desk.desk.info.connect(told.append)
     return told
 
 
@@ -335,7 +335,7 @@ def test_refused_older_commands_are_said(log, at_desk, gateway, iface, wait):
 @pytest.fixture
 def complaints(at_desk):
     told = []
-    at_desk.desk.complained.connect(told.append)
+    at_desk.desk.warning.connect(told.append)
     return told
 
 

@@ -85,7 +85,7 @@ def test_what_was_written_is_told_and_what_cannot_be_written_harms_no_older_file
     page, iface, tmp_path, monkeypatch
 ):
     told = []
-    page._desk.noted.connect(told.append)
+    page._desk.info.connect(told.append)
     target = tmp_path / "placed.csv"
     page.save(str(target))
     assert told == [f"2 cones written to {target}"]

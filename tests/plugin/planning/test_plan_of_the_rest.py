@@ -169,7 +169,7 @@ def test_what_is_sent_by_itself_is_chosen_before_and_told_when_it_happened(
     panel, plans, gateway, wait, iface
 ):
     told = []
-    panel.driven.remarked.connect(told.append)
+    panel.driven.hint.connect(told.append)
     panel.bar.by_itself.click()
     submitted(panel, plans, wait)
     assert gateway.requests_of("submit_plan")[0]["by_itself"] is True

@@ -12,7 +12,7 @@ def pulls_of(beat, turn, pulls, half_seconds=1):
     came = []
     for _ in range(pulls):
         beat.pulls += 1
-        if turn.has_come(half_seconds):
+        if turn.is_due(half_seconds):
             came.append(beat.pulls)
     return came
 
@@ -34,4 +34,4 @@ def test_each_has_a_pull_of_its_own_as_long_as_there_are_enough():
     turns = [beat.turn() for _ in range(PULLS_IN_HALF_A_SECOND)]
     for _ in range(PULLS_IN_HALF_A_SECOND):
         beat.pulls += 1
-        assert sum(turn.has_come() for turn in turns) == 1
+        assert sum(turn.is_due() for turn in turns) == 1

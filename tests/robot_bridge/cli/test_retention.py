@@ -290,7 +290,7 @@ async def test_the_gateway_does_it_by_the_settings_of_its_site(
     work = gateway.works("ws://127.0.0.1:1")["prune"]
     pruning = asyncio.create_task(work())
     async with asyncio.timeout(10):
-        while "prune" not in fleet.tally.beats:
+        while "prune" not in fleet.counters.beats:
             await asyncio.sleep(0.01)
     pruning.cancel()
     assert await database.run(left) == KEPT

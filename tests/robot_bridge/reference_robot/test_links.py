@@ -108,15 +108,15 @@ async def test_on_sql_it_says_where_it_is_before_it_acknowledges_an_abort(databa
 
 
 async def test_what_could_not_be_written_is_said_again_once_and_in_that_order(database, on_sql, monkeypatch):
-    jot, failed = on_sql._database.jot, []
+    write_relaxed, failed = on_sql._database.write_relaxed, []
 
     async def lost(*arguments):
         if len(failed) < 3:
             failed.append(arguments)
             raise StoreError("the database is away")
-        return await jot(*arguments)
+        return await write_relaxed(*arguments)
 
-    monkeypatch.setattr(on_sql._database, "jot", lost)
+    monkeypatch.setattr(on_sql._database, "write_relaxed", lost)
     monkeypatch.setattr("robot_bridge.reference_robot.sql_link.RETRY_AFTER", 0.05)
     for _ in range(2):
         on_sql.say(Ready(42))

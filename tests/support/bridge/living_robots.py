@@ -202,7 +202,7 @@ class WebSocketRobot(Robot):
             self._untold.pop(0)
         if not self.says_late:
             await self._say_where_it_is()
-        for row in await fleet.mailboxes.outbox(self.name, self._last[False], self._last[True]):
+        for row in await fleet.outboxes.outbox(self.name, self._last[False], self._last[True]):
             if not await self._take(row):
                 break
         if self.says_late:
@@ -215,14 +215,14 @@ class WebSocketRobot(Robot):
         """Do what a message says and acknowledge it; return false where the gateway begins anew with all."""
         fleet = self.play.fleet
         drives = row.op in HELD_BACK
-        if drives and not await fleet.mailboxes.hand_over(self.name, row.id):
+        if drives and not await fleet.outboxes.mark_sending(self.name, row.id):
             self._last[row.urgent] = row.id
             return True
         self.hear(row.id, row.op, parse_params(row.op, row.params) or {})
         self._last[row.urgent] = row.id
         if not drives:
             with contextlib.suppress(StoreError):
-                await fleet.mailboxes.delivered([row.id])
+                await fleet.outboxes.delivered([row.id])
         try:
             await fleet.receive(self.name, self.link, OpAck(id=row.id), None)
         except StoreError:
@@ -241,7 +241,7 @@ class WebSocketRobot(Robot):
             self.stop()
         outcome = await fleet.receive(self.name, self.link, Ready(self.magic), self._next_call())
         if outcome.answer is not None:
-            await fleet.mailboxes.finish([outcome], [], acks=False)
+            await fleet.outboxes.finish([outcome], [], acks=False)
         self._connected, self._last = outcome.admitted, {False: 0, True: 0}
         return self._connected
 

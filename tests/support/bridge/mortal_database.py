@@ -80,7 +80,7 @@ class MortalDatabase(Database):
         """Run ``work``, unless the gateway dies of it, or is dead."""
         return await self._live_through(super().run, work, *arguments)
 
-    async def jot(self, work, *arguments):
+    async def write_relaxed(self, work, *arguments):
         """As :meth:`run`, for work that gives out no message: its id would come again after a power cut."""
 
         def checked(connection, *arguments):
@@ -89,7 +89,7 @@ class MortalDatabase(Database):
             assert (connection.scalar(NEWEST) or 0) <= (before or 0), f"{work} gives out a message"
             return result
 
-        return await self._live_through(super().jot, checked, *arguments)
+        return await self._live_through(super().write_relaxed, checked, *arguments)
 
     async def read(self, work, *arguments):
         """Read, unless the gateway is dead: reading changes nothing, so that it does not die here."""

@@ -56,12 +56,12 @@ class Yard:
 
     async def ready(self, robot="r1", magic=1, link="websocket", **declared):
         outcome = await self.fleet.receive(robot, link, Ready(magic, **declared), 1)
-        await self.fleet.mailboxes.finish([outcome], [], acks=False)
+        await self.fleet.outboxes.finish([outcome], [], acks=False)
 
     async def deliver(self, robot="r1"):
         """Hand the robot its outbox; return the rows."""
-        rows = await self.fleet.mailboxes.outbox(robot, 0)
-        await self.fleet.mailboxes.delivered([row.id for row in rows])
+        rows = await self.fleet.outboxes.outbox(robot, 0)
+        await self.fleet.outboxes.delivered([row.id for row in rows])
         return rows
 
     async def ack(self, id, robot="r1", **how):

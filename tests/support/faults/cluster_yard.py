@@ -100,11 +100,11 @@ class StoppingDesk(threading.Thread):
                 return
             stop = Stop(f"stop-{number:04d}", time.time())
             self.stops.append(stop)
-            self._insist("emergency_stop", {"command": stop.id, "reason": "everything is killed"})
+            self._run_with_retry("emergency_stop", {"command": stop.id, "reason": "everything is killed"})
             self._await_robots(stop)
             time.sleep(self._random.uniform(*STANDING_S))
             stop.ended = time.time()
-            self._insist("clear_emergency_stop", {"stop": stop.id, "reason": "all stand"})
+            self._run_with_retry("clear_emergency_stop", {"stop": stop.id, "reason": "all stand"})
             stop.cleared = time.time()
 
     def _await_robots(self, stop: Stop) -> None:
@@ -119,7 +119,7 @@ class StoppingDesk(threading.Thread):
                 return
             time.sleep(0.02)
 
-    def _insist(self, method: str, params: dict[str, Any]) -> None:
+    def _run_with_retry(self, method: str, params: dict[str, Any]) -> None:
         """Ask at one gateway after the other until one has done it."""
         until, said = time.time() + HEARD_WITHIN_S * BUSY, ""
         while time.time() < until:

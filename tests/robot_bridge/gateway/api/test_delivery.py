@@ -52,7 +52,7 @@ class Mailboxes:
         new = [one for one in self.rows if one.id > (after_urgent if one.urgent else after)]
         return sorted(new, key=lambda one: (not one.urgent, one.id))
 
-    async def hand_over(self, robot, id):
+    async def mark_sending(self, robot, id):
         assert robot == "r1"
         self.noted.append(("handed over", id))
         if self.before is not None:
@@ -69,7 +69,7 @@ class Mailboxes:
 
 class Fleet:
     def __init__(self):
-        self.mailboxes = Mailboxes()
+        self.outboxes = Mailboxes()
         self.maps = self
 
     async def whole_or_around(self, robot):
@@ -105,7 +105,7 @@ class Line:
 
     def __init__(self):
         self.fleet, self.connection = Fleet(), Connection()
-        self.boxes = self.fleet.mailboxes
+        self.boxes = self.fleet.outboxes
         self.delivery = Delivery(self.fleet, RobotChannel(self.connection), "r1")
 
     async def put(self, *rows):

@@ -67,7 +67,7 @@ def own(connection):
         receive=fail_later,
         acknowledge=fail,
         emergency=SimpleNamespace(answered=fail),
-        tally=Counters(),
+        counters=Counters(),
         repeated=RepeatedLines(),
     )
     own = RobotConnection(fleet, connection, "r1", RobotSessions(ConnectionClaims()))
@@ -203,7 +203,7 @@ async def test_a_robot_that_another_gateway_got_while_it_was_let_in_is_refused_a
         receive=receive,
         check_owned=check_owned,
         reception=SimpleNamespace(holds=ConnectionClaims()),
-        mailboxes=SimpleNamespace(finish=finish),
+        outboxes=SimpleNamespace(finish=finish),
         gateway_urls=lambda _endpoint: None,
     )
     own.session._delivery.begin = lambda: begun.append(1)

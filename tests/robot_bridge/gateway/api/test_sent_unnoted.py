@@ -104,11 +104,11 @@ async def test_a_cone_that_was_put_down_while_no_gateway_ran_is_put_down_once(li
 
 async def test_what_is_taken_back_while_its_delivery_is_to_be_noted_is_not_sent(line):
     await line.yard.send("target")
-    (row,) = await line.yard.fleet.mailboxes.outbox("r1", 0)
+    (row,) = await line.yard.fleet.outboxes.outbox("r1", 0)
     aborting = asyncio.ensure_future(abort(line.yard))
     for _ in range(5):  # until it holds the robot
         await asyncio.sleep(0)
-    may_be_sent = await line.yard.fleet.mailboxes.hand_over("r1", row.id)
+    may_be_sent = await line.yard.fleet.outboxes.mark_sending("r1", row.id)
     await aborting
     assert (await line.yard.states())["target"] == "aborted"
     assert not may_be_sent
@@ -116,9 +116,9 @@ async def test_what_is_taken_back_while_its_delivery_is_to_be_noted_is_not_sent(
 
 async def test_what_is_no_commands_message_is_sent_as_it_is(line):
     await line.yard.ready()
-    (row,) = await line.yard.fleet.mailboxes.outbox("r1", 0)
+    (row,) = await line.yard.fleet.outboxes.outbox("r1", 0)
     assert row.op == "SetMap"
-    assert await line.yard.fleet.mailboxes.hand_over("r1", row.id)
+    assert await line.yard.fleet.outboxes.mark_sending("r1", row.id)
 
 
 @pytest.mark.parametrize(
@@ -157,8 +157,8 @@ async def test_an_abort_waits_neither_until_it_is_noted_nor_until_what_is_before
 async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_from_being_sent(
     line, wire, monkeypatch
 ):
-    fleet, mailboxes = line.yard.fleet, line.yard.fleet.mailboxes
-    hand_over = mailboxes.hand_over
+    fleet, outboxes = line.yard.fleet, line.yard.fleet.outboxes
+    hand_over = outboxes.mark_sending
     fleet.emergency.reach(wire.delivery.stop_now)
 
     async def stopped_meanwhile(robot, id):
@@ -166,7 +166,7 @@ async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_f
         await stop(line.yard)
         return is_due
 
-    monkeypatch.setattr(mailboxes, "hand_over", stopped_meanwhile)
+    monkeypatch.setattr(outboxes, "mark_sending", stopped_meanwhile)
     await line.yard.send("target")
     wire.delivery.begin()
     async with asyncio.timeout(60):
@@ -178,7 +178,7 @@ async def test_an_emergency_stop_that_comes_while_a_delivery_is_noted_keeps_it_f
 async def test_a_target_is_checked_again_when_the_gateway_stood_still_before_it_was_sent(
     line, wire, monkeypatch
 ):
-    hand_over, checked = line.yard.fleet.mailboxes.hand_over, []
+    hand_over, checked = line.yard.fleet.outboxes.mark_sending, []
 
     async def standing_still(robot, id):
         is_due = await hand_over(robot, id)
@@ -188,7 +188,7 @@ async def test_a_target_is_checked_again_when_the_gateway_stood_still_before_it_
         return is_due
 
     await line.yard.send("target")
-    monkeypatch.setattr(line.yard.fleet.mailboxes, "hand_over", standing_still)
+    monkeypatch.setattr(line.yard.fleet.outboxes, "mark_sending", standing_still)
     wire.delivery.begin()
     async with asyncio.timeout(60):
         await wire.is_cut.wait()

@@ -240,7 +240,7 @@ async def test_a_request_and_its_answer_are_one_transaction(yard):
 async def test_a_map_goes_as_the_payload_and_not_as_a_parameter(yard):
     outcome = await yard.fleet.receive("r1", "sql", Ready(1), 1)
     assert isinstance(outcome.answer, SetMap)
-    await yard.fleet.mailboxes.finish([outcome], [], acks=True)
+    await yard.fleet.outboxes.finish([outcome], [], acks=True)
     ((params, payload),) = yard.sql("select params, payload from sa where op = 'SetMap'")
     assert params == "{}"
     assert decode(payload).border == (0.0, 0.0, 200.0, 160.0)

@@ -67,7 +67,7 @@ def step_feed(two, database=None):
 async def send_away(two):
     """Send r1 somewhere; return the command's id."""
     order = CommandOrder("drive-0001", "r1", SetPosEnd(2.0, 3.0), "Ada", None)
-    await two.fleet.emergency._book.issue([order])
+    await two.fleet.emergency._commands.issue([order])
     return order.command
 
 
@@ -75,7 +75,7 @@ async def abort(two, times):
     """Issue Aborts of r1, which is at another gateway from then on."""
     for number in range(times):
         order = CommandOrder(f"abort-{number:04}", "r1", Abort(), "Ada", None)
-        await two.fleet.emergency._book.issue([order])
+        await two.fleet.emergency._commands.issue([order])
     two.fleet.robots.let_go("r1", "south")
 
 

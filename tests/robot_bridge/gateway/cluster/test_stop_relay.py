@@ -301,7 +301,7 @@ async def test_another_stop_that_was_cleared_ends_nothing_here(place):
 @pytest.fixture
 def held(place, monkeypatch):
     """An event until which no Abort is stored."""
-    book, may_store = place.yard.fleet._book, asyncio.Event()
+    book, may_store = place.yard.fleet._commands, asyncio.Event()
 
     async def issue(orders, also=None, _issue=book.issue):
         await may_store.wait()
@@ -417,9 +417,9 @@ async def test_such_a_robot_is_aborted_also_where_the_stop_was_over_after_it_was
     over = over_at(place.yard.now + 2.0)
     place.yard.now += 10.0
     await place.store(over)
-    place.yard.fleet._book.drop(["r1"])
+    place.yard.fleet._commands.drop(["r1"])
     await place.relay.read_stored()
-    place.yard.fleet._book.take_up(await place.yard.database.run(commands.still_open, ["r1"]))
+    place.yard.fleet._commands.adopt(await place.yard.database.run(commands.still_open, ["r1"]))
     place.stops.take_over(["r1"], read)
     await place.yard.fleet.save()
     assert place.yard.waiting("r1") == ["Abort"]
@@ -427,7 +427,7 @@ async def test_such_a_robot_is_aborted_also_where_the_stop_was_over_after_it_was
 
 async def test_an_abort_that_could_not_be_stored_before_the_stop_was_over_is_stored(place, monkeypatch):
     """And before any other message of its robot."""
-    book = place.yard.fleet._book
+    book = place.yard.fleet._commands
     await place.yard.send("before")
 
     async def issue(orders, also=None, _issue=book.issue):

@@ -109,7 +109,7 @@ async def test_one_robot_whose_abort_is_not_taken_keeps_no_other_from_having_its
         lose(driving, insert_commands, False, StoreError)
         with pytest.raises(StoreError):
             await driving.fleet.save()
-        assert driving.fleet._book._unstored.robots()[0] == robot
+        assert driving.fleet._commands._unstored.robots()[0] == robot
 
 
 async def test_one_that_is_refused_as_data_is_not_kept(driving, lose):

@@ -98,11 +98,13 @@ def test_a_command_is_judged_by_where_its_robot_was_and_whether_it_was_seen():
     assert begun.arrival.deviation(pose()) is None
     come = command(1, LOOP, handed=pose(5.0, -8.0), out_of_sight=True).judged(0.2)
     come.arrival.deviation(pose())
-    assert come.arrival.rests(pose()) == 0.0
-    assert command(1, LOOP, handed=pose(), out_of_sight=True).judged(0.2).arrival.rests(pose()) is None
+    assert come.arrival.idle_deviation(pose()) == 0.0
+    assert (
+        command(1, LOOP, handed=pose(), out_of_sight=True).judged(0.2).arrival.idle_deviation(pose()) is None
+    )
     seen = command(1, LOOP, handed=pose(5.0, -8.0)).judged(0.2)
     seen.arrival.deviation(pose())
-    assert seen.arrival.rests(pose()) is None
+    assert seen.arrival.idle_deviation(pose()) is None
 
 
 @pytest.mark.parametrize(("handed", "deviation"), [(pose(), None), (None, 0.0)])
@@ -125,7 +127,7 @@ def test_who_was_out_of_sight_is_judged_so_when_it_takes_the_path_on_and_afterwa
         if not was_seen:
             driving.lose_sight()
         driving.arrival.deviation(pose())
-        assert driving.arrival.rests(pose()) == (None if was_seen else 0.0)
+        assert driving.arrival.idle_deviation(pose()) == (None if was_seen else 0.0)
     target = command(1).judged(0.2)
     target.lose_sight()
     assert target.arrival == TargetArrival(TARGET, 0.2)

@@ -253,10 +253,10 @@ async def test_a_commit_of_which_nobody_knows_is_looked_up_before_anything_else(
 
 async def test_a_caller_that_goes_away_leaves_no_step_unknown(ready):
     await ready.send("a")
-    (row,) = await ready.fleet.mailboxes.outbox("r1", 0)
+    (row,) = await ready.fleet.outboxes.outbox("r1", 0)
     slow = asyncio.ensure_future(ready.database.run(lambda connection: time.sleep(0.3)))
     await asyncio.sleep(0.05)
-    delivering = asyncio.ensure_future(ready.fleet.mailboxes.delivered([row.id]))
+    delivering = asyncio.ensure_future(ready.fleet.outboxes.delivered([row.id]))
     await asyncio.sleep(0.05)
     delivering.cancel()
     await slow

@@ -409,9 +409,9 @@ async def test_a_target_on_the_edge_of_the_site_is_on_it(ready):
 
 async def test_an_acknowledgement_proves_a_delivery_that_was_not_seen(ready):
     await ready.send("a", x=50.0, y=40.0)
-    (row,) = await ready.fleet.mailboxes.outbox("r1", 0)
+    (row,) = await ready.fleet.outboxes.outbox("r1", 0)
     await ready.ack(row.id)
-    await ready.fleet.mailboxes.delivered([row.id])
+    await ready.fleet.outboxes.delivered([row.id])
     await ready.at(50.0, 40.0)
     assert await ready.steps("a") == FULL_LIFE
     assert ready.reported == [("command-a", state) for state in FULL_LIFE]

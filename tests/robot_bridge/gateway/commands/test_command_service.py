@@ -15,7 +15,7 @@ START = SendPos(20.0, 40.0, 0.0, 0.0)
 
 
 def open_command(yard, id):
-    return yard.fleet._book._open.get(f"command-{id}")
+    return yard.fleet._commands._open.get(f"command-{id}")
 
 
 async def drive(yard, id, robot="r1"):
@@ -60,7 +60,7 @@ async def test_a_robot_of_which_no_place_is_known_may_have_driven_its_loop_when_
     await two.ready()
     await two.at(20.0, 40.0)
     assert (await two.states())["a"] == "acknowledged"
-    await two.fleet._book.rests("r1", START)
+    await two.fleet._commands.on_idle("r1", START)
     assert (await two.states())["a"] == "reached"
 
 
@@ -78,20 +78,20 @@ async def test_the_metres_driven_before_the_restart_stay_driven(two):
 
 
 async def test_a_rest_concerns_only_the_paths_of_the_robot_that_was_seen_on_them(two):
-    book = two.fleet._book
+    book = two.fleet._commands
     await two.send("target")
     await drive(two, "path", "r2")
     for robot in ("r1", "r2"):
         await two.acknowledge_all(robot)
-    await book.rests("r1", SendPos(50.0, 40.0, 0.0, 0.0))
-    await book.rests("r2", None)
-    await book.rests("r2", START)
-    await book.rests("nobody", START)
+    await book.on_idle("r1", SendPos(50.0, 40.0, 0.0, 0.0))
+    await book.on_idle("r2", None)
+    await book.on_idle("r2", START)
+    await book.on_idle("nobody", START)
     assert await two.states() == {"target": "acknowledged", "path": "acknowledged"}
     book.lose_sight("r2")
     await two.at(24.0, 40.0, robot="r2", v=1.0)
     await two.at(20.0, 40.0, robot="r2")
-    await book.rests("r2", START)
+    await book.on_idle("r2", START)
     assert await two.states() == {"target": "acknowledged", "path": "reached"}
 
 
@@ -99,7 +99,7 @@ async def test_a_rest_concerns_only_the_paths_of_the_robot_that_was_seen_on_them
 
 
 async def test_what_is_acknowledged_once_more_is_judged_by_positions_after_that_alone(two):
-    book = two.fleet._book
+    book = two.fleet._commands
     await two.send("a")
     (row,) = await two.deliver()
     await two.ack(row.id)
@@ -120,17 +120,17 @@ async def test_what_is_acknowledged_once_more_is_judged_by_positions_after_that_
 
 
 async def test_a_message_is_handed_over_once_and_to_its_own_robot(two):
-    book = two.fleet._book
+    book = two.fleet._commands
     await two.send("a")
     ((id,),) = two.sql("select id from sa where op = 'SetPosEnd'")
-    assert await book.hand_over("r1", 999_999)
-    assert await book.hand_over("r1", id)
+    assert await book.mark_sending("r1", 999_999)
+    assert await book.mark_sending("r1", id)
     assert await two.steps("a") == ["queued", "delivered"]
-    assert await book.hand_over("r1", id)
+    assert await book.mark_sending("r1", id)
     assert await two.steps("a") == ["queued", "delivered"]
     await two.send("b", robot="r2")
     ((other,),) = two.sql("select id from sa where robot = 'r2'")
-    assert await book.hand_over("r1", other) is False
+    assert await book.mark_sending("r1", other) is False
 
 
 async def test_every_command_of_a_robot_that_is_gone_fails_with_the_reason(two):
@@ -138,13 +138,13 @@ async def test_every_command_of_a_robot_that_is_gone_fails_with_the_reason(two):
     await two.send("x", "Abort")
     await two.send("b", robot="r2")
     two.now = 1010.0
-    await two.fleet._book.give_up("r1", "it was removed")
+    await two.fleet._commands.give_up("r1", "it was removed")
     assert await two.states() == {"a": "aborted", "x": "failed", "b": "queued"}
     (gone,) = [one for one in await two._stored() if one.command == "command-x"]
     step = gone.steps[-1]
     assert (step.at, step.by, step.reason) == (1010.0, "gateway", "it was removed")
     assert two.waiting("r1") == []
-    await two.fleet._book.give_up("r1", "it was removed")
+    await two.fleet._commands.give_up("r1", "it was removed")
 
 
 async def test_what_is_reached_is_told_with_its_place_and_without_a_reason(two):
@@ -178,8 +178,8 @@ async def test_where_nothing_is_done_nothing_is_to_be_stored(two):
     await two.at(20.0, 40.0)
     await drive(two, "a")
     await two.acknowledge_all()
-    assert two.fleet._book.observe("r1", START) is None
-    assert two.fleet._book.observe("r2", START) is None
+    assert two.fleet._commands.observe("r1", START) is None
+    assert two.fleet._commands.observe("r2", START) is None
 
 
 async def test_a_command_that_ended_and_is_asked_for_again_changes_nothing(two):

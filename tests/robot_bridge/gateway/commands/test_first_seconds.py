@@ -61,7 +61,7 @@ async def test_a_path_that_was_driven_although_its_delivery_was_not_noted_is_rea
     await roads.at(*PATH[0])
     await roads.fleet.save()
     await roads.send("a", "SetPath", points=PATH)
-    assert [row.op for row in await roads.fleet.mailboxes.outbox("r1", 0)] == ["SetPath"]
+    assert [row.op for row in await roads.fleet.outboxes.outbox("r1", 0)] == ["SetPath"]
     await roads.restart()
     await roads.ready()
     await roads.at(*PATH[1])

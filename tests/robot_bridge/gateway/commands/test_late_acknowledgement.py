@@ -18,7 +18,7 @@ async def overtaken(yard):
     await yard.ready()
     await yard.acknowledge_all()
     await yard.send("a")
-    (row,) = await yard.fleet.mailboxes.outbox("r1", 0)
+    (row,) = await yard.fleet.outboxes.outbox("r1", 0)
     await yard.fleet.orders.abort(AbortTask("command-x", robot="r1"), "Bob")
     assert await yard.reason("a") == "before the robot acknowledged it"
     yard.reported.clear()
@@ -62,11 +62,11 @@ async def test_a_delivery_is_nothing_new_when_the_command_has_gone_further_meanw
     await yard.ready()
     await yard.acknowledge_all()
     await yard.send("a")
-    (row,) = await yard.fleet.mailboxes.outbox("r1", 0)
-    noting = asyncio.create_task(yard.fleet.mailboxes.delivered([row.id]))
+    (row,) = await yard.fleet.outboxes.outbox("r1", 0)
+    noting = asyncio.create_task(yard.fleet.outboxes.delivered([row.id]))
     await asyncio.sleep(0)
     # What was under way for the same robot ends in this very moment.
-    yard.fleet._book._open.remove("command-a")
+    yard.fleet._commands._open.remove("command-a")
     await noting
     assert await yard.steps("a") == ["queued"]
 

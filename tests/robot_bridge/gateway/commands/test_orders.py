@@ -107,7 +107,7 @@ async def test_a_command_that_is_no_longer_the_robot_s_task_is_not_aborted(two):
     await two.send("a")
     await two.send("b")
     order = CommandOrder("abort-0001", "r1", Abort(), "Bob", aborts="command-a")
-    assert await refusal(two.fleet._book.issue([order])) == (
+    assert await refusal(two.fleet._commands.issue([order])) == (
         "command command-a is no longer what robot 'r1' is doing; look at the log, "
         "and abort the robot if it is to stop all the same"
     )
@@ -141,7 +141,7 @@ OTHERWISE = "robot 'r1' has been told otherwise in the meantime"
 async def test_what_is_for_a_robot_that_does_nothing_is_refused_by_one_that_does(two, beside, is_open):
     if beside is not None:
         await two.send("beside", beside, **({} if beside == "Abort" else TARGET))
-    issue = two.fleet._book.issue([instead("new-0001", NOTHING)])
+    issue = two.fleet._commands.issue([instead("new-0001", NOTHING)])
     if is_open:
         (report,) = await issue
         assert report.state.value == "queued"
@@ -152,15 +152,15 @@ async def test_what_is_for_a_robot_that_does_nothing_is_refused_by_one_that_does
 async def test_what_is_instead_of_a_task_is_refused_when_that_is_another_or_is_being_aborted(two):
     await two.send("a")
     await two.acknowledge_all("r1")
-    assert await refusal(two.fleet._book.issue([instead("new-0001", "command-b")])) == OTHERWISE
-    await two.fleet._book.issue([instead("new-0002", "command-a")])
+    assert await refusal(two.fleet._commands.issue([instead("new-0001", "command-b")])) == OTHERWISE
+    await two.fleet._commands.issue([instead("new-0002", "command-a")])
     await two.acknowledge_all("r1")
     await two.send("x", "Abort")
-    assert await refusal(two.fleet._book.issue([instead("new-0003", "new-0002")])) == OTHERWISE
+    assert await refusal(two.fleet._commands.issue([instead("new-0003", "new-0002")])) == OTHERWISE
 
 
 async def test_a_way_to_a_task_is_told_only_as_long_as_that_is_the_task(two):
-    book, written = two.fleet._book, []
+    book, written = two.fleet._commands, []
     way = SetPath([(20.0, 40.0), (50.0, 40.0)])
     await two.send("a")
     await two.acknowledge_all("r1")
@@ -175,7 +175,9 @@ async def test_a_way_to_a_task_is_told_only_as_long_as_that_is_the_task(two):
 async def test_a_beginning_is_sent_while_a_target_is_driven_and_ends_it_not(two):
     await two.send("a")
     await two.acknowledge_all("r1")
-    (report,) = await two.fleet._book.issue([CommandOrder("new-0001", "r1", SetPosIni(20.0, 40.0), "Ada")])
+    (report,) = await two.fleet._commands.issue(
+        [CommandOrder("new-0001", "r1", SetPosIni(20.0, 40.0), "Ada")]
+    )
     assert report.state.value == "queued"
     assert (await two.states())["a"] == "acknowledged"
 
@@ -221,7 +223,7 @@ async def test_an_abort_that_no_database_takes_is_sent_over_open_connections(
     async def issue(_orders):
         raise StoreError("the database is away")
 
-    monkeypatch.setattr(orders._book, "issue", issue)
+    monkeypatch.setattr(orders._commands, "issue", issue)
     connections = Connections(*connected)
     orders.reach(connections.abort)
     assert await refusal(orders.abort(AbortTask("abort-0001", "r1"), "Ada"), StoreError) == (
@@ -237,7 +239,7 @@ async def test_an_abort_that_is_sent_by_its_op_goes_over_open_connections_too_an
     async def issue(_orders):
         raise StoreError("the database is away")
 
-    monkeypatch.setattr(orders._book, "issue", issue)
+    monkeypatch.setattr(orders._commands, "issue", issue)
     connections, others = Connections("r1"), Connections()
     orders.reach(connections.abort)
     orders.reach(others.abort)
@@ -250,7 +252,7 @@ async def test_an_abort_that_is_sent_by_its_op_goes_over_open_connections_too_an
 
 async def test_an_abort_waits_a_second_for_a_database_that_hangs(two, orders, monkeypatch):
     monkeypatch.setattr(order_module, "STORED_WITHIN", 0.01)
-    issue, sent = orders._book.issue, asyncio.Event()
+    issue, sent = orders._commands.issue, asyncio.Event()
 
     async def issue_late(given):
         await sent.wait()
@@ -263,7 +265,7 @@ async def test_an_abort_waits_a_second_for_a_database_that_hangs(two, orders, mo
         sent.set()
         return True
 
-    monkeypatch.setattr(orders._book, "issue", issue_late)
+    monkeypatch.setattr(orders._commands, "issue", issue_late)
     orders.reach(broken)
     orders.reach(abort)
     report = await orders.abort(AbortTask("abort-0001", "r1"), "Ada")

@@ -42,19 +42,19 @@ async def test_what_is_in_doubt_is_looked_up_once_before_any_robot_is_held():
     held, stored = held_robots()
     async with held.of(["r1"]):
         await lose(held)
-    assert held.are_in_doubt and stored.asked == 0
+    assert held.has_uncertain_commit and stored.asked == 0
     for robots in (["r2", "r1"], ["r1"], []):
         async with held.of(robots):
-            assert not held.are_in_doubt and stored.asked == 1
+            assert not held.has_uncertain_commit and stored.asked == 1
 
 
 async def test_what_comes_into_doubt_while_another_is_looked_up_is_looked_up_too():
     held, stored = held_robots(meanwhile=lambda: lose(held))
     await lose(held)
     async with held.of(["r1"]):
-        assert held.are_in_doubt and stored.asked == 1
+        assert held.has_uncertain_commit and stored.asked == 1
     async with held.of(["r2"]):
-        assert not held.are_in_doubt and stored.asked == 2
+        assert not held.has_uncertain_commit and stored.asked == 2
 
 
 async def test_a_later_doubt_outlasts_whoever_looked_up_the_earlier_one_beside_it():
@@ -65,7 +65,7 @@ async def test_a_later_doubt_outlasts_whoever_looked_up_the_earlier_one_beside_i
     held, stored = held_robots(another_looks_it_up_and_a_third_is_lost)
     await lose(held)
     async with held.of(["r1"]):
-        assert held.are_in_doubt and stored.asked == 2
+        assert held.has_uncertain_commit and stored.asked == 2
 
 
 async def test_what_cannot_be_looked_up_stays_in_doubt():
@@ -77,6 +77,6 @@ async def test_what_cannot_be_looked_up_stays_in_doubt():
     with pytest.raises(StoreError):
         async with held.of(["r1"]):
             pytest.fail("nothing is known of it")
-    assert held.are_in_doubt
+    assert held.has_uncertain_commit
     async with held.of(["r1"]):
-        assert not held.are_in_doubt
+        assert not held.has_uncertain_commit

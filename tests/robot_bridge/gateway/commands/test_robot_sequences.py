@@ -22,7 +22,7 @@ class Judge:
     def __init__(self):
         self.order, self.lost, self.free = [], [], asyncio.Event()
 
-    def judge(self, robot, pose):
+    def evaluate_arrival(self, robot, pose):
         self.order.append((robot, pose.x))
         return self._store(robot) if pose.x == 5.0 else None
 

@@ -29,7 +29,7 @@ async def book(two):
         await two.acknowledge_all(robot)
         for x in (25.0, 30.0):
             await two.at(x, path[0][1], v=1.0, robot=robot)
-    book = two.fleet._book
+    book = two.fleet._commands
     book._held = RobotLocks(two.database, book, Elsewhere())
     return book
 

@@ -123,7 +123,7 @@ async def test_a_long_reason_of_a_refusal_is_cut(standing):
 async def test_params_that_are_too_long_are_never_fetched(yard):
     yard.ask("r1", Ready(1))
     yard.sql("insert into rr (robot, op, params) values ('r1', 'Alive', ?)", '{"a": "' + "x" * 100_000 + '"}')
-    rows = await yard.fleet.mailboxes.read_requests("sql")
+    rows = await yard.fleet.outboxes.read_requests("sql")
     assert [(row.op, row.params is None, row.size) for row in rows] == [
         ("Ready", False, 12),
         ("Alive", True, 100_009),

@@ -97,14 +97,14 @@ async def test_what_was_reached_while_no_gateway_was_there_is_reached(plugged):
 
 async def fail_to_finish(yard, monkeypatch):
     """Let the gateway deal with what waits, and fail before it is gone from RR."""
-    jot = yard.database.jot
+    write_relaxed = yard.database.write_relaxed
 
     async def fail(work, *arguments):
         if work is finish_requests:
             raise StoreError("the server is away")
-        return await jot(work, *arguments)
+        return await write_relaxed(work, *arguments)
 
-    monkeypatch.setattr(yard.database, "jot", fail)
+    monkeypatch.setattr(yard.database, "write_relaxed", fail)
     with pytest.raises(StoreError):
         await yard.link.poll()
     monkeypatch.undo()

@@ -69,7 +69,7 @@ def start(sqlite_url):
 async def maps_of(yard, count):
     """Return the maps that wait for the robot, as soon as there are so many of them."""
     async with asyncio.timeout(60):
-        while len(rows := await yard.fleet.mailboxes.outbox("r1", 0)) < count:
+        while len(rows := await yard.fleet.outboxes.outbox("r1", 0)) < count:
             await asyncio.sleep(0.01)
     whole = yard.fleet.maps.whole_or_around
     return [decode(row.payload or await whole("r1")) for row in rows if row.op == "SetMap"]
@@ -77,7 +77,7 @@ async def maps_of(yard, count):
 
 async def quiet(yard):
     """Wait until all that was to follow has followed."""
-    while not yard.fleet.mailboxes.parts.empty():
+    while not yard.fleet.outboxes.parts.empty():
         await asyncio.sleep(0.01)
     for _ in range(3):
         await asyncio.sleep(0.01)
@@ -174,7 +174,7 @@ async def test_an_answer_goes_out_without_being_read_unless_more_was_written_mea
     async with start(SiteMaps(city(largest_whole_bytes=0))) as yard:
         await yard.ready()
         await yard.acknowledge_all()
-        boxes, database, looked = yard.fleet.mailboxes, yard.database, []
+        boxes, database, looked = yard.fleet.outboxes, yard.database, []
         read, run = database.read, database.run
 
         async def counted(work, *arguments):
@@ -193,7 +193,7 @@ async def test_an_answer_goes_out_without_being_read_unless_more_was_written_mea
 
         monkeypatch.setattr(database, "read", counted)
         # The id of what a robot was sent must not come again after a power cut.
-        monkeypatch.delattr(Database, "jot")
+        monkeypatch.delattr(Database, "write_relaxed")
         await ask()
         assert [row.op for row in await boxes.outbox("r1", 0, 0)] == ["SetMap"]
         assert not looked

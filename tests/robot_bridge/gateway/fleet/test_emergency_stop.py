@@ -73,7 +73,7 @@ async def test_every_robot_is_told_before_anything_else(two, control):
     report = await control.stop(reason="child on the track")
     assert control.outbox("r1") == [("Abort", True), ("SetMap", False)]
     assert control.outbox("r2") == [("Abort", True)]
-    assert [row.op for row in await two.fleet.mailboxes.outbox("r1", 0)] == ["Abort", "SetMap"]
+    assert [row.op for row in await two.fleet.outboxes.outbox("r1", 0)] == ["Abort", "SetMap"]
     ((params,),) = two.sql("select params from sa where robot = 'r2'")
     assert params == '{"emergency": true}'
     assert control.called == ["emergency-stop-0001"]
@@ -350,7 +350,7 @@ async def test_a_stop_that_cannot_be_stored_is_in_force_and_on_its_way_and_store
     two.client.break_table("emergency_stops")
     report = await control.stop(reason="smoke")
     assert (report.in_force, report.stored, control.called) == (True, False, ["emergency-stop-0001"])
-    assert await two.fleet.mailboxes.outbox("r1", 0) == []  # the target waits in SA and is held back
+    assert await two.fleet.outboxes.outbox("r1", 0) == []  # the target waits in SA and is held back
     with pytest.raises(RefusedError, match="an emergency stop is in force"):
         await two.send("b")
     with pytest.raises(StoreError):

@@ -88,7 +88,7 @@ async def test_nor_does_a_gateway_that_dies_while_it_lets_the_robot_in_change_th
     async def die(*_arguments, **_options):
         raise StoreError("the gateway is gone")
 
-    monkeypatch.setattr(working.fleet.mailboxes, "finish", die)
+    monkeypatch.setattr(working.fleet.outboxes, "finish", die)
     with pytest.raises(StoreError):
         await say(working, Ready(2))
     monkeypatch.undo()

@@ -168,7 +168,7 @@ async def test_an_emergency_stop_that_cannot_be_stored_at_once_is_stored_soon(tw
 async def test_a_late_acknowledgement_in_trouble_is_forgotten_and_others_have_their_turn(
     two, monkeypatch, error
 ):
-    book, taken = two.fleet._book, []
+    book, taken = two.fleet._commands, []
     monkeypatch.setattr(book, "_late", {("r1", 1), ("r2", 2), ("r1", 3)})
 
     async def acknowledge(robot, ack):
@@ -182,7 +182,7 @@ async def test_a_late_acknowledgement_in_trouble_is_forgotten_and_others_have_th
 
 
 async def test_a_late_acknowledgement_is_kept_while_the_database_is_away(two, monkeypatch):
-    book = two.fleet._book
+    book = two.fleet._commands
     monkeypatch.setattr(book, "_late", {("r1", 1)})
     fail_once(monkeypatch, book, "acknowledge", StoreError("the disk is full"), bool)
     with pytest.raises(StoreError, match="the disk is full"):

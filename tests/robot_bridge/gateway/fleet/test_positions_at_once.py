@@ -45,7 +45,7 @@ both = pytest.mark.parametrize("take", [take_one, take_many])
 async def test_a_position_at_the_target_ends_the_command(driving, take):
     await take(driving, TARGET)
     assert await driving.states() == {"a": "reached"}
-    assert driving.fleet.tally.requests["websocket", "SendPos"] == 3
+    assert driving.fleet.counters.requests["websocket", "SendPos"] == 3
 
 
 @both

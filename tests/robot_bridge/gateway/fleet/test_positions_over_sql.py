@@ -52,7 +52,7 @@ async def test_positions_that_are_dealt_with_again_after_a_kill_are_stored_thoug
 ):
     for t in (1.0, 2.0):
         plugged.ask("r1", SendPos(t, 0.0, 0.0, 1.0, t=t))
-    rows = await plugged.fleet.mailboxes.read_requests("sql")
+    rows = await plugged.fleet.outboxes.read_requests("sql")
     await plugged.link._deal_with_robot(rows)
     # Killed before its rows were gone, and after what robots said was stored.
     await plugged.fleet.save()

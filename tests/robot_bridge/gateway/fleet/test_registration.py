@@ -21,7 +21,7 @@ class Held:
 
 async def say_ready(yard, magic, link):
     outcome = await yard.fleet.receive("r1", link, Ready(magic), 5)
-    await yard.fleet.mailboxes.finish([outcome], [], acks=False)
+    await yard.fleet.outboxes.finish([outcome], [], acks=False)
     return outcome
 
 
@@ -78,7 +78,7 @@ async def test_a_refusal_throws_away_nothing_that_waits_for_the_first(yard):
     await yard.send("a")
     before = yard.waiting()
     outcome = await yard.fleet.receive("r1", "sql", Ready(2), 5)
-    await yard.fleet.mailboxes.finish([outcome], [], acks=True)
+    await yard.fleet.outboxes.finish([outcome], [], acks=True)
     assert yard.waiting() == [*before, "OpAck"]
 
 

@@ -98,9 +98,9 @@ async def test_a_robot_that_says_ready_is_stored_before_it_is_answered(yard, los
     outcome = await yard.fleet.receive("r1", link, Ready(1), 5)
     lose(yard, recording._write, done=False)
     with pytest.raises(Exception, match="the connection was lost"):
-        await yard.fleet.mailboxes.finish([outcome], [], acks=True)
+        await yard.fleet.outboxes.finish([outcome], [], acks=True)
     assert yard.waiting() == []
-    await yard.fleet.mailboxes.finish([outcome], [], acks=True)
+    await yard.fleet.outboxes.finish([outcome], [], acks=True)
     assert yard.waiting() == ["OpAck", "SetMap"]
     assert yard.sql("select name, magic, link from robots") == [("r1", 1, link)]
 

@@ -31,30 +31,30 @@ def report(state, robot="r1", op="Abort", params=None):
 
 
 @pytest.fixture
-def tally():
-    tally = StopAnswers()
-    tally.begin(["r2", "r1"])
-    return tally
+def counters():
+    counters = StopAnswers()
+    counters.begin(["r2", "r1"])
+    return counters
 
 
-def counts(tally):
-    return tuple(tally.counts().values())[:5]
+def counts(counters):
+    return tuple(counters.counts().values())[:5]
 
 
-def see(tally, now, robot="r1", x=0.0, v=0.0, state=FRESH, flags=LOCATED, accuracy=math.nan):
+def see(counters, now, robot="r1", x=0.0, v=0.0, state=FRESH, flags=LOCATED, accuracy=math.nan):
     """Have the tally take in where a robot is at ``now``."""
     table = np.full((NUMBERS, 1), math.nan)
     table[[X, Y, V, ACCURACY], 0] = x, 0.0, v, accuracy
-    return tally.observe(RobotPlaces([robot], table, np.array([state]), np.array([flags])), now)
+    return counters.observe(RobotPlaces([robot], table, np.array([state]), np.array([flags])), now)
 
 
-def seen(tally):
-    counts = tally.counts()
+def seen(counters):
+    counts = counters.counts()
     return counts["standing"], counts["moving"], counts["unheard"]
 
 
-def test_it_is_counted_under_the_names_of_the_report(tally):
-    assert tally.counts() == {
+def test_it_is_counted_under_the_names_of_the_report(counters):
+    assert counters.counts() == {
         "robots": 2,
         "acknowledged": 0,
         "standing": 0,
@@ -67,24 +67,24 @@ def test_it_is_counted_under_the_names_of_the_report(tally):
     }
 
 
-def test_a_robot_comes_from_refusing_to_acknowledging_to_standing_and_never_back(tally):
-    see(tally, 0.0)
+def test_a_robot_comes_from_refusing_to_acknowledging_to_standing_and_never_back(counters):
+    see(counters, 0.0)
     steps = [CommandState.FAILED, CommandState.ACKNOWLEDGED, CommandState.REACHED]
-    assert [tally.note_step(report(state)) for state in steps] == [True, True, True]
-    assert counts(tally) == (2, 1, 1, ["r2"], [])
-    assert [tally.note_step(report(state)) for state in steps] == [False, False, False]
-    assert not tally.answer("r1", refused=True)
-    assert counts(tally) == (2, 1, 1, ["r2"], [])
+    assert [counters.note_step(report(state)) for state in steps] == [True, True, True]
+    assert counts(counters) == (2, 1, 1, ["r2"], [])
+    assert [counters.note_step(report(state)) for state in steps] == [False, False, False]
+    assert not counters.answer("r1", refused=True)
+    assert counts(counters) == (2, 1, 1, ["r2"], [])
 
 
-def test_the_answer_to_the_direct_call_counts_like_that_to_the_command(tally):
-    assert tally.answer("r1", refused=True)
-    assert counts(tally) == (2, 0, 0, ["r2"], ["r1"])
-    assert tally.answer("r1", refused=False)
-    assert counts(tally) == (2, 1, 0, ["r2"], [])
-    see(tally, 0.0, "r2")
-    assert tally.note_step(report(CommandState.REACHED, "r2"))
-    assert counts(tally) == (2, 2, 1, [], [])
+def test_the_answer_to_the_direct_call_counts_like_that_to_the_command(counters):
+    assert counters.answer("r1", refused=True)
+    assert counts(counters) == (2, 0, 0, ["r2"], ["r1"])
+    assert counters.answer("r1", refused=False)
+    assert counts(counters) == (2, 1, 0, ["r2"], [])
+    see(counters, 0.0, "r2")
+    assert counters.note_step(report(CommandState.REACHED, "r2"))
+    assert counts(counters) == (2, 2, 1, [], [])
 
 
 @pytest.mark.parametrize(
@@ -101,52 +101,52 @@ def test_the_answer_to_the_direct_call_counts_like_that_to_the_command(tally):
         report(CommandState.SUPERSEDED),
     ],
 )
-def test_what_becomes_of_anything_else_says_nothing(tally, other):
-    assert tally.note_step(other) is False
-    assert counts(tally) == (2, 0, 0, ["r1", "r2"], [])
+def test_what_becomes_of_anything_else_says_nothing(counters, other):
+    assert counters.note_step(other) is False
+    assert counts(counters) == (2, 0, 0, ["r1", "r2"], [])
 
 
-def test_a_robot_that_starts_while_it_is_in_force_is_waited_for(tally):
-    tally.answer("r1", refused=False)
-    tally.note_sent("r1")
-    tally.note_sent("r3")
-    assert counts(tally) == (3, 0, 0, ["r1", "r2", "r3"], [])
+def test_a_robot_that_starts_while_it_is_in_force_is_waited_for(counters):
+    counters.answer("r1", refused=False)
+    counters.note_sent("r1")
+    counters.note_sent("r3")
+    assert counts(counters) == (3, 0, 0, ["r1", "r2", "r3"], [])
 
 
-def test_a_robot_that_is_forgotten_is_waited_for_no_more(tally):
-    assert tally.forget("r1") is True
-    assert tally.forget("r1") is False
-    assert tally.forget("nobody") is False
-    assert counts(tally) == (1, 0, 0, ["r2"], [])
+def test_a_robot_that_is_forgotten_is_waited_for_no_more(counters):
+    assert counters.forget("r1") is True
+    assert counters.forget("r1") is False
+    assert counters.forget("nobody") is False
+    assert counts(counters) == (1, 0, 0, ["r2"], [])
 
 
-def test_a_second_stop_is_counted_from_nought(tally):
-    tally.answer("r1", refused=False)
-    tally.begin(["r1"])
-    assert counts(tally) == (1, 0, 0, ["r1"], [])
+def test_a_second_stop_is_counted_from_nought(counters):
+    counters.answer("r1", refused=False)
+    counters.begin(["r1"])
+    assert counts(counters) == (1, 0, 0, ["r1"], [])
 
 
 def test_so_many_robots_are_named_and_all_are_counted():
-    tally = StopAnswers()
+    counters = StopAnswers()
     names = [f"r{k:03}" for k in range(MOST_NAMES + 1)]
-    tally.begin(reversed(names))
-    assert tally.counts()["waiting"] == names[:MOST_NAMES]
-    assert tally.counts()["robots"] == MOST_NAMES + 1
+    counters.begin(reversed(names))
+    assert counters.counts()["waiting"] == names[:MOST_NAMES]
+    assert counters.counts()["robots"] == MOST_NAMES + 1
     for robot in names:
-        see(tally, 0.0, robot, v=1.0)
-    assert (tally.counts()["moving"], tally.counts()["moving_more"]) == (names[:MOST_NAMES], 1)
+        see(counters, 0.0, robot, v=1.0)
+    assert (counters.counts()["moving"], counters.counts()["moving_more"]) == (names[:MOST_NAMES], 1)
 
 
 # --- what robots said, against where they are ---------------------------------------------------------------
 
 
 @pytest.fixture
-def standing(tally):
-    tally.note_step(report(CommandState.REACHED))
-    assert seen(tally) == (0, [], ["r1"])
-    assert see(tally, 100.0)
-    assert seen(tally) == (1, [], [])
-    return tally
+def standing(counters):
+    counters.note_step(report(CommandState.REACHED))
+    assert seen(counters) == (0, [], ["r1"])
+    assert see(counters, 100.0)
+    assert seen(counters) == (1, [], [])
+    return counters
 
 
 def test_a_robot_that_drives_does_not_stand_whatever_it_said(standing):
@@ -188,8 +188,8 @@ def test_of_a_robot_that_is_not_heard_nobody_knows(standing, how):
     assert seen(standing) == (1, [], [])
 
 
-def test_a_robot_that_has_not_answered_and_drives_is_named(tally):
-    see(tally, 100.0, "r2", v=1.0)
-    assert seen(tally) == (0, ["r2"], [])
-    assert counts(tally)[3] == ["r1", "r2"]
-    assert not see(tally, 101.0, "nobody", v=1.0)
+def test_a_robot_that_has_not_answered_and_drives_is_named(counters):
+    see(counters, 100.0, "r2", v=1.0)
+    assert seen(counters) == (0, ["r2"], [])
+    assert counts(counters)[3] == ["r1", "r2"]
+    assert not see(counters, 101.0, "nobody", v=1.0)

@@ -157,7 +157,7 @@ async def test_rows_that_take_a_while_leave_turns_to_whatever_stops(driven, monk
             await asyncio.sleep(0)
 
     counting = asyncio.create_task(count())
-    rows = await driven.fleet.mailboxes.read_requests("sql")
+    rows = await driven.fleet.outboxes.read_requests("sql")
     before = len(turns)
     await driven.link._deal_with_robot(rows)
     counting.cancel()
@@ -440,7 +440,7 @@ async def test_a_robot_that_another_gateway_has_by_now_is_left_to_that(driven, m
         raise FencedError("connected to another gateway by now")
 
     writer = driven.fleet.emergency._writer
-    monkeypatch.setattr(writer._book, "issue", fenced)
+    monkeypatch.setattr(writer._commands, "issue", fenced)
     assert (await stop(driven)).stored
     assert not writer.is_owing
 
@@ -583,7 +583,7 @@ async def test_a_robot_that_fails_with_its_request_keeps_nobody_from_an_answer(d
 
 @ON_ONE
 async def test_an_acknowledgement_that_came_too_late_and_goes_wrong_is_forgotten(driven, monkeypatch):
-    book = driven.fleet._book
+    book = driven.fleet._commands
     book._late = {("r1", 4711), ("r2", 4712)}
     late = book._note_late
 
@@ -599,7 +599,7 @@ async def test_an_acknowledgement_that_came_too_late_and_goes_wrong_is_forgotten
 
 @ON_ONE
 async def test_an_acknowledgement_that_came_too_late_waits_for_a_database_that_is_away(driven, monkeypatch):
-    book = driven.fleet._book
+    book = driven.fleet._commands
     book._late = {("r1", 4711)}
 
     async def fail_to_store(_robot, _sa_id):
@@ -616,7 +616,7 @@ async def test_acknowledgements_that_came_too_late_wait_up_to_a_number_and_each_
     driven, lose, monkeypatch
 ):
     monkeypatch.setattr(book_module, "MOST_LATE", 1)
-    book = driven.fleet._book
+    book = driven.fleet._commands
     for sa_id in (4711, 4712):
         lose(driven, write_late, False, StoreError)
         with pytest.raises(StoreError):
@@ -628,14 +628,14 @@ async def test_acknowledgements_that_came_too_late_wait_up_to_a_number_and_each_
 
 @ON_ONE
 async def test_a_robot_whose_removal_fails_keeps_no_other_in_the_fleet(driven, monkeypatch):
-    give_up = driven.fleet._book.give_up
+    give_up = driven.fleet._commands.give_up
 
     async def fail_for_one(robot, reason):
         if robot == "r1":
             raise StoreError("its rows are locked")
         await give_up(robot, reason)
 
-    monkeypatch.setattr(driven.fleet._book, "give_up", fail_for_one)
+    monkeypatch.setattr(driven.fleet._commands, "give_up", fail_for_one)
     driven.sql("delete from robots where name in ('r1', 'r2')")
     with pytest.raises(StoreError, match="its rows are locked"):
         await driven.fleet.save()
@@ -653,7 +653,7 @@ async def test_a_command_that_cannot_be_told_of_keeps_no_other_from_being_follow
 
     driven.fleet.events._subscribers[CommandChanged].insert(0, fail_for_one)
     await stop(driven)
-    assert all(driven.fleet._book.awaits_stop(robot) for robot in ("r1", "r2", "r3"))
+    assert all(driven.fleet._commands.awaits_stop(robot) for robot in ("r1", "r2", "r3"))
 
 
 @ON_ONE
@@ -665,7 +665,7 @@ async def test_a_long_look_at_one_robots_path_keeps_no_abort_from_it(driven, mon
         looking.set()
         await go_on.wait()
 
-    monkeypatch.setattr(driven.fleet.roads.closures, "consider", look_long)
+    monkeypatch.setattr(driven.fleet.roads.closures, "prepare", look_long)
     sending = asyncio.create_task(driven.send("long", robot="r2"))
     await looking.wait()
     monkeypatch.undo()
@@ -692,6 +692,6 @@ async def test_damaged_rows_of_queues_and_roads_are_left_out(driven, caplog):
         "insert into closures (id, line, level, closed_at, closed_by) values ('c', '[[1', 0, 1.0, 'Ada')"
     )
     await driven.restart()
-    assert [task.id for task in driven.fleet._queue_book.get("r2").tasks] == ["task-0002"]
+    assert [task.id for task in driven.fleet._queue_registry.get("r2").tasks] == ["task-0002"]
     for what in ("task task-0001 of the queue of robot r2", "the queue of robot r1", "closed road c"):
         assert f"{what} cannot be read in the database and is left out" in caplog.text

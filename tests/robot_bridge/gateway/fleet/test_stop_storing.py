@@ -60,7 +60,7 @@ class Storing:
 
     def __init__(self, yard):
         self.yard = yard
-        self.book, self.database = Book(yard.fleet._book), Database(yard.database)
+        self.book, self.database = Book(yard.fleet._commands), Database(yard.database)
         self.writer = StopWriter(self.book, self.database)
 
     async def write(self, stop=STOP, robots=ROBOTS):

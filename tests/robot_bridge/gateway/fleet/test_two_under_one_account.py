@@ -42,7 +42,7 @@ async def test_its_positions_do_not_move_the_other(two, magic):
     await say(two, SendPos(60.0, 40.0, 0.0, 0.0, magic=magic))
     assert place(two) == (20.0, 8.0)
     assert two.waiting() == [], "it waits for no answer, and finds none"
-    assert two.fleet.tally.refused["sql"] == 1
+    assert two.fleet.counters.refused["sql"] == 1
     await say(two, SendPos(21.0, 8.0, 0.0, 0.0, magic=A))
     assert place(two) == (21.0, 8.0)
 

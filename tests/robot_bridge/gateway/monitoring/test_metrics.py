@@ -11,11 +11,11 @@ def samples(metrics):
 
 
 def test_what_was_counted_is_on_the_page():
-    tally = Counters()
-    metrics = Metrics(tally)
-    tally.requests["sql", "SendPos"] += 3
-    tally.requests["websocket", "Ready"] += 1
-    tally.failures["save"] += 2
+    counters = Counters()
+    metrics = Metrics(counters)
+    counters.requests["sql", "SendPos"] += 3
+    counters.requests["websocket", "Ready"] += 1
+    counters.failures["save"] += 2
     metrics.database.observe(0.003)
     found = samples(metrics)
     assert found["robot_bridge_requests_total", ("sql", "SendPos")] == 3

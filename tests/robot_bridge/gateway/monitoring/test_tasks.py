@@ -33,18 +33,18 @@ def failing(times, error):
 
 
 async def test_what_fails_is_logged_counted_and_tried_again(caplog):
-    tally = Counters()
+    counters = Counters()
     work, attempts = failing(3, ZeroDivisionError("3 / 0"))
-    await tasks.keep_going("sql link", work, tally)
-    assert len(attempts) == 4 and tally.failures == {"sql link": 3}
+    await tasks.keep_going("sql link", work, counters)
+    assert len(attempts) == 4 and counters.failures == {"sql link": 3}
     assert [record.exc_info is not None for record in caplog.records] == [True] * 3
     assert "sql link: unexpected ZeroDivisionError; trying again in 0.001 s" in caplog.text
 
 
 async def test_what_the_bridge_foresaw_is_one_line_and_may_last_as_long_as_it_likes(caplog):
-    tally = Counters()
+    counters = Counters()
     work, attempts = failing(3 * tasks.LAST_ATTEMPT, StoreError("database away"))
-    await tasks.keep_going("save", work, tally)
+    await tasks.keep_going("save", work, counters)
     assert len(attempts) == 3 * tasks.LAST_ATTEMPT + 1
     (record,) = caplog.records  # and not one for each attempt
     assert record.getMessage() == "save: database away; trying again until it works"
@@ -88,15 +88,15 @@ async def test_failures_long_before_do_not_count(monkeypatch):
 
 
 async def test_a_task_that_works_has_a_beat():
-    tally = Counters()
+    counters = Counters()
 
     async def work():
-        if tally.age("save") is not None:
+        if counters.age("save") is not None:
             raise FatalError("enough")
 
     with pytest.raises(FatalError):
-        await tasks.every(0.001, work, "save", tally)
-    assert 0 <= tally.age("save") < 5 and tally.age("other") is None
+        await tasks.every(0.001, work, "save", counters)
+    assert 0 <= counters.age("save") < 5 and counters.age("other") is None
 
 
 async def test_a_task_that_is_cancelled_ends():

@@ -115,7 +115,7 @@ async def test_a_robot_that_asked_for_its_way_is_told_another_and_keeps_its_task
     await roads.acknowledge_all()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
     assert highest(outcome.answer.points) == pytest.approx(8.0, abs=0.01)
-    await roads.fleet.mailboxes.finish([outcome], [], acks=False)
+    await roads.fleet.outboxes.finish([outcome], [], acks=False)
     await roads.acknowledge_all()
     closed = await roads.close_road(*SOUTH)
     assert [robot.became for robot in closed.robots] == ["another way"]

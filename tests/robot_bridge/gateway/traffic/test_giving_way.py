@@ -101,7 +101,7 @@ async def test_a_robot_with_a_target_waits_in_the_same_way_and_keeps_its_task(ro
     await roads.send("cone", x=92.0, y=22.0, cone=True)
     await roads.acknowledge_all()
     outcome = await roads.fleet.receive("r1", "websocket", GetPath(), 7)
-    await roads.fleet.mailboxes.finish([outcome], [], acks=False)
+    await roads.fleet.outboxes.finish([outcome], [], acks=False)
     await roads.acknowledge_all()
     metres = math.dist((16, 8), (44, 22)) + 1
     await roads.drive("two", [(44.0 - metres, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")

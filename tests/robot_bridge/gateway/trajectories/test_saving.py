@@ -129,7 +129,7 @@ class ForgetfulServer:
     def __init__(self):
         self.session, self.kept, self.jotted = 1, [], []
 
-    async def jot(self, _work, fixes):
+    async def write_relaxed(self, _work, fixes):
         self.jotted += fixes
 
     async def run(self, _write, _robots, fixes, _stored, _fence):

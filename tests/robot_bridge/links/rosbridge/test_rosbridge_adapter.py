@@ -30,7 +30,7 @@ from robot_bridge.links.rosbridge.connection import (
     encode,
 )
 from robot_bridge.links.rosbridge.decoding import ServiceCall, ServiceResponse
-from robot_bridge.links.rosbridge.goals import MOST_BEFORE, MOST_ENTRIES, ActionGoals, GoalBook
+from robot_bridge.links.rosbridge.goals import MOST_BEFORE, MOST_ENTRIES, ActionGoals, GoalStore
 from robot_bridge.links.rosbridge.graph import Graph
 from robot_bridge.links.rosbridge.settings import RosbridgeSettings, Server
 
@@ -61,19 +61,19 @@ async def test_a_command_without_the_server_is_refused_with_the_reason(adapter):
 
 
 def test_the_next_process_reads_which_goals_are_open(adapter, tmp_path):
-    adapter._book("r1").add(RosAction.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
-    adapter._book("r2").add(RosAction.TO_POSE, goal_id(8), frozenset()).is_over = True
+    adapter._store("r1").add(RosAction.TO_POSE, goal_id(7), frozenset([bytes(16)])).real = bytes(range(16))
+    adapter._store("r2").add(RosAction.TO_POSE, goal_id(8), frozenset()).is_over = True
     adapter.note_goals()
     again = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "far.goals")
-    assert again._book("r1").find(goal_id(7)).real == bytes(range(16))
-    assert again._book("r2").entries == []
+    assert again._store("r1").find(goal_id(7)).real == bytes(range(16))
+    assert again._store("r2").entries == []
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"r1": 7}', '{"r1": [{}]}', '{"r1": [{"action": 1}]}'])
 def test_a_file_of_goals_that_is_none_is_left_out(tmp_path, text, caplog):
     (tmp_path / "far.goals").write_text(text, encoding="utf-8")
     again = RosbridgeAdapter(RosbridgeSettings(), SERVER, tmp_path / "far.goals")
-    assert again._book("r1").entries == [] and "is left out" in caplog.text
+    assert again._store("r1").entries == [] and "is left out" in caplog.text
 
 
 def test_a_file_of_goals_that_cannot_be_written_is_told_and_ends_nothing(tmp_path):
@@ -97,7 +97,7 @@ def test_a_cancel_comes_before_maps_and_never_before_the_goal_that_it_cancels(co
 
 def test_all_that_stops_a_robot_comes_before_the_maps_of_others(adapter, connection):
     settings = RosbridgeSettings(topics=TopicSettings(stop="/{robot}/stop"))
-    goals = ActionGoals("r1", connection, GoalBook(), adapter)
+    goals = ActionGoals("r1", connection, GoalStore(), adapter)
     acting = RosbridgeActions("r1", settings, connection, None, goals)
     acting.connect(
         Graph(
@@ -187,17 +187,17 @@ def test_a_message_that_no_server_takes_is_refused():
 
 
 def test_of_goals_the_newest_are_remembered():
-    book = GoalBook()
+    store = GoalStore()
     before = frozenset(n.to_bytes(16, "big") for n in range(MOST_BEFORE + 1))
     for message in range(MOST_ENTRIES + 1):
-        entry = book.add(RosAction.TO_POSE, goal_id(message), before)
+        entry = store.add(RosAction.TO_POSE, goal_id(message), before)
     assert len(entry.before) == MOST_BEFORE
-    assert [one.goal for one in book.entries] == [goal_id(n) for n in range(1, MOST_ENTRIES + 1)]
-    assert len(GoalBook.from_json(book.to_json() * (MOST_ENTRIES + 1)).entries) == MOST_ENTRIES
+    assert [one.goal for one in store.entries] == [goal_id(n) for n in range(1, MOST_ENTRIES + 1)]
+    assert len(GoalStore.from_json(store.to_json() * (MOST_ENTRIES + 1)).entries) == MOST_ENTRIES
 
 
 def test_of_answers_that_nobody_has_read_the_newest_are_kept(adapter, connection):
-    goals = ActionGoals("r1", connection, GoalBook(), adapter)
+    goals = ActionGoals("r1", connection, GoalStore(), adapter)
     acting = RosbridgeActions("r1", RosbridgeSettings(), connection, None, goals)
     for number in range(MOST_ANSWERS + 1):
         acting._keep("stop", None, ServiceResponse(str(number)))

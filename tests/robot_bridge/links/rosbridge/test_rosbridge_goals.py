@@ -14,7 +14,7 @@ from robot_bridge.links.ros.tasks import Tasks
 from robot_bridge.links.rosbridge import goals as goals_module
 from robot_bridge.links.rosbridge.connection import Inbox
 from robot_bridge.links.rosbridge.decoding import ActionFeedback, ActionResult
-from robot_bridge.links.rosbridge.goals import LEFT, LOST, SETTLED_AFTER, ActionGoals, GoalBook
+from robot_bridge.links.rosbridge.goals import LEFT, LOST, SETTLED_AFTER, ActionGoals, GoalStore
 from robot_bridge.links.rosbridge.graph import Graph
 
 TOPIC = "/r1/navigate_to_pose"
@@ -49,12 +49,12 @@ class Connection:
 class Robot:
     """One robot's goals and tasks; time is what the test says."""
 
-    def __init__(self, monkeypatch, book=None):
+    def __init__(self, monkeypatch, store=None):
         self.now, self.noted = 100.0, 0
         monkeypatch.setattr(goals_module.time, "monotonic", lambda: self.now)
         self.connection, self.tasks = Connection(), Tasks(cones=False)
-        self.book = book or GoalBook()
-        self.goals = ActionGoals("r1", self.connection, self.book, self)
+        self.store = store or GoalStore()
+        self.goals = ActionGoals("r1", self.connection, self.store, self)
         self.goals.poll(self.tasks, self.now, self.fault)
         self.see()
 
@@ -191,7 +191,7 @@ def test_the_next_process_finds_the_goal_and_does_not_send_it_again(robot, monke
     robot.order(7)
     robot.hear({REAL: GoalStatus.EXECUTING})
     assert robot.noted >= 2
-    after = Robot(monkeypatch, GoalBook.from_json(robot.book.to_json()))
+    after = Robot(monkeypatch, GoalStore.from_json(robot.store.to_json()))
     after.order(7, again=True)
     after.hear({OTHERS: GoalStatus.ABORTED, REAL: GoalStatus.EXECUTING})
     after.now += LATER
@@ -203,7 +203,7 @@ def test_the_next_process_finds_the_goal_and_does_not_send_it_again(robot, monke
 def test_the_next_process_finds_a_goal_whose_id_nobody_had_seen_yet(robot, monkeypatch):
     robot.hear({OTHERS: GoalStatus.EXECUTING})
     robot.order(7)
-    after = Robot(monkeypatch, GoalBook.from_json(robot.book.to_json()))
+    after = Robot(monkeypatch, GoalStore.from_json(robot.store.to_json()))
     after.order(7, again=True)
     assert Answered(7) in after.hear({OTHERS: GoalStatus.ABORTED, REAL: GoalStatus.EXECUTING})
     assert not after.connection.sent
@@ -213,12 +213,12 @@ def test_the_next_process_says_what_became_of_a_goal_that_is_over(robot, monkeyp
     robot.hear({})
     robot.order(7)
     robot.hear({REAL: GoalStatus.EXECUTING})
-    noted = robot.book.to_json()
-    assert Robot(monkeypatch, GoalBook.from_json(noted)).hear({REAL: GoalStatus.SUCCEEDED}) == [Idle()]
-    canceled = Robot(monkeypatch, GoalBook.from_json(noted))
+    noted = robot.store.to_json()
+    assert Robot(monkeypatch, GoalStore.from_json(noted)).hear({REAL: GoalStatus.SUCCEEDED}) == [Idle()]
+    canceled = Robot(monkeypatch, GoalStore.from_json(noted))
     assert canceled.hear({REAL: GoalStatus.CANCELED}) == [Answered(7, LEFT), Idle()]
-    assert canceled.book.to_json() == []
-    gone = Robot(monkeypatch, GoalBook.from_json(noted))
+    assert canceled.store.to_json() == []
+    gone = Robot(monkeypatch, GoalStore.from_json(noted))
     gone.now += LATER
     assert gone.poll() == [Answered(7, LOST), Idle()]
 
@@ -230,7 +230,7 @@ def test_a_server_that_went_and_came_again_is_another_one(robot):
     robot.see(actions=())
     assert robot.goals.server is None
     robot.see()
-    assert robot.goals.server not in (None, before) and robot.book.entries == []
+    assert robot.goals.server not in (None, before) and robot.store.entries == []
 
 
 def test_a_second_publisher_of_a_status_is_a_server_that_was_started_anew(robot):
@@ -272,4 +272,4 @@ def test_a_goal_that_was_not_taken_on_is_refused(robot):
 @pytest.mark.parametrize("rows", [[{}], [{"action": "Fly", "goal": "", "real": None, "before": []}], 7])
 def test_a_book_that_is_none_is_refused(rows):
     with pytest.raises((ValueError, KeyError, TypeError)):
-        GoalBook.from_json(rows)
+        GoalStore.from_json(rows)

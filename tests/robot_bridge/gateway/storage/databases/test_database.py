@@ -64,7 +64,7 @@ async def test_a_file_that_was_taken_away_is_not_written_until_it_is_back(url, r
     file.rename(aside)
     if replaced:
         shutil.copy(aside, file)
-    for ask in (database.run(add, "lost"), database.jot(add, "lost"), database.read(names)):
+    for ask in (database.run(add, "lost"), database.write_relaxed(add, "lost"), database.read(names)):
         with pytest.raises(StoreError, match=r"fleet-\d+\.db was taken away or replaced while it was in use"):
             await ask
     aside.rename(file)
@@ -84,7 +84,7 @@ async def test_nothing_goes_into_a_log_that_was_taken_away(url, end, replaced):
     file.rename(aside)
     if replaced:
         shutil.copy(aside, file)
-    for ask in (database.run(add, "lost"), database.jot(add, "lost"), database.read(names)):
+    for ask in (database.run(add, "lost"), database.write_relaxed(add, "lost"), database.read(names)):
         with pytest.raises(StoreError, match=rf"fleet-\d+\.db{end} was taken away or replaced"):
             await ask
     aside.rename(file)

@@ -35,7 +35,7 @@ async def robot(url):
 async def wakeup(gateway):
     wakeup = gateway.wakeup("rr")
     # The first time it is told at once, since nobody listened before.
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
     await wakeup.wait(found=False)
     yield wakeup
     await wakeup.close()
@@ -58,7 +58,7 @@ def ask(connection):
 async def test_only_a_gateway_that_dozes_is_told_of_a_request(wakeup, robot, told):
     await robot.run(ask)
     assert told() == 0
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
     await robot.run(ask)
     assert told() == 1
     await wakeup.wait(found=False)
@@ -71,7 +71,7 @@ async def test_a_gateway_that_dozes_is_told_that_a_command_was_read_and_of_nothi
 ):
     for op in ("Abort", "OpAck"):
         await robot.run(lambda connection, op=op: connection.execute(insert(sa).values(robot="r1", op=op)))
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
     await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "OpAck")))
     assert told() == 0
     await robot.run(lambda connection: connection.execute(delete(sa).where(sa.c.op == "Abort")))
@@ -81,7 +81,7 @@ async def test_a_gateway_that_dozes_is_told_that_a_command_was_read_and_of_nothi
 async def test_a_gateway_wakes_at_once_and_sees_what_it_was_told_of(wakeup, robot):
     took = []
     for _ in range(5):
-        assert await wakeup.doze()
+        assert await wakeup.enable_notifications()
         waiting = asyncio.ensure_future(wakeup.wait(found=False))
         await asyncio.sleep(0.1)
         began = time.monotonic()
@@ -102,23 +102,23 @@ async def test_no_gateway_begins_to_doze_while_somebody_writes_who_thinks_it_is_
 
     writing = asyncio.ensure_future(robot.run(write))
     await written.wait()
-    assert not await wakeup.doze()
+    assert not await wakeup.enable_notifications()
     go.set()
     await writing
     assert told() == 0
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
 
 
 async def test_a_gateway_that_found_something_as_it_began_to_doze_is_awake_again(wakeup, robot, told):
-    assert await wakeup.doze()
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
+    assert await wakeup.enable_notifications()
     await wakeup.wait(found=True)
     await robot.run(ask)
     assert told() == 0
 
 
 async def test_what_a_gateway_was_to_be_told_is_over_with_its_connection(gateway, wakeup, robot, told):
-    assert await wakeup.doze()
+    assert await wakeup.enable_notifications()
     await gateway.close()
     # The server notices the end of a connection in its own time.
     until = time.monotonic() + 10 * BUSY

@@ -161,8 +161,8 @@ async def test_a_gateway_goes_on_with_the_commands_of_version_0_1_0(old_url, sam
     await database.open()
     fleet = Fleet(SiteMaps(read_site(sample_site)), database, clock=ManualClock(wall=1001.0))
     await fleet.start()
-    await fleet.mailboxes.finish([await fleet.receive("r1", "websocket", Ready(7), 1)], [], acks=False)
-    told = {row.op: row for row in await fleet.mailboxes.outbox("r1", 0)}
+    await fleet.outboxes.finish([await fleet.receive("r1", "websocket", Ready(7), 1)], [], acks=False)
+    told = {row.op: row for row in await fleet.outboxes.outbox("r1", 0)}
     await database.close()
     assert told["SetPosEnd"].id == 41
     assert json.loads(told["SetPosEnd"].params)["x"] == 5

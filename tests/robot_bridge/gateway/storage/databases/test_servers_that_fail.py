@@ -188,14 +188,14 @@ async def test_notifications_are_heard_again_after_a_restart(database, server, u
     async def told() -> float:
         """Return how long it takes to hear of a row."""
         await asyncio.sleep(0.1)
-        assert await wakeup.doze()
+        assert await wakeup.enable_notifications()
         began = time.monotonic()
         await other.run(add, "r1")
         await wakeup.wait(found=False)
         return time.monotonic() - began
 
     async def wait_for_nothing() -> None:
-        assert await wakeup.doze()
+        assert await wakeup.enable_notifications()
         await wakeup.wait(found=False)
 
     await wait_for_nothing()

@@ -8,7 +8,7 @@ import psycopg
 import pytest
 from sqlalchemy import make_url
 
-from robot_bridge.gateway.storage.dialects import GATEWAY_DOZES
+from robot_bridge.gateway.storage.dialects import NOTIFICATIONS_LOCK
 from robot_bridge.gateway.storage.roles.role_manager import (
     LARGEST_PARAMS,
     LARGEST_PAYLOAD,
@@ -263,7 +263,7 @@ def test_what_a_robot_notifies_wakes_the_gateway_and_tells_it_nothing(postgresql
         psycopg.connect(**where, dbname=parts.database, autocommit=True) as gateway,
         postgresql.session(MINE) as session,
     ):
-        gateway.execute(f"select pg_advisory_lock({GATEWAY_DOZES})")
+        gateway.execute(f"select pg_advisory_lock({NOTIFICATIONS_LOCK})")
         session.run("select pg_notify('rr', 'delete everything')")
         session.run("listen rr")
         session.run("insert into rr (op) values ('Alive')")

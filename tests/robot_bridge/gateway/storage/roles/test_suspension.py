@@ -316,13 +316,13 @@ async def test_a_flood_of_notifications_is_named_and_costs_the_reader_few_looks(
     over = threading.Event()
     attacker = threading.Thread(target=attacked, args=(postgresql, over))
     try:
-        await wakeup.doze()
+        await wakeup.enable_notifications()
         await wakeup.wait(found=False)
         attacker.start()
         looks, backends, began = 0, [], time.monotonic()
         while time.monotonic() - began < 1.0 or not backends:
             assert time.monotonic() - began < 60
-            await wakeup.doze()
+            await wakeup.enable_notifications()
             await wakeup.wait(found=False)
             looks += 1
             backends += database.offences.drain()[1]
