@@ -155,14 +155,15 @@ LAP = SetPath([*LOOP[:-1], (0.0, 1.0)])
 def test_a_lap_that_was_driven_unseen_is_reached_when_the_robot_says_that_it_has_nothing_to_do(end, handed):
     for rests_first in (True, False):
         arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(*handed))
-        told = [arrival.on_idle(None)] if rests_first else [arrival.deviation(pose(*end))]
-        told += [arrival.deviation(pose(*end))] if rests_first else [arrival.on_idle(pose(*end))]
+        told = [arrival.idle_deviation(None)] if rests_first else [arrival.deviation(pose(*end))]
+        told += [arrival.deviation(pose(*end))] if rests_first else [arrival.idle_deviation(pose(*end))]
         assert told == [None, pytest.approx(math.dist(end, (0.0, 1.0)))]
 
 
 def test_where_a_robot_was_before_it_took_its_lap_on_shows_nothing():
     assert (
-        arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0)).on_idle(pose(0.0, 1.0)) is None
+        arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0)).idle_deviation(pose(0.0, 1.0))
+        is None
     )
 
 
@@ -171,21 +172,21 @@ def test_so_is_a_loop_of_which_only_the_beginning_was_seen():
     walk(arrival, [(0.0, 0.0), (3.0, 0.0)])
     arrival.lose_sight()
     assert arrival.deviation(pose(0.0, 0.0)) is None
-    assert arrival.on_idle(pose(0.0, 0.0)) == 0.0
+    assert arrival.idle_deviation(pose(0.0, 0.0)) == 0.0
 
 
 def test_a_robot_that_was_seen_all_along_has_driven_no_lap_because_it_says_that_it_has_nothing_to_do():
     arrival = arrival_judge(LAP, TOLERANCE, handed=pose(0.0, 1.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
-    assert arrival.on_idle(pose(0.0, 1.0)) is None
+    assert arrival.idle_deviation(pose(0.0, 1.0)) is None
     arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
     assert walk(arrival, [(0.0, 0.0), (10.0, 0.0), (0.0, 0.0), (0.0, 1.0)]) == (None, None)
-    assert arrival.on_idle(pose(0.0, 1.0)) is None
+    assert arrival.idle_deviation(pose(0.0, 1.0)) is None
 
 
 def test_what_a_robot_said_before_it_set_off_counts_no_more_when_it_has():
     arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
-    arrival.on_idle(None)
+    arrival.idle_deviation(None)
     arrival.deviation(pose(1.0, 0.0, v=1.0))
     assert arrival.deviation(pose(0.0, 1.0)) is None
 
@@ -193,7 +194,7 @@ def test_what_a_robot_said_before_it_set_off_counts_no_more_when_it_has():
 def test_a_robot_that_says_nothing_to_do_elsewhere_has_not_reached_the_end():
     arrival = arrival_judge(LAP, TOLERANCE, under_way=True, handed=pose(0.0, 1.0))
     arrival.deviation(pose(0.0, 1.5))
-    assert arrival.on_idle(pose(0.0, 1.5)) is None
+    assert arrival.idle_deviation(pose(0.0, 1.5)) is None
 
 
 def test_a_robot_that_stood_at_the_end_before_it_set_off_has_not_reached_it_by_a_restart():

@@ -173,10 +173,10 @@ def test_a_robot_that_is_followed_is_where_its_path_is_nearest():
 
 def test_a_rest_is_no_arrival_before_the_robot_was_seen_on_its_path():
     arrival = on_path(driven=100.0)
-    assert arrival.on_idle(pose(100.0)) is None
+    assert arrival.idle_deviation(pose(100.0)) is None
     arrival = on_path(under_way=True, handed=pose(60.0))
     arrival.deviation(pose(100.0, 3.0))  # beside the end, off the corridor
-    assert arrival.on_idle(pose(100.0)) is None
+    assert arrival.idle_deviation(pose(100.0)) is None
 
 
 def test_a_robot_followed_for_long_after_it_was_out_of_sight_is_where_it_was_seen():

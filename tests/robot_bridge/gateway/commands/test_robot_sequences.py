@@ -100,7 +100,7 @@ async def test_what_goes_wrong_is_told_to_who_waits_for_it_and_keeps_nothing_els
         judge.order.append(pose.x)
         raise error
 
-    monkeypatch.setattr(judge, "judge", fail)
+    monkeypatch.setattr(judge, "evaluate_arrival", fail)
     first = sequences.add("r1", storing(judge, "first", error=error))
     assert sequences.add_position("r1", at(1))
     second = sequences.add("r1", storing(judge, "second"))
