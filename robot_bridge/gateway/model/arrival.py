@@ -1,4 +1,4 @@
-"""Arrival, and standing after a stop, judged from robots' poses and not their word; the way left to drive."""
+"""Arrival and standstill judged from robots' poses, not from their own reports; the remaining path."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ HEADING_TOLERANCE = 0.15
 CORRIDOR = 2.0
 """metres a robot may be off its path and still be seen to advance along it."""
 LOOK_AHEAD = 5.0
-"""metres of path searched ahead of the place reached last, so that a loop is not cut short."""
+"""metres of path searched ahead of the station reached last, so that a loop is not cut short."""
 LOOK_AHEAD_TIME = 2.0
 """seconds of driving added to it: a fast robot is far ahead by its next pose."""
 STRIDE = 0.2
-"""metres between the poses that are looked for on a path, which takes longer than all else about a pose."""
+"""least metres between poses that are located on a path, the costliest step in processing a pose."""
 
 
 def standing(pose: SendPos) -> bool:
-    """Tell whether the robot stands."""
+    """Return whether the robot stands at ``pose``, by its speed."""
     return abs(pose.v) <= STANDING_SPEED
 
 
@@ -42,7 +42,7 @@ class TargetArrival:
     tolerance: float
 
     def deviation(self, pose: SendPos) -> float | None:
-        """Return metres between robot and target once it has arrived, else None."""
+        """Return the metres between robot and target once it has arrived, else None."""
         distance = math.hypot(pose.x - self.target.x, pose.y - self.target.y)
         if distance > self.tolerance or not standing(pose):
             return None
@@ -56,13 +56,13 @@ class PathArrival:
 
     A path may end where it began, or beside that, so standing at the end counts only after the whole of it
     was driven. ``driven`` is the metres of path that the robot is known to have driven; where that is not
-    known (None) it is taken to be as far as it can be. ``handed`` is where it was seen last before it can
-    have begun, and ``under_way`` is true where it may have driven since then without being seen.
+    known (None) it is taken to be as far as it can be. ``handed`` is its last pose before it can have
+    begun, and ``under_way`` is true where it may have driven since then without being seen.
 
-    A robot is looked for a few metres ahead of where it was, further where it has left its path and comes
-    back to it, and on all of what is left where it was out of sight and has moved. Where it may be at two
-    places of its path the sooner one counts: a robot that stands blocked at the beginning of a loop has not
-    come to its end. Whether it has it says itself: see :meth:`idle_deviation`.
+    A robot is searched for a few metres ahead of where it was, further where it has left its path and comes
+    back to it, and on the whole remaining path where it was out of sight and has moved. Where it may be at
+    two stations of its path the earlier one counts: a robot that stands blocked at the beginning of a loop
+    has not come to its end. Whether it has, it reports itself: see :meth:`idle_deviation`.
     """
 
     def __init__(
@@ -86,7 +86,7 @@ class PathArrival:
         self._rests = False
 
     def deviation(self, pose: SendPos) -> float | None:
-        """Return metres between robot and end of path once it has arrived, else None."""
+        """Return the metres between robot and end of path once it has arrived, else None."""
         end_x, end_y = self.line.end
         distance = math.hypot(pose.x - end_x, pose.y - end_y)
         stands_there = distance <= self._tolerance and standing(pose)
@@ -101,15 +101,15 @@ class PathArrival:
         return None if turned else distance
 
     def lose_sight(self) -> None:
-        """Take it that the robot may have driven since its last pose without being seen."""
+        """Allow for the robot having driven since its last pose without being seen."""
         self._unseen_from = self.driven
         self._is_lost = True
 
     def idle_deviation(self, pose: SendPos | None) -> float | None:
-        """Take it that the robot, at ``pose`` for all that is known, has nothing left to do.
+        """Apply the robot's report that it is idle, at ``pose`` as far as known; return as :meth:`deviation`.
 
-        Its word decides where its poses cannot: when it was out of sight and stands at the end of a path that
-        passes there more than once. Return as :meth:`deviation`.
+        Its report decides where its poses cannot: when it was out of sight and stands at the end of a path
+        that passes there more than once.
         """
         self._rests = True
         return None if pose is None or self._on_path is None else self.deviation(pose)
@@ -120,7 +120,7 @@ class PathArrival:
         return self._unseen_from is not None and self.driven <= self._unseen_from + LOOK_AHEAD
 
     def _moved(self, pose: SendPos) -> bool:
-        """Tell whether the robot is far enough from where it was followed last to be looked for again."""
+        """Return whether the robot is far enough from the pose located last to be located again."""
         last = self._last
         return last is None or _apart(pose, last) >= STRIDE
 
@@ -139,13 +139,13 @@ class PathArrival:
         self._last, self._anywhere, self._is_lost = pose, False, False
 
     def _is_elsewhere(self, pose: SendPos, station: NDArray[Any]) -> bool:
-        """Tell whether the robot has come unseen to one of ``station``, and not to where it was expected."""
+        """Return whether the robot came unseen to one of ``station`` rather than to where it was expected."""
         if self._anywhere:
             return True
         return self._was_missed(pose) and not (station <= self.driven + LOOK_AHEAD).any()
 
     def _was_missed(self, pose: SendPos) -> bool:
-        """Tell whether the robot has driven unseen; one that had not set off may stand where it stood."""
+        """Return whether the robot has driven unseen; one that had not started may stand where it stood."""
         last = self._last
         if self._is_lost and (last is None or self.driven > LOOK_AHEAD):
             return True
@@ -154,28 +154,28 @@ class PathArrival:
         return _apart(pose, last) > LOOK_AHEAD + LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
 
     def _found(self, station: NDArray[Any], off: NDArray[Any], slack: float) -> float:
-        """Return the one of ``station`` that is nearest, within ``slack`` metres, and soonest of those."""
+        """Return the station of least ``off``, within ``slack`` metres, and the first of those."""
         best = station[off <= off.min() + slack]
         return float(best.max() if self._anywhere else best.min())
 
     def _reach(self, pose: SendPos) -> float:
-        """Return how many metres of path ahead the robot may be of where it was on it last."""
+        """Return the metres of path by which the robot may be ahead of its last station."""
         last = self._last or pose
         driving = LOOK_AHEAD_TIME * max(abs(pose.v), abs(last.v))
-        # Round a corner the path is longer than the way as the crow flies.
+        # Around a corner the path is longer than the straight line.
         away = 0.0 if self._on_path is None else 2 * _apart(pose, self._on_path)
         return LOOK_AHEAD + max(driving, away)
 
 
 @dataclass
 class BeginArrival:
-    """Judges SetPosIni: the robot takes itself to be there, standing or not."""
+    """Judges SetPosIni: the robot reports that it is there, standing or not."""
 
     begin: SetPosIni
     tolerance: float
 
     def deviation(self, pose: SendPos) -> float | None:
-        """Return metres between robot and beginning once its pose is that, else None."""
+        """Return the metres between robot and ``begin`` once its pose is that, else None."""
         distance = math.hypot(pose.x - self.begin.x, pose.y - self.begin.y)
         turned = self.begin.theta is not None and _turn(pose.theta, self.begin.theta) > HEADING_TOLERANCE
         return None if turned or distance > self.tolerance else distance
@@ -200,10 +200,10 @@ def arrival_judge(
     under_way: bool = False,
     handed: SendPos | None = None,
 ) -> Arrival:
-    """Return the judge of a command; ``tolerance`` is metres, ``under_way`` if the robot may be driving.
+    """Return the arrival judge of a command; ``tolerance`` is metres, ``under_way`` if it may be driving.
 
-    ``driven`` is metres of a path that it is known to have driven, None if that is not known; ``handed`` is
-    where it was when the command was given to it.
+    ``driven`` is the metres of a path that the robot is known to have driven, None if not known; ``handed``
+    is its pose when the command was sent to it.
     """
     if isinstance(command, SetPosEnd):
         return TargetArrival(command, tolerance)
@@ -222,13 +222,13 @@ def _turn(a: float, b: float) -> float:
     return abs(math.remainder(a - b, math.tau))
 
 
-# --- What the robots said to an emergency stop; no I/O ---
+# --- Answers of the robots to an emergency stop; no I/O ---
 
 MOST_NAMES = 50
 
 
 class StopAnswer(IntEnum):
-    """How far a robot has come; a later one says more."""
+    """Progress of a robot in an emergency stop, in ascending order."""
 
     NONE = 0
     REFUSED = 1
@@ -247,26 +247,26 @@ STILL_WITHIN, STILL_AT_MOST = 0.3, 1.0
 """metres by which positions of a robot that stands may differ, in x and y together: three standard deviations
 where it says how accurate they are, within these."""
 STILL_FOR = 5.0
-"""seconds until a robot that has moved further than that, and says no speed, counts as standing again."""
+"""seconds until a robot that has moved further than that, and reports no speed, counts as standing again."""
 
 
 class _Answer:
-    """What a robot has answered, and what its positions say since."""
+    """Answer of one robot, and its motion since by its positions."""
 
     __slots__ = ("answer", "heard", "is_reported", "moved_at", "moves", "place")
 
     def __init__(self, answer: StopAnswer = StopAnswer.NONE) -> None:
         self.answer = answer
         self.heard = False
-        """whether it is heard, and has said where it is since its Ready."""
+        """whether it is FRESH, and has reported a believed position since its Ready."""
         self.moves = False
         self.moved_at = -math.inf
         self.place: tuple[float, float] | None = None
-        """where it stood first since it said that it has no speed."""
+        """position where it stood first since it reported no speed."""
         self.is_reported = False
 
     def observe(self, now: float, x: float, y: float, within: float, drives: bool) -> bool:
-        """Take in where it is now; tell whether it begins, or ends, to move."""
+        """Apply its present position; return whether it begins, or ends, to move."""
         before = self.moves
         if drives:
             self.place = None
@@ -278,7 +278,7 @@ class _Answer:
         return self.moves is not before
 
     def rests_at(self, x: float, y: float, within: float, drives: bool) -> bool:
-        """Tell whether it stands there as it did: nearly always, once robots were stopped."""
+        """Return whether it still stands there: nearly always, once robots were stopped."""
         place = self.place
         return (
             place is not None
@@ -288,44 +288,44 @@ class _Answer:
 
     @property
     def stands(self) -> bool:
-        """Whether it was seen to stand since it said that it stops, and nothing has said otherwise since."""
+        """Whether it was seen to stand after its answer, and nothing has contradicted that since."""
         return self.answer is StopAnswer.STANDING and self.heard and not self.moves
 
 
 class StopAnswers:
-    """The answer of each robot. Every method that takes one in tells whether it changed anything.
+    """The answer of each robot. Methods that apply an answer return whether it changed anything.
 
-    What a robot has answered is compared with its positions: one that moves does not stand, whatever it said,
-    and of one that is not heard nobody knows.
+    Answers are compared with positions: a robot that moves does not stand, whatever it answered, and the
+    state of one that is not received is unknown.
     """
 
     def __init__(self) -> None:
         self._answers: dict[str, _Answer] = {}
 
     def begin(self, robots: Iterable[str]) -> None:
-        """Count from nought: these robots are told."""
+        """Start from scratch, with no answer of these robots yet."""
         self._answers = {robot: _Answer() for robot in robots}
 
     def note_sent(self, robot: str) -> None:
-        """Count one robot from nought: it is new, or started again."""
+        """Reset the answer of one robot: it is new, or restarted."""
         self._answers[robot] = _Answer()
 
     def forget(self, robot: str) -> bool:
-        """Count a robot no more; tell whether it was counted."""
+        """Remove a robot; return whether it was counted."""
         return self._answers.pop(robot, None) is not None
 
     def answer(self, robot: str, *, refused: bool) -> bool:
-        """Take in what a robot said."""
+        """Apply the answer of a robot to the direct call."""
         return self._raise(robot, StopAnswer.REFUSED if refused else StopAnswer.ACKNOWLEDGED)
 
     def note_step(self, report: CommandReport) -> bool:
-        """Take in what became of a command, if it is the Abort of an emergency stop."""
+        """Apply the state of a command, if it is the Abort of an emergency stop."""
         if report.op != Abort.__name__ or not report.params.get("emergency"):
             return False
         return self._raise(report.robot, _BY_STATE.get(report.state, StopAnswer.NONE))
 
     def observe(self, robots: RobotPlaces, now: float) -> bool:
-        """Take in where robots are that have changed, at ``now`` of the steady clock."""
+        """Apply the positions of robots that changed, at ``now`` of the steady clock."""
         drives = np.abs(robots.table[V]) > STANDING_SPEED
         within = np.fmin(STILL_AT_MOST, np.fmax(STILL_WITHIN, 3 * robots.table[ACCURACY]))
         columns = robots.table[X], robots.table[Y], within, drives, robots.are_placed()
@@ -341,7 +341,7 @@ class StopAnswers:
         return changed
 
     def disobeying(self) -> list[str]:
-        """Return the robots that were seen to stand and move now, each of them once."""
+        """Return the robots that were seen to stand and now move, each of them once."""
         found = [
             (robot, one)
             for robot, one in self._answers.items()
@@ -352,7 +352,7 @@ class StopAnswers:
         return sorted(robot for robot, _ in found)
 
     def counts(self) -> dict[str, Any]:
-        """Return what an EmergencyReport has of robots, under the names that it has there."""
+        """Return the fields of an EmergencyReport that concern robots, by name."""
         acknowledged, standing = 0, 0
         moving, unheard = [], []
         for robot, one in self._answers.items():
@@ -388,7 +388,7 @@ class StopAnswers:
         return True
 
 
-# --- The remaining way: from where a robot is to the end of its task ---
+# --- Remaining path: from the position of a robot to the end of its task ---
 
 Floats = NDArray[np.float64]
 Point = tuple[float, float]
@@ -401,7 +401,7 @@ _LOOK_AHEAD = 5.0
 
 
 class PlannedPath(NamedTuple):
-    """A path from start to goal, at least two points; ``note`` says where it is not what one would expect.
+    """A path from start to goal, at least two points; ``note`` describes where it is unexpected.
 
     ``along_roads`` is false of a straight line.
     """
@@ -412,7 +412,7 @@ class PlannedPath(NamedTuple):
 
 
 class Planner(Protocol):
-    """Finds a way. Paths begin at ``start`` and end at ``goal``."""
+    """Plans paths. They begin at ``start`` and end at ``goal``."""
 
     @property
     def has_roads(self) -> bool:
@@ -423,7 +423,7 @@ class Planner(Protocol):
 
 
 class StraightPlanner:
-    """Knows no roads: every path is one straight line."""
+    """Planner without roads: every path is one straight line."""
 
     has_roads = False
 
@@ -433,7 +433,7 @@ class StraightPlanner:
 
 
 class RemainingPath(NamedTuple):
-    """What is left of a task, and the planner's note about it."""
+    """The remaining path of a task, and the planner's note about it."""
 
     message: SetPath
     note: str = ""
@@ -442,8 +442,8 @@ class RemainingPath(NamedTuple):
 def remaining_path(task: SetPosEnd | SetPath, start: Point, driven: float, planner: Planner) -> RemainingPath:
     """Return the path from ``start`` to the end of ``task``.
 
-    Of a path that was drawn it is what lies ahead of the first ``driven`` metres. Raises RefusedError when
-    the planner finds no way.
+    Of a drawn path it is the part ahead of the first ``driven`` metres. Raises RefusedError when the planner
+    finds no path.
     """
     if isinstance(task, SetPosEnd):
         planned = planner.path(start, (task.x, task.y))
@@ -453,7 +453,7 @@ def remaining_path(task: SetPosEnd | SetPath, start: Point, driven: float, plann
 
 
 def remaining_line(line: Polyline, start: Point, driven: float) -> Floats:
-    """Return what lies ahead of the first ``driven`` metres of ``line``, from ``start`` on: (n, 2), n > 1."""
+    """Return ``line`` ahead of its first ``driven`` metres, beginning at ``start``: (n, 2), n > 1."""
     here = _joins(line, start, driven)
     corners = line.beyond(here + _SAME)
     return _without_repetition(np.vstack([start, line.at(here), corners if len(corners) else line.end]))
@@ -470,7 +470,7 @@ def _joins(line: Polyline, start: Point, driven: float) -> float:
 
 
 def _without_repetition(points: Floats) -> Floats:
-    """Return ``points`` without those that stand on the one kept before; at least two are kept."""
+    """Return ``points`` without repetitions of the one kept before; at least two are kept."""
     kept, checked = np.ones(len(points), dtype=bool), 0
     near = np.abs(np.diff(points, axis=0)) <= _SAME
     for number in np.flatnonzero(near[:, 0] & near[:, 1]).tolist():

@@ -1,4 +1,4 @@
-"""How parts reach one another: events and who has subscribed, operators' sessions, handlers of requests."""
+"""Communication between parts: events and subscriptions, operators' sessions, request handlers."""
 
 from __future__ import annotations
 
@@ -16,12 +16,12 @@ from ...core.messages.safety import Geofence
 
 log = logging.getLogger(__name__)
 
-# --- What happens inside the gateway ---
+# --- Events inside the gateway ---
 
 
 @dataclass(frozen=True)
 class CommandChanged:
-    """A command has taken a step, which is stored."""
+    """A command has changed its state; the step is stored."""
 
     report: CommandReport
 
@@ -31,7 +31,7 @@ class CommandChanged:
 
 @dataclass(frozen=True)
 class CommandChangedElsewhere:
-    """A command of a robot that another gateway has is, or has come, as far as this."""
+    """The state, changed or repeated, of a command of a robot that another gateway has."""
 
     report: CommandReport
 
@@ -41,7 +41,7 @@ class CommandChangedElsewhere:
 
 @dataclass(frozen=True)
 class OutboxChanged:
-    """There is something new to be delivered to a robot, or nothing of what was."""
+    """Messages to be delivered to a robot were added, or withdrawn."""
 
     robot: str
 
@@ -51,7 +51,7 @@ class OutboxChanged:
 
 @dataclass(frozen=True)
 class ObservationChanged:
-    """An observation is new, or was reviewed; that is stored."""
+    """An observation is new, or was reviewed; this is stored."""
 
     report: ObservationReport
 
@@ -61,7 +61,7 @@ class ObservationChanged:
 
 @dataclass(frozen=True)
 class PlacementChanged:
-    """A cone was put down or collected; that is stored."""
+    """A cone was placed or collected; this is stored."""
 
     report: PlacementReport
 
@@ -71,7 +71,7 @@ class PlacementChanged:
 
 @dataclass(frozen=True)
 class PlanChanged:
-    """A plan was submitted, or is at another revision; that is stored."""
+    """A plan was submitted, or is at another revision; this is stored."""
 
     plan: str
 
@@ -81,7 +81,7 @@ class PlanChanged:
 
 @dataclass(frozen=True)
 class ClosuresChanged:
-    """A road was closed or opened; that is stored, or may be."""
+    """A road was closed or opened; this is stored, or may be."""
 
     def __str__(self) -> str:
         return "the closed roads"
@@ -99,7 +99,7 @@ class QueueChanged:
 
 @dataclass(frozen=True)
 class QueueReported:
-    """Operators of this gateway are told of a robot's queue, which is stored."""
+    """The queue of a robot, which is stored, is reported to operators of this gateway."""
 
     robot: str
 
@@ -109,7 +109,7 @@ class QueueReported:
 
 @dataclass(frozen=True)
 class QueueEditedElsewhere:
-    """The queue of a robot that another gateway has was edited here; that is stored."""
+    """The queue of a robot that another gateway has was edited here; this is stored."""
 
     robot: str
 
@@ -119,7 +119,7 @@ class QueueEditedElsewhere:
 
 @dataclass(frozen=True)
 class RobotReturned:
-    """A robot is heard again that was lost or offline; nobody heard it for ``away_s`` seconds."""
+    """A robot that was lost or offline is received again, after ``away_s`` seconds of silence."""
 
     robot: str
     away_s: float
@@ -130,7 +130,7 @@ class RobotReturned:
 
 @dataclass(frozen=True)
 class RobotClaimed:
-    """A robot that another gateway has says Ready here: it is this gateway's in a moment."""
+    """A robot that another gateway has says Ready here: this gateway is about to take it over."""
 
     robot: str
 
@@ -140,7 +140,7 @@ class RobotClaimed:
 
 @dataclass(frozen=True)
 class RobotsTakenUp:
-    """This gateway has robots that another one had."""
+    """This gateway has taken over robots from another one."""
 
     robots: tuple[str, ...]
 
@@ -150,7 +150,7 @@ class RobotsTakenUp:
 
 @dataclass(frozen=True)
 class RobotLeft:
-    """Another gateway of the fleet has a robot that this one had."""
+    """Another gateway of the fleet has taken over a robot from this one."""
 
     robot: str
     gateway: str
@@ -161,7 +161,7 @@ class RobotLeft:
 
 @dataclass(frozen=True)
 class FenceJudged:
-    """The geofence judged the robots of this gateway: ``report`` is of those alone."""
+    """The geofence judged the robots of this gateway: ``report`` covers only those."""
 
     report: Geofence
 
@@ -182,7 +182,7 @@ class FenceJudgedElsewhere:
 
 @dataclass(frozen=True)
 class StopBegun:
-    """An emergency stop goes out to robots next: whatever takes time had better wait."""
+    """An emergency stop is about to be sent to robots: work that takes time should wait."""
 
     stop: str
 
@@ -192,7 +192,7 @@ class StopBegun:
 
 @dataclass(frozen=True)
 class GatewaysChanged:
-    """The fleet is served by ``gateways``, addresses of which one is new or one is left out."""
+    """The set ``gateways`` of addresses that serve the fleet has changed."""
 
     gateways: frozenset[str]
 
@@ -202,7 +202,7 @@ class GatewaysChanged:
 
 @dataclass(frozen=True)
 class SiteChosen:
-    """A supervisor chose at this gateway which site is served; that is stored."""
+    """A supervisor chose the served site at this gateway; this is stored."""
 
     site: str
 
@@ -214,7 +214,7 @@ Event = TypeVar("Event")
 
 
 class EventBus:
-    """Hands each event to those who subscribed to its class, at once and in the order of subscribing."""
+    """Delivers each event to the subscribers of its class, at once and in the order of subscription."""
 
     def __init__(self) -> None:
         self._subscribers: dict[type, list[Callable[[Any], None]]] = {}
@@ -224,24 +224,24 @@ class EventBus:
         self._subscribers.setdefault(kind, []).append(handler)
 
     def publish(self, event: object) -> None:
-        """Hand ``event`` on; a subscriber that fails is logged, and keeps it from no other."""
+        """Deliver ``event``; a subscriber that fails is logged, and the others still receive it."""
         for handler in self._subscribers.get(type(event), ()):
             with log_and_continue(log, "telling of %s", event):
                 handler(event)
 
 
-# --- What operators are told ---
+# --- Notifications to operators ---
 
 
 class Listener(Protocol):
-    """An operator's session, which hears what happens."""
+    """An operator's session, which receives notifications."""
 
     def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Take note of news; of those with the same method and key only the last counts. Must not block."""
+        """Queue a notification; of those of one method and key only the last counts. Must not block."""
 
 
 class Listeners:
-    """The sessions that hear what happens, such as every step of every command."""
+    """The sessions that receive notifications, such as every step of every command."""
 
     def __init__(self) -> None:
         self._all: set[Listener] = set()
@@ -250,15 +250,15 @@ class Listeners:
         return len(self._all)
 
     def add(self, listener: Listener) -> None:
-        """Have ``listener`` hear from now on what happens."""
+        """Add a listener for notifications."""
         self._all.add(listener)
 
     def discard(self, listener: Listener) -> None:
-        """Have ``listener`` hear nothing more."""
+        """Remove a listener."""
         self._all.discard(listener)
 
     def announce(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Notify every session of what happened; one that fails keeps no other from hearing it.
+        """Notify every session; if one fails, the others are still notified.
 
         See :meth:`Listener.notify`.
         """
@@ -267,18 +267,18 @@ class Listeners:
                 listener.notify(method, key, params)
 
 
-# --- Handlers: which method of a service answers which request of operators ---
+# --- Handlers: the methods of services that answer operators' requests ---
 
 P = ParamSpec("P")
 R = TypeVar("R")
 
 _HANDLED: dict[Any, type[DeskRequest[Any]]] = {}
-"""The kind of request that a function answers, by the function."""
+"""The kind of request that each function answers."""
 
 
 @dataclass(frozen=True)
 class Encoded(Generic[R]):
-    """A result that is JSON values already, as a large one is made once and not copied."""
+    """A result that is already JSON values, so that a large one is made once and not copied."""
 
     values: dict[str, Any]
 
@@ -287,7 +287,7 @@ class handles(Generic[R]):  # noqa: N801 - a decorator
     """Mark the method of a service that answers requests of one kind: ``@handles(PauseRobot)``.
 
     It is a coroutine function that takes the request and the operator's name, or only the request, or nothing
-    where that says nothing. It returns what the request declares as its result.
+    where the request has no fields. It returns the result type that the request declares.
     """
 
     def __init__(self, kind: type[DeskRequest[R]]) -> None:
@@ -302,7 +302,7 @@ class handles(Generic[R]):  # noqa: N801 - a decorator
         self, method: Callable[P, Coroutine[Any, Any, Encoded[R]]]
     ) -> Callable[P, Coroutine[Any, Any, Encoded[R]]]: ...
     def __call__(self, method: Any) -> Any:
-        """Note what ``method`` answers, and return it as it is."""
+        """Register ``method`` for its kind of request, and return it unchanged."""
         _HANDLED[method] = self._kind
         return method
 
@@ -333,7 +333,7 @@ class RequestHandlers:
         self._handlers[kind] = handler, len(inspect.signature(handler).parameters)
 
     def check_complete(self, except_for: Collection[type[DeskRequest[Any]]] = ()) -> None:
-        """Raise TypeError naming the requests that nobody answers."""
+        """Raise TypeError naming the requests without a handler."""
         kinds = set(DESK_REQUESTS.values()) - set(except_for) - self._handlers.keys()
         if kinds:
             raise TypeError(f"nobody answers {', '.join(sorted(kind.method for kind in kinds))}")

@@ -1,4 +1,4 @@
-"""Which robots are in which keepouts and at which obstacles, and since when, with hysteresis; no I/O."""
+"""Stays of robots in keepouts and at obstacles, with their times and hysteresis; no I/O."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from ...core.sites.frame import Points
 from ...core.sites.settings_tables import GeofenceSettings
 
 MARGIN_M = 0.5
-"""Metres beyond the clearance at which a robot has left: positions tremble by some decimetres."""
+"""Metres beyond the clearance at which a robot has left: positions jitter by some decimetres."""
 LEFT_AFTER_S = 2.0
-"""Seconds for which it has to be that far away before it counts as left."""
+"""Seconds for which it must be that far away before it counts as left."""
 Place = tuple[float, float]
 """x, y in metres, site frame."""
 DONE: Collection[StopOutcome] = ("paused", "aborted", "stopped")
@@ -26,7 +26,7 @@ DONE: Collection[StopOutcome] = ("paused", "aborted", "stopped")
 
 
 class StayKey(NamedTuple):
-    """A robot in one area; ``area`` is its id among those of its kind."""
+    """A robot in one area; ``area`` is the id of the area among those of its kind."""
 
     robot: str
     kind: FenceKind
@@ -37,7 +37,7 @@ class StayKey(NamedTuple):
 class Stay:
     """One entry of a robot into an area, at ``place`` and time ``since``, until it has left.
 
-    ``action`` is what has to be done about it, once; ``outcome`` and ``reason`` say what came of that.
+    ``action`` is the action to take on it, once; ``outcome`` and ``reason`` are the result of that.
     """
 
     robot: str
@@ -51,21 +51,21 @@ class Stay:
 
 
 class Clearances(NamedTuple):
-    """Metres from a robot's middle to an area within which it is in it, or at it."""
+    """Metres from the centre of a robot to an area within which it counts as in it, or at it."""
 
     keepout: float
     obstacle: float
 
     @classmethod
     def of(cls, settings: GeofenceSettings, radius: float) -> Clearances:
-        """Return the clearances that a site sets, for robots of ``radius`` metres."""
+        """Return the clearances that a site sets, for robots with a radius of ``radius`` metres."""
         obstacle = settings.obstacle_clearance_m
         return cls(settings.keepout_clearance_m, radius if obstacle is None else obstacle)
 
 
 class FoundStays(NamedTuple):
-    """Robots that were ``judged``; those ``inside`` an area, with the areas and its number among them, and
-    ``places`` of those, and those still ``near`` one."""
+    """Robots that were ``judged``; those ``inside`` an area, with the areas and its number among them;
+    the ``places`` of those; and those still ``near`` one."""
 
     judged: AbstractSet[str]
     places: dict[str, Place]
@@ -74,7 +74,7 @@ class FoundStays(NamedTuple):
 
 
 class StayChanges(NamedTuple):
-    """What one look changed."""
+    """Changes by one update of :class:`Stays`."""
 
     entered: list[Stay]
     ended: list[Stay]
@@ -100,18 +100,18 @@ class Stays:
         return len(self._stays)
 
     def begin_publication(self) -> None:
-        """Expect other areas from the next look on, at which every robot has to be judged.
+        """Expect other areas from the next update on, in which every robot must be judged.
 
-        A robot that is then in an area of the same kind and name goes on with the stay that it had.
+        A robot that is then in an area of the same kind and name continues its earlier stay.
         """
         self._earlier.update({(stay.robot, stay.kind, stay.name): stay for stay in self})
         self._stays.clear()
         self._outside_since.clear()
 
     def update(self, found: FoundStays, settings: GeofenceSettings, now: float) -> StayChanges:
-        """Take in what was found of some robots; the others are where they were."""
+        """Apply the findings on some robots; the others are where they were."""
         entered = []
-        # All names before any stay: one that began, and of which nobody hears, would never be acted upon.
+        # All names before any stay: one that began and is not returned would never be acted upon.
         new = sorted(found.inside.keys() - self._stays.keys())
         names = {key: areas.name(area) for key in new for areas, area in [found.inside[key]]}
         for key, name in names.items():
@@ -124,7 +124,7 @@ class Stays:
         return StayChanges(entered, ended)
 
     def forget(self, robots: Iterable[str]) -> list[Stay]:
-        """End the stays of robots that nobody judges here any more, and return them."""
+        """End the stays of robots that are no longer judged here, and return them."""
         gone = set(robots)
         keys = [key for key in self._stays if key.robot in gone]
         for key in keys:
@@ -132,13 +132,13 @@ class Stays:
         return [self._stays.pop(key) for key in keys]
 
     def holds(self, stay: Stay) -> bool:
-        """Tell whether a stay goes on."""
+        """Return whether a stay continues."""
         return any(one is stay for one in self)
 
     def _begin(
         self, key: StayKey, name: str, place: Place, settings: GeofenceSettings, now: float
     ) -> Stay | None:
-        """Begin a stay and return it, None where it is one that goes on in a new publication."""
+        """Begin a stay and return it, None where it continues one of the earlier publication."""
         known = self._earlier.pop((key.robot, key.kind, name), None)
         if known is not None:
             self._stays[key] = known
@@ -164,7 +164,7 @@ class Stays:
 
 
 def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances: Clearances) -> FoundStays:
-    """Return in which areas ``robots`` at ``places``, (n, 2) metres in the site frame, are; in any thread."""
+    """Find the areas that ``robots`` are in; ``places`` (n, 2), metres in the site frame; in any thread."""
     inside: dict[StayKey, tuple[FencedAreas, int]] = {}
     near: set[StayKey] = set()
     at: dict[str, Place] = {}
@@ -189,6 +189,6 @@ def find_stays(robots: Sequence[str], places: Points, fences: Fences, clearances
 
 
 def finite_places(places: Points) -> NDArray[np.bool_]:
-    """Tell which of ``places``, (n, 2), are places: numbers, all of them finite."""
+    """Return which of ``places``, (n, 2), are valid: all their numbers finite."""
     rows: NDArray[np.bool_] = np.isfinite(places).all(axis=1)
     return rows

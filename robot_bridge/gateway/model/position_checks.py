@@ -1,4 +1,4 @@
-"""Reported positions: which are believed, what late ones tell, and the course where none is reported."""
+"""Checks of reported positions: plausibility, late ones, their age, and the course over ground."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from ...core.messages.robots import SendGPS, SendPos
 from ...core.sites.frame import SiteBounds
 from ...core.sites.settings import SettingsSource, SiteSettings
 
-# --- Whether a robot may be where it says that it is: not far from its site, nor in a leap from where it was
+# --- Plausibility of a reported position: not far from the site, and no leap from the last one
 
 BELIEVED_AFTER = 3.0
-"""seconds of places beside one another, and of none where the robot was, after which a leap is believed: it
-was carried, or its localisation found itself."""
+"""seconds of consecutive positions near one another, and none near the last believed one, after which a leap
+is believed: the robot was carried, or its localisation recovered."""
 NO_FIX = (
     "SendGPS: lat and lon are both 0, as receivers say without a fix; the robot keeps its last place. Send "
     "Alive until there is a fix"
@@ -29,7 +29,7 @@ STANDING_SPEED = 0.05
 
 @dataclass
 class Leap:
-    """Where a robot says to be since ``since`` without being believed, last at ``at``; gateway's seconds."""
+    """A position reported since ``since`` and not believed, last at ``at``; gateway's seconds."""
 
     place: Place
     since: float
@@ -37,8 +37,8 @@ class Leap:
 
 
 class AcceptedArea(NamedTuple):
-    """Where a place needs no second look: within limits of the site frame, and a ``step`` along each axis
-    from where the robot was a moment ago; metres.
+    """Area in which a position needs no further checks: within limits of the site frame, and at most ``step``
+    along each axis from where the robot was a moment ago; metres.
     """
 
     x_min: float
@@ -49,7 +49,7 @@ class AcceptedArea(NamedTuple):
 
 
 class PlacedRobot(Protocol):
-    """What has to be known of a robot: its newest pose, when that came, and whether it is of this run."""
+    """Required data of a robot: its newest pose, the time of that, and whether it is of this run."""
 
     name: str
     pose: SendPos | None
@@ -58,7 +58,7 @@ class PlacedRobot(Protocol):
 
 
 class PlaceChecks:
-    """Judges the places that robots say; it keeps for each robot the leap that is not believed yet."""
+    """Checks the positions that robots report; keeps for each robot the leap that is not believed yet."""
 
     def __init__(self, site: SettingsSource) -> None:
         self._site = site
@@ -67,7 +67,7 @@ class PlaceChecks:
         self._near = AcceptedArea(math.inf, math.inf, -math.inf, -math.inf, 0.0)
 
     def fault(self, robot: PlacedRobot, place: Place, now: float) -> str | None:
-        """Return why the robot is not at ``place``, metres in the site frame, None where it may be there."""
+        """Return why the robot cannot be at ``place``, metres in the site frame, None if it can."""
         settings = self._site.settings
         limits = settings.limits
         beyond = distance_beyond(place, settings.bounds)
@@ -87,7 +87,7 @@ class PlaceChecks:
         return self._leap(robot, here, place, now, limits.leap_m)
 
     def near(self) -> AcceptedArea:
-        """Return where the place of a robot that is believed needs no second look."""
+        """Return the area in which a believed robot's position needs no further checks."""
         settings = self._site.settings
         if settings is not self._near_by:
             bounds, limits = settings.bounds, settings.limits
@@ -118,7 +118,7 @@ class PlaceChecks:
 
 
 def distance_beyond(place: Place, bounds: SiteBounds) -> float:
-    """Return how many metres (x, y) lies outside ``bounds``, 0 or less inside; the larger of x and y."""
+    """Return the metres by which (x, y) lies outside ``bounds``, 0 or less inside; the larger of x and y."""
     x, y = place
     return max(bounds.x_min - x, x - bounds.x_max, bounds.y_min - y, y - bounds.y_max)
 
@@ -127,7 +127,7 @@ def _reach(leap_m: float, since: float, now: float) -> float:
     return leap_m + SPEED[1] * max(now - since, 0.0)
 
 
-# --- Late poses of a robot: whether they tell that its clock was set back ---
+# --- Late poses of a robot as a sign that its clock was set back ---
 
 CLOCK_SET_BACK_AFTER = 3.0
 """seconds of nothing but late poses, on the link of the newest one and at the pace of a clock, after which
@@ -136,8 +136,8 @@ LONGEST_DELAY = 30.0
 """seconds of nothing but late poses after which they count whatever their pace and link: no link holds
 messages back for longer, and a robot must not stand still on the map for ever."""
 PACE = (0.5, 1.5)
-"""seconds of the robot's clock for each second of the gateway's that still pass for a clock; what was kept
-back and is now sent in one go comes faster."""
+"""seconds of the robot's clock for each second of the gateway's that are plausible for a clock; messages
+held back and then sent all at once come faster."""
 
 
 @dataclass
@@ -149,10 +149,10 @@ class LatePoses:
     paced_stamp: float
 
     def show_set_back(self, stamp: float, now: float, *, same_link: bool) -> bool:
-        """Tell whether poses have been late for so long that it must be the robot's clock.
+        """Return whether poses have been late for so long that the robot's clock must have been set back.
 
-        ``stamp`` is that of one more, by the robot's clock; ``same_link`` whether it came on the link of the
-        newest pose. ``now`` is the gateway's clock, seconds.
+        ``stamp`` is that of a further pose, by the robot's clock; ``same_link`` whether it came on the link
+        of the newest pose. ``now`` is the gateway's clock, seconds.
         """
         if now - self.since >= LONGEST_DELAY:
             return True
@@ -165,18 +165,18 @@ class LatePoses:
         return False
 
 
-# --- How old a position is that a robot gives a time, whatever its clock says ---
+# --- Age of a stamped position, independent of the offset of the robot's clock ---
 
 TIME_OF_DAY = 1e9
-"""seconds since 1970, in 2001: a stamp before is no time of day. It may be simulated time, which passes
-faster or slower, so it tells the order of positions and not their age."""
+"""seconds since 1970, in 2001: an earlier stamp is no time of day. It may be simulated time, which passes
+faster or slower, so it gives the order of positions and not their age."""
 DRIFT = 1e-3
-"""seconds that a robot's clock may lose in a second: ten times what the worst quartz does."""
+"""seconds that a robot's clock may lose in a second: ten times the drift of the worst quartz."""
 
 
 @dataclass(slots=True)
 class StampAge:
-    """How much older positions are than the timeliest one was, by stamps of one clock that may be wrong.
+    """Age of positions in excess of the least delayed one, by stamps of one clock that may be wrong.
 
     ``least`` is the smallest difference seen between the gateway's clock and the stamps, at time ``at``; both
     seconds.
@@ -203,7 +203,7 @@ class StampAge:
         self.least = math.inf
 
 
-# --- Which pose of a robot is newest: by the time of its fix, else by the robot's clock, else as they come
+# --- Order of poses of a robot: by the time of the fix, else by the robot's clock, else by arrival
 
 
 @dataclass
@@ -220,7 +220,7 @@ class PoseOrder:
     _by_t: StampAge = field(default_factory=StampAge)
 
     def admit(self, fix_t: float | None, t: float | None, link: str, now: float) -> bool:
-        """Tell whether a pose with these stamps counts, and take it for the newest if so.
+        """Return whether a pose with these stamps counts, and record it as the newest if so.
 
         ``now`` is the gateway's clock, seconds. A pose is late when its fix is older than that of the newest,
         or as old and sent earlier; where one of the two has no fix time, when it was sent earlier. A pose
@@ -243,12 +243,12 @@ class PoseOrder:
         return True
 
     def restarted(self) -> None:
-        """Forget the robot's own clock: a robot that started again may count from nought."""
+        """Forget the robot's own clock: a robot that restarted may count from zero."""
         self.t = self._late = None
         self.clock_was_set()
 
     def clock_was_set(self) -> None:
-        """Forget how the robot's clocks and the gateway's differ: one of them was set."""
+        """Forget the offsets of the robot's clocks from the gateway's: one of them was set."""
         self._by_fix.forget()
         self._by_t.forget()
 
@@ -265,21 +265,21 @@ class PoseOrder:
         return self._late.show_set_back(stamp, now, same_link=link == self.link)
 
 
-# --- Course and speed over ground, for robots whose GPS says only where they are ---
+# --- Course and speed over ground, for robots whose GPS reports only positions ---
 
 LEAST_MOVE = 0.5
-"""metres below which a move tells no course; more where the robot says that its fixes are worse."""
+"""metres below which a move gives no course; more where the robot reports less accurate fixes."""
 STANDS_AFTER = 2.0
 """seconds without such a move after which the robot counts as standing."""
 _SHORTEST = 0.01
-"""seconds between two fixes that are told apart, so that a speed is always finite."""
+"""least seconds assumed between two fixes, so that a speed is always finite."""
 
 Source = Literal["course", "last", "unknown"]
 
 
 @dataclass
 class GroundTrack:
-    """One robot's last fix that told a course: x, y in metres, seconds, theta in radians, v in m/s."""
+    """One robot's last fix that gave a course: x, y in metres, seconds, theta in radians, v in m/s."""
 
     x: float
     y: float
@@ -288,7 +288,7 @@ class GroundTrack:
     v: float = 0.0
 
     def follow(self, x: float, y: float, at: float, accuracy: float | None) -> None:
-        """Take in a fix: what moved less than it may be wrong by has not been seen to move."""
+        """Apply a fix: a move smaller than the accuracy of the fix is not counted as a move."""
         move = math.hypot(x - self.x, y - self.y)
         if move > max(LEAST_MOVE, accuracy or 0.0):
             self.v = move / max(at - self.at, _SHORTEST)
@@ -299,7 +299,7 @@ class GroundTrack:
 
 
 class GroundTracks:
-    """Makes poses of GPS fixes. What a fix leaves open is told from where the robot was before."""
+    """Makes poses of GPS fixes. Missing fields are derived from the robot's earlier positions."""
 
     def __init__(self) -> None:
         self._tracks: dict[str, GroundTrack] = {}
@@ -321,10 +321,10 @@ class GroundTracks:
         """
         x, y = place
         at = next(time for time in (fix.fix_t, fix.t, now) if time is not None)
-        # Until two fixes tell how fast it is it goes as it did: one that drove has not been seen to stand.
+        # Until two fixes give its speed it keeps the last one: a robot that drove was not seen to stand.
         track = self._tracks.setdefault(robot, GroundTrack(x, y, at, v=0.0 if last is None else last.v))
         if at < track.at:
-            # A clock that was set back tells no speed; the track begins again.
+            # A clock that was set back gives no speed; the track begins again.
             track = self._tracks[robot] = GroundTrack(x, y, at, track.theta)
         track.follow(x, y, at, fix.accuracy)
         turned, source = (theta, None) if theta is not None else _direction(track, last)

@@ -1,7 +1,7 @@
-"""Robots in columns: thousands are judged at once, and taken in at once where other gateways tell of theirs.
+"""Robots in columns, to evaluate thousands at once and to apply reports of other gateways at once.
 
-No I/O. Of a robot of this gateway a row repeats what its :class:`.Robot` says. One of another gateway is what
-its row says: :class:`.Robots` makes a :class:`.Robot` of that when somebody asks for it.
+No I/O. The row of a robot of this gateway repeats its :class:`.Robot`. The row of one of another gateway is
+the original: :class:`.Robots` makes a :class:`.Robot` of it when one is read.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from ...core.messages.safety import PathDeclaration, RobotState
 from .position_checks import STANDING_SPEED
 
 ENDED, LOCATED, ONLY_SEEN, DOUBTED, HEARD_SINCE = 1, 2, 4, 8, 16
-"""Flags of a robot: it said Stopped or ended in good order, has said where it is since its Ready, is only
-seen, the place that it said last is not believed, and it has said more since it said Stopped. Whether its
-place is believed comes with its details."""
+"""Flags of a robot: it said Stopped or ended in good order, has reported its position since its Ready, is
+only seen, its last reported position is not believed, and it has sent a message since Stopped. Whether its
+position is believed is reported with its details."""
 REPORTED_FLAGS = ENDED | LOCATED | ONLY_SEEN | HEARD_SINCE
 X, Y, V, POSE_AT, RECEIVED_AT, BATTERY, ACCURACY = 0, 1, 3, 4, 5, 6, 7
-"""Numbers of a robot: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's clock, 0 to 1,
-and m, which other gateways do not tell."""
+"""Rows of the table of numbers: x, y (m, site frame), theta (rad), v (m/s), two times by this computer's
+clock, battery (0 to 1), and accuracy (m), which other gateways do not report."""
 NUMBERS = 8
 REPORTED_NUMBERS = 6
-"""numbers of a robot in a message, the first of those; in place of times there are seconds since."""
+"""count of numbers of a robot in a message, the first of those; ages in seconds in place of times."""
 _THETA = 2
 _OF_A_POSE = ("x", "y", "theta", "v", "battery", "status")
-"""What is known of the pose of a robot of another gateway."""
+"""Known fields of the pose of a robot of another gateway."""
 STATES = tuple(RobotState)
 """States by their codes."""
 _CODES = {state: code for code, state in enumerate(STATES)}
@@ -51,10 +51,10 @@ Counts = npt.NDArray[np.int64]
 def liveness(
     age: float, *, ended_in_order: bool, stale_after: float = 3.0, lost_after: float = 10.0
 ) -> RobotState:
-    """Return the state of a robot whose last message is ``age`` seconds old.
+    """Return the state of a robot with a last message ``age`` seconds old.
 
     ``ended_in_order`` is true when the robot said Stopped and nothing since, or closed its link in good
-    order: silence is expected of it then, so it goes offline where another would be lost.
+    order: silence is expected then, so it goes offline where another would be lost.
     """
     if age < stale_after:
         return RobotState.FRESH
@@ -66,17 +66,17 @@ def liveness(
 def state_codes(
     ages: Numbers, ended_in_order: npt.NDArray[np.bool_], stale_after: float, lost_after: float
 ) -> Flags:
-    """Return the codes of what :func:`liveness` says of many robots."""
+    """Return the codes of the states of many robots, as :func:`liveness`."""
     silent = np.where(ended_in_order, OFFLINE, np.where(ages < lost_after, STALE, LOST))
     return np.where(ages < stale_after, FRESH, silent).astype(np.uint8)
 
 
 class ReportedElsewhere(NamedTuple):
-    """What another gateway says of n of its robots.
+    """Report of another gateway on n of its robots.
 
-    ``ids`` (n,) are the numbers by which run ``run`` of that gateway knows them; ``names`` are those of the
-    first of them, the others were named before. ``table`` is (n, :data:`REPORTED_NUMBERS`), NaN where there
-    is nothing; ``wall`` the time by this computer's clock since which its ages count, and ``flags`` (n,).
+    ``ids`` (n,) are their numbers in run ``run`` of that gateway; ``names`` are the names of the first of
+    them, the others were named before. ``table`` is (n, :data:`REPORTED_NUMBERS`), NaN where there is
+    nothing; ``wall`` the time by this computer's clock since which its ages count, and ``flags`` (n,).
     """
 
     gateway: str
@@ -88,13 +88,13 @@ class ReportedElsewhere(NamedTuple):
     wall: float
 
     def only(self, rows: Sequence[int]) -> ReportedElsewhere:
-        """Return what is said of some of the robots that are named."""
+        """Return the part of the report on some of the named robots."""
         names, ids = [self.names[row] for row in rows], self.ids[rows]
         return self._replace(ids=ids, names=names, table=self.table[rows], flags=self.flags[rows])
 
 
 class DescribedElsewhere(NamedTuple):
-    """What another gateway says of a robot when it has changed, as a :class:`Robot` and its pose have it."""
+    """Details of a robot, reported by another gateway on change, as in a :class:`.Robot` and its pose."""
 
     battery: float | None
     status: str | None
@@ -106,7 +106,7 @@ class DescribedElsewhere(NamedTuple):
 
 
 class RobotPlaces(NamedTuple):
-    """Where n robots are: ``table`` is (:data:`NUMBERS`, n), NaN where nothing is known; the rest (n,)."""
+    """Positions of n robots: ``table`` is (:data:`NUMBERS`, n), NaN where unknown; the rest (n,)."""
 
     names: list[str]
     table: Numbers
@@ -114,13 +114,13 @@ class RobotPlaces(NamedTuple):
     flags: Flags
 
     def are_placed(self) -> npt.NDArray[np.bool_]:
-        """Tell of each whether it is known where it is now: see :attr:`.Robot.is_placed`."""
+        """Return for each whether its present position is known: see :attr:`.Robot.is_placed`."""
         placed: npt.NDArray[np.bool_] = (self.flags & (LOCATED | DOUBTED)) == LOCATED
         placed &= self.states == FRESH
         return placed
 
     def join(self, other: RobotPlaces) -> RobotPlaces:
-        """Return these robots, and the others behind them."""
+        """Return these robots followed by the others."""
         return RobotPlaces(
             self.names + other.names,
             np.concatenate([self.table, other.table], axis=1),
@@ -147,17 +147,17 @@ class RobotRecord(Protocol):
 
 
 class Numbering:
-    """In which row the robot is that a run of a gateway knows by a number."""
+    """Rows of robots by the numbers that a run of another gateway gives them."""
 
     def __init__(self, run: int) -> None:
         self.run = run
         self._rows = np.empty(0, dtype=np.intp)
         self._lives = np.empty(0, dtype=np.int64)
-        """-1 of a number that was not named."""
+        """-1 for a number that was not named."""
 
     def name(self, ids: Rows, rows: Rows, lives: Counts) -> None:
-        """Note the rows of robots, below 0 where they have none, and which use of each row it is; of those
-        without a row, how many had been given out."""
+        """Record the rows of robots, below 0 where they have none, and in ``lives`` which use of each row it
+        is; for those without a row, the number of rows given out so far."""
         self._grow(ids)
         self._rows[ids], self._lives[ids] = rows, lives
 
@@ -171,13 +171,13 @@ class Numbering:
         except IndexError:
             self._grow(ids)
             rows, then = self._rows[ids], self._lives[ids]
-        # A row that has another robot since is not its any more; one that had no row may have got one.
+        # A row may have another robot by now; a robot without a row may have got one.
         stale = then != np.where(rows >= 0, lives[rows] if len(lives) else -1, given)
         rows[stale] = -1
         return rows, not stale.any()
 
     def _grow(self, ids: Rows) -> None:
-        """Have room for numbers, which nobody has named yet."""
+        """Make room for numbers that are not named yet."""
         missing = int(ids.max(initial=-1)) + 1 - len(self._rows)
         if missing > 0:
             self._rows = np.concatenate([self._rows, np.full(missing + _SPARE, -1, np.intp)])
@@ -185,8 +185,8 @@ class Numbering:
 
 
 class Observed(NamedTuple):
-    """What came of observing: the newest revision, those of the named robots that have no row, and whether
-    all others were named before."""
+    """Outcome of :meth:`RobotColumns.observe`: the newest revision, the named robots without a row, and
+    whether all others were named before."""
 
     revision: int
     missing: list[int]
@@ -194,7 +194,7 @@ class Observed(NamedTuple):
 
 
 class RobotRows(NamedTuple):
-    """The rows of those of some robots that have one, and their ``places`` among all; both (n,).
+    """Rows of those of some robots that have one, and their ``places`` among all of these; both (n,).
 
     They hold while the :attr:`~RobotColumns.layout` is the same.
     """
@@ -205,7 +205,7 @@ class RobotRows(NamedTuple):
 
 
 class RobotColumns:
-    """Robots by row; a row whose robot is gone is used again."""
+    """Robots by row; the row of a removed robot is used again."""
 
     def __init__(self) -> None:
         self._rows: dict[str, int] = {}
@@ -215,20 +215,20 @@ class RobotColumns:
         self._numberings: dict[str, Numbering] = {}
         self._numbers = np.empty((NUMBERS, 0))
         self._cells: list[Any] = []
-        """numbers of a place, and revisions, in which one is written faster than in an array."""
+        """views of the position columns and of the revisions: faster than arrays to write a single value."""
         self._flags = np.empty(0, dtype=np.uint8)
         self._states = np.empty(0, dtype=np.uint8)
         self._owners = np.empty(0, dtype=np.int32)
         self._revisions = np.empty(0, dtype=np.int64)
-        """-1 of a row that is free."""
+        """-1 for a free row."""
         self._lives = np.empty(0, dtype=np.int64)
         """how often each row has been free."""
         self._given = 0
-        """how many rows were given to robots."""
+        """number of rows given to robots so far."""
         self._all: tuple[int, Rows, list[str]] = -1, np.empty(0, np.intp), []
         """the layout, and the rows and names of all robots in it."""
         self.layout = 0
-        """how often a robot was given a row, or lost it."""
+        """number of times that a robot was given a row, or lost it."""
 
     def __contains__(self, name: str) -> bool:
         return name in self._rows
@@ -237,13 +237,13 @@ class RobotColumns:
         return len(self._rows)
 
     def names(self) -> list[str]:
-        """Return the names of all."""
+        """Return the names of all robots."""
         return list(self._rows)
 
     # --- One robot ---
 
     def write(self, robot: RobotRecord) -> None:
-        """Write all that is known of a robot into its row."""
+        """Write all known data of a robot into its row."""
         row = self._rows.get(robot.name)
         if row is None:
             row = self._new_row(robot.name)
@@ -264,7 +264,7 @@ class RobotColumns:
         self._revisions[row] = robot.revision
 
     def move(self, name: str, pose: SendPos, pose_at: float, at: float, revision: int) -> None:
-        """Write where a robot with a row was at time ``pose_at``, heard at ``at``; all else is as it was."""
+        """Write the pose of a robot with a row at time ``pose_at``, received at ``at``; nothing else."""
         row = self._rows[name]
         x, y, theta, v, pose_times, received_at, revisions = self._cells
         x[row], y[row], theta[row], v[row] = pose.x, pose.y, pose.theta, pose.v
@@ -272,7 +272,7 @@ class RobotColumns:
         revisions[row] = revision
 
     def remove(self, name: str) -> None:
-        """Have no row of a robot any more."""
+        """Remove the row of a robot."""
         row = self._rows.pop(name, None)
         if row is not None:
             self._revisions[row] = -1
@@ -281,39 +281,39 @@ class RobotColumns:
             self.layout += 1
 
     def describe(self, name: str, battery: float | None, flags: int, revision: int) -> None:
-        """Write what changes seldom of a robot that has a row; ``flags`` are whether it is only seen, and its
-        place not believed."""
+        """Write the rarely changing data of a robot with a row; ``flags`` are whether it is only seen, and
+        its position not believed."""
         row = self._rows[name]
         self._numbers[BATTERY, row] = math.nan if battery is None else battery
         self._flags[row] = int(self._flags[row]) & (ENDED | LOCATED | HEARD_SINCE) | flags
         self._revisions[row] = revision
 
     def find(self, names: Sequence[str]) -> RobotRows:
-        """Return the rows of those of ``names`` that have one."""
+        """Return the rows of the robots of ``names`` that have one."""
         rows = np.array([self._rows.get(name, -1) for name in names], dtype=np.intp)
         places = np.flatnonzero(rows >= 0)
         return RobotRows(rows[places], places, self.layout)
 
     def changed_places(self, robots: RobotRows, since: int) -> Rows:
-        """Return the places of those that changed after revision ``since``."""
+        """Return the ``places`` of those that changed after revision ``since``."""
         return robots.places[self._revisions[robots.rows] > since]
 
     def has_changed(self, robot: RobotRecord) -> bool:
-        """Tell whether a robot with a row is not as that says."""
+        """Return whether a robot with a row differs from it."""
         return bool(self._revisions[self._rows[robot.name]] != robot.revision)
 
     # --- Many ---
 
     def observe(self, report: ReportedElsewhere, revision: int) -> Observed:
-        """Take in what a gateway says of the robots that are known as its own; each gets a revision after
+        """Apply the report of a gateway to the robots that are known as its own; each gets a revision after
         ``revision``."""
         rows, all_named = self._rows_of(report)
-        # Column by column throughout: what goes over rows of a table takes four times as long.
+        # Column by column throughout: row by row takes four times as long.
         columns = report.table.T.astype(np.float64, order="C")
-        heard = np.isfinite(columns[RECEIVED_AT])
+        received = np.isfinite(columns[RECEIVED_AT])
         named = len(report.names)
-        missing = np.flatnonzero((rows[:named] < 0) & heard[:named]).tolist()
-        counts = (rows >= 0) & heard
+        missing = np.flatnonzero((rows[:named] < 0) & received[:named]).tolist()
+        counts = (rows >= 0) & received
         counts[counts] = self._owners[rows[counts]] == self._owner(report.gateway)
         placed = counts & np.isfinite(columns[POSE_AT])
         placed &= (np.abs(columns[: len(_LARGEST)]) <= _LARGEST).all(axis=0)
@@ -349,7 +349,7 @@ class RobotColumns:
     def renew(
         self, robots: Sequence[RobotRecord], details: Mapping[str, tuple[float | None, str | None]]
     ) -> None:
-        """Bring ``robots``, which have rows, up to those; ``details`` are battery and status by name."""
+        """Update ``robots`` from their rows; ``details`` are battery and status by name."""
         rows = np.array([self._rows[robot.name] for robot in robots], dtype=np.intp)
         revisions = self._revisions[rows]
         changed = np.flatnonzero(revisions != np.array([robot.revision for robot in robots], np.int64))
@@ -367,13 +367,13 @@ class RobotColumns:
                 robot.pose_at = None
                 continue
             robot.pose_at = None if math.isnan(pose_at) else pose_at
-            # What changes seldom comes by itself.
+            # Rarely changing data are reported separately.
             robot.pose = SendPos.of_checked(
                 _OF_A_POSE, (x, y, theta, v, *details.get(robot.name, (None, None)))
             )
 
     def age(self, now: float, stale_after: float, lost_after: float, revision: int) -> int:
-        """Bring the states of all up to ``now``; returns the newest revision after ``revision``."""
+        """Update the states of all to ``now``; return the newest revision after ``revision``."""
         times = self._numbers[RECEIVED_AT]
         np.minimum(times, now, out=times)
         states = self._states_at(now, stale_after, lost_after)
@@ -382,41 +382,41 @@ class RobotColumns:
         return self._changed(rows, revision)
 
     def outdated(self, now: float, stale_after: float, lost_after: float) -> list[str]:
-        """Return the names of those whose states are not up to ``now``, or that were heard later."""
+        """Return the names of robots with a state that is outdated at ``now``, or last received later."""
         is_outdated = self._states_at(now, stale_after, lost_after) != self._states
         is_outdated |= self._numbers[RECEIVED_AT] > now
         return self._named(np.flatnonzero(is_outdated & (self._revisions >= 0)))
 
     def driving_unseen(self, since: float) -> list[str]:
-        """Return the names of those that are fresh, and have not said where they are after ``since``, when
-        they drove. Those whose place is doubted, or not known since their Ready, are not among them."""
-        # A row that has no robot, or a robot that has no place, is NaN there.
+        """Return the names of fresh robots that were driving at their last report of a position, at ``since``
+        or before. Robots with a doubted position, or none since their Ready, are left out."""
+        # A row without a robot, or with a robot without a position, is NaN there.
         unseen = (self._numbers[POSE_AT] <= since) & (np.abs(self._numbers[V]) > STANDING_SPEED)
         unseen &= (self._states == FRESH) & ((self._flags & (LOCATED | ENDED | DOUBTED)) == LOCATED)
         return self._named(np.flatnonzero(unseen & (self._revisions >= 0)))
 
     def move_times(self, step: ClockStep) -> None:
-        """Keep the times since robots were heard when the clock was set."""
+        """Keep the ages of messages when the clock was set."""
         times = self._numbers[[POSE_AT, RECEIVED_AT]].tolist()
         self._numbers[[POSE_AT, RECEIVED_AT]] = [[step.moved(at) for at in row] for row in times]
 
     def changed(self, since: int) -> list[str]:
-        """Return the names of those that changed after revision ``since``."""
+        """Return the names of the robots that changed after revision ``since``."""
         return self._named(np.flatnonzero(self._revisions > since))
 
     def only_seen(self) -> list[str]:
-        """Return the names of those that are only seen."""
+        """Return the names of the robots that are only seen."""
         return self._named(np.flatnonzero(self._are_only_seen()))
 
     def count_only_seen(self) -> int:
-        """Return how many are only seen."""
+        """Return the number of robots that are only seen."""
         return int(np.count_nonzero(self._are_only_seen()))
 
     def _are_only_seen(self) -> npt.NDArray[np.bool_]:
         return ((self._flags & ONLY_SEEN) > 0) & (self._revisions >= 0)
 
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
-        """Return where those are that changed after revision ``since``, but for robots of some gateways."""
+        """Return the positions of robots that changed after ``since``, except of gateways ``without``."""
         rows, names = self._everybody() if since < 0 else (np.flatnonzero(self._revisions > since), None)
         if without:
             left_out = [self._owner(gateway) for gateway in without]

@@ -1,4 +1,4 @@
-"""Robots as known now: poses, clocks, liveness, latency of their links; no I/O."""
+"""Current state of robots: poses, clocks, liveness, link latency; no I/O."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ from .robot_columns import (
     liveness,
 )
 
-# --- The robots as known now: poses, clocks, liveness and link latency; no I/O ---
-# Three clocks are kept apart: the robot's (``t`` of a pose), that of the fix (``fix_t``), and the gateway's,
+# --- Current state of robots: poses, clocks, liveness and link latency; no I/O ---
+# Three clocks are distinguished: the robot's (``t`` of a pose), that of the fix (``fix_t``), the gateway's,
 # by which alone a robot is fresh, stale or lost.
 
 RobotPose = tuple[str, SendPos]
@@ -42,24 +42,24 @@ OLD = (
 UNSEEN = (
     "it was driving when it said its position last, and has said none for {:g} s. The robot may be elsewhere"
 )
-"""Why a robot may not be where it is shown, after so many seconds."""
+"""Reason why a robot may not be where it is shown, after so many seconds."""
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
-"""States of robots that cannot be told anything."""
+"""States of robots that no message can reach."""
 
 
 @dataclass
 class Robot:
-    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` when it had its pose.
+    """One robot. ``received_at`` is the gateway's time of its last message, ``pose_at`` the time of its pose.
 
-    ``latency`` is the seconds that its link took there and back when that was last measured. ``paths`` is
-    what its last Ready declared, to this gateway or to an earlier one. ``located`` is true once it has said
-    where it is since its last Ready: until then its pose is what was stored of it, or what it was before its
-    link broke, and it may have driven on unseen. ``doubt`` is why it may not be where its pose is.
-    ``says_magic`` is true once this run has said its number with a message. ``abilities`` are what
-    it can do with spaces between them, None for everything. ``described`` is the revision since which more of
-    it may have changed than where it is. ``gateway`` is the other gateway of the fleet that has it, None for
-    this one: all else is what that one tells then. ``ended_in_order`` is true from when it says Stopped until
-    it drives, and once it closed its link in good order; with ``heard_since`` it has said more after that.
+    ``latency`` is the round-trip time of its link in seconds, when last measured. ``paths`` is the
+    declaration in its last Ready, to this gateway or to an earlier one. ``located`` is true once it has
+    reported its position since its last Ready: until then its pose is the stored one, or the one before its
+    link broke, and it may have driven on unseen. ``doubt`` is the reason why it may not be at its pose.
+    ``says_magic`` is true once this run has sent its magic number with a message. ``abilities`` are its
+    abilities separated by spaces, None for all. ``described`` is the last revision at which more than its
+    position may have changed. ``gateway`` is the other gateway of the fleet that has it, None for this one;
+    all other fields are then as that gateway reports them. ``ended_in_order`` is true from Stopped until it
+    drives, and once it closed its link in good order; ``heard_since``: it has sent a message after that.
     """
 
     name: str
@@ -85,7 +85,7 @@ class Robot:
 
     @property
     def asks_path(self) -> bool:
-        """Whether it declared that it asks for its path to every target, and does not drive before."""
+        """Whether it declared that it requests its path to every target, and does not drive before."""
         return self.paths in ("asks", "asks and cones")
 
     @property
@@ -95,18 +95,18 @@ class Robot:
 
     @property
     def is_placed(self) -> bool:
-        """Whether it is known where it is now: it is heard, and has said so since its last Ready, and is
-        believed. What is known of others is where they were: they may have driven on unseen.
+        """Whether its present position is known: it is FRESH, has reported a position since its last Ready,
+        and is believed. Of others only a past position is known: they may have driven on unseen.
         """
         return self.located and self.state is RobotState.FRESH and self.doubt is None
 
     def can(self, ability: Ability) -> bool:
-        """Tell whether it did not declare that it cannot do this."""
+        """Return whether it has ``ability``: it has all where it declared none."""
         return self.abilities is None or ability in self.abilities.split()
 
 
 class RobotSelection(NamedTuple):
-    """Some robots by name, found once where it is asked often which of them have changed."""
+    """Some robots by name, looked up once for repeated queries of which of them have changed."""
 
     names: Sequence[str]
     own: RobotRows
@@ -114,7 +114,7 @@ class RobotSelection(NamedTuple):
 
 
 class Robots:
-    """All robots by name. Every change gets the next revision, so that a reader can ask what is new."""
+    """All robots by name. Every change gets the next revision, so that a reader can query what is new."""
 
     def __init__(
         self, stale_after: float = 3.0, lost_after: float = 10.0, events: EventBus | None = None
@@ -123,27 +123,27 @@ class Robots:
         self._lost_after = lost_after
         self._robots: dict[str, Robot] = {}
         self._elsewhere: dict[str, Robot] = {}
-        """those of other gateways, each as it was when somebody asked for it last."""
+        """those of other gateways, each as it was when last read."""
         self._details: dict[str, tuple[float | None, str | None]] = {}
-        """battery and status of those."""
+        """battery and status of robots of other gateways."""
         self._own_columns = RobotColumns()
-        """those of this gateway once more, where many are judged."""
+        """robots of this gateway a second time, for evaluating many at once."""
         self._other_columns = RobotColumns()
-        """what other gateways said of theirs last."""
+        """what other gateways reported last of their robots."""
         self._removed: dict[str, int] = {}
-        """the robots that were removed and have not come back, with the revision of that."""
+        """robots that were removed and have not come back, with the revision of their removal."""
         self.revision = 0
         self._events = events or EventBus()
 
     def limit(self, stale_after: float, lost_after: float) -> None:
-        """Judge liveness by other limits from now on, in seconds."""
+        """Set the limits of liveness, in seconds."""
         self._stale_after, self._lost_after = stale_after, lost_after
 
     def __contains__(self, name: str) -> bool:
         return name in self._robots or name in self._other_columns
 
     def count(self) -> int:
-        """Return how many there are."""
+        """Return the number of robots."""
         return len(self._robots) + len(self._other_columns)
 
     def names(self) -> list[str]:
@@ -151,23 +151,23 @@ class Robots:
         return sorted([*self._robots, *self._other_columns.names()])
 
     def own_names(self) -> list[str]:
-        """Return the names of those that this gateway has."""
+        """Return the names of the robots of this gateway."""
         return list(self._robots)
 
     def commanded(self) -> list[str]:
-        """Return the names of those that this gateway has and that are not only seen, sorted."""
+        """Return the names of the robots of this gateway that are not only seen, sorted."""
         return sorted(name for name, robot in self._robots.items() if robot.abilities != "")
 
     def commanded_elsewhere(self) -> list[str]:
-        """Return the names of those that other gateways have and that are not only seen, sorted."""
+        """Return the names of the robots of other gateways that are not only seen, sorted."""
         return sorted(set(self._other_columns.names()).difference(self._other_columns.only_seen()))
 
     def count_commanded(self) -> int:
-        """Return how many there are, at any gateway, that are not only seen."""
+        """Return the number of robots, at any gateway, that are not only seen."""
         return self.count() - self._own_columns.count_only_seen() - self._other_columns.count_only_seen()
 
     def doing(self, command: str) -> str | None:
-        """Return the robot that is busy with a command, None where none is known to be."""
+        """Return the name of the robot that is busy with a command, None where none is known."""
         everybody = chain(self._robots.items(), self._elsewhere.items())
         return next((name for name, robot in everybody if robot.command == command), None)
 
@@ -177,7 +177,7 @@ class Robots:
         return None if robot is None else robot.gateway
 
     def is_only_seen(self, name: str) -> bool:
-        """Tell whether the robot said that it can do nothing, so that it is told nothing."""
+        """Return whether the robot declared no abilities, so that nothing is sent to it."""
         robot = self._find(name)
         return robot is not None and robot.abilities == ""
 
@@ -189,22 +189,22 @@ class Robots:
         return robot
 
     def check_known(self, name: str) -> None:
-        """Raise RefusedError for a robot that never said Ready, MessageError for what names none."""
+        """Raise RefusedError for a robot that never said Ready, MessageError for an invalid name."""
         check_robot_name(name)
         if name not in self:
             known = ", ".join(self.names()) or "none yet"
             raise RefusedError(f"robot {name!r} is not known to this gateway; known are: {known}")
 
     def pose(self, name: str) -> SendPos | None:
-        """Return where a robot was when it said so last, None for one that never did."""
+        """Return the last reported pose of a robot, None for one that never reported any."""
         robot = self._find(name)
         return None if robot is None else robot.pose
 
     def straight_from(self, name: str, message: Command) -> tuple[float, float] | None:
-        """Return where a robot is that drives straight to a target, or to a path's first point, from there.
+        """Return the position from which a robot drives straight to a target, or to a path's first point.
 
-        That is where it was when it said so last; None for one that never did, and for one that is told a way
-        to the target first.
+        This is its last reported position; None for one that never reported any, and for one that requests
+        a path to the target first.
         """
         robot = self._find(name)
         if robot is None or robot.pose is None or not isinstance(message, (SetPosEnd, SetPath)):
@@ -214,17 +214,17 @@ class Robots:
         return robot.pose.x, robot.pose.y
 
     def is_placed(self, name: str) -> bool:
-        """Tell whether it is known where a robot is now."""
+        """Return whether the present position of a robot is known."""
         robot = self._find(name)
         return robot is not None and robot.is_placed
 
     def is_doubted(self, name: str) -> bool:
-        """Tell whether the place that a robot said last is not believed, or is one where it was."""
+        """Return whether the last reported position of a robot is not believed, or is out of date."""
         robot = self._find(name)
         return robot is not None and robot.doubt is not None
 
     def is_unseen(self, name: str, now: float) -> bool:
-        """Tell whether a robot may have come further since it said where it is: too long ago, or before its
+        """Return whether a robot may have moved since it reported its position: too long ago, or before its
         link or the gateway broke.
         """
         robot = self._find(name)
@@ -233,8 +233,8 @@ class Robots:
         return not robot.located or now - robot.pose_at >= self._stale_after
 
     def restore(self, robot: Robot, now: float) -> None:
-        """Take in a robot that an earlier gateway knew. One that was heard later than ``now``, as on a
-        computer whose clock stands still without power, counts as not heard for long."""
+        """Add a robot that an earlier gateway knew. One last received later than ``now``, as on a computer
+        whose clock stands still without power, counts as not received for long."""
         if robot.received_at > now:
             is_behind = robot.received_at - now >= LEAST_BEHIND
             robot.received_at = now - UNKNOWN_AGE if is_behind else now
@@ -246,7 +246,7 @@ class Robots:
         self._add(robot)
 
     def starts_anew(self, name: str, magic: int) -> bool:
-        """Tell whether a Ready with ``magic`` comes from another run of a robot that is known."""
+        """Return whether a Ready with ``magic`` comes from another run of a known robot."""
         robot = self._find(name)
         return robot is not None and robot.magic != magic
 
@@ -259,13 +259,13 @@ class Robots:
         paths: PathDeclaration | None = None,
         abilities: str | None = None,
     ) -> None:
-        """Register a robot, or this run of it; ``paths`` and ``abilities`` are what it declares of them."""
-        anew = self.starts_anew(name, magic)
+        """Register a robot, or this run of it; ``paths`` and ``abilities`` are its declarations of them."""
+        is_new_run = self.starts_anew(name, magic)
         robot = self._find(name) or Robot(name, magic, link, now)
         robot.gateway = None
         self._add(robot)
-        if anew and robot.pose is not None:
-            # A robot that started again may have a clock that did so too.
+        if is_new_run and robot.pose is not None:
+            # The clock of a robot that restarted may have restarted too.
             robot.pose = replace(robot.pose, t=None)
             robot.order.restarted()
         robot.magic, robot.link, robot.located, robot.says_magic = magic, link, False, False
@@ -274,9 +274,9 @@ class Robots:
         self.note_received(name, link, now)
 
     def check_run(self, name: str, magic: int | None, link: str) -> None:
-        """Raise OtherRunError for what the run of the robot that was let in did not say.
+        """Raise OtherRunError for a message that is not from the registered run of the robot.
 
-        Over SQL all come under one name: a run that has said its ``magic`` number says it with everything.
+        Over SQL all runs share one name: a run that has sent its ``magic`` number sends it with everything.
         """
         robot = self.get(name)
         if robot.gateway is not None:
@@ -295,7 +295,7 @@ class Robots:
     def note_received(
         self, name: str, link: str, now: float, *, stopped: bool = False, waited: bool = False
     ) -> Robot:
-        """Note that a message of the robot came in; ``stopped`` when it said Stopped.
+        """Record that a message of the robot was received; ``stopped`` when it is Stopped.
 
         One that has ``waited`` until there was a gateway to read it does not show that the robot is there.
         """
@@ -307,9 +307,9 @@ class Robots:
         return robot
 
     def observe(self, name: str, pose: SendPos, link: str, now: float, *, waited: bool = False) -> bool:
-        """Take in a pose; return false for a late one (see :class:`.PoseOrder`), which moves nothing.
+        """Apply a pose; return false for a late one (see :class:`.PoseOrder`), which moves nothing.
 
-        One that has ``waited`` says where the robot was.
+        One that has ``waited`` is a past position of the robot.
         """
         robot = self.get(name)
         robot.ended_in_order &= standing(pose)
@@ -325,10 +325,10 @@ class Robots:
         return is_newest
 
     def follow(self, name: str, pose: SendPos, link: str, now: float, near: AcceptedArea) -> bool | None:
-        """Take in, as :meth:`observe`, a pose that only goes on from where its robot was a moment ago.
+        """Apply, as :meth:`observe`, a pose that only continues from the robot's position a moment ago.
 
-        Return false for a late one, and for one that says where the robot was ``stale_after`` ago; None, with
-        nothing done, where there is something to consider about it.
+        Return false for a late one, and for one that is ``stale_after`` old or older; None, with nothing
+        done, where it needs the full checks.
         """
         robot = self._robots.get(name)
         x_min, y_min, x_max, y_max, step = near
@@ -362,16 +362,16 @@ class Robots:
         return True
 
     def let_go(self, name: str, gateway: str) -> None:
-        """Note that another gateway has a robot."""
+        """Record that another gateway has a robot."""
         robot = self._find(name)
         if robot is not None and robot.gateway != gateway:
             robot.gateway, robot.link = gateway, link_elsewhere(gateway)
             self._add(robot)
 
     def observe_elsewhere(self, report: ReportedElsewhere) -> bool:
-        """Take in what another gateway says of robots that it has; of others nothing is taken in.
+        """Apply the report of another gateway on robots that it has; others in it are ignored.
 
-        Returns whether all of them are known by their numbers: else it had better name them again.
+        Return whether all of them are known by their numbers: else that gateway must name them again.
         """
         self.revision, missing, all_named = self._other_columns.observe(report, self.revision)
         new = [row for row in missing if report.names[row] not in self._robots]
@@ -385,7 +385,7 @@ class Robots:
         return all_named
 
     def describe_elsewhere(self, name: str, gateway: str, said: DescribedElsewhere) -> None:
-        """Take in the details that another gateway tells of a robot that it has."""
+        """Apply the details that another gateway reports of a robot that it has."""
         robot = self._elsewhere.get(name)
         if robot is None or robot.gateway != gateway:
             return
@@ -397,7 +397,7 @@ class Robots:
             robot.abilities,
         )
         if (*known, None if said.magic is None else robot.magic) == said:
-            # Said again in case that a message was lost: nobody has to look at the robot for that.
+            # Repeated in case a message was lost: no reader has to read the robot again for that.
             return
         robot.doubt, robot.latency = said.doubt, said.latency
         robot.paths, robot.abilities = said.paths, said.abilities
@@ -408,12 +408,12 @@ class Robots:
         self._other_columns.describe(name, said.battery, flags, self.revision)
 
     def disbelieve(self, name: str, link: str, now: float, doubt: str, *, waited: bool = False) -> None:
-        """Note that the robot is heard, and that the place that it says cannot be."""
+        """Record that the robot was received, and that its reported position is implausible."""
         self.get(name).doubt = doubt
         self.note_received(name, link, now, waited=waited)
 
     def remove(self, name: str) -> None:
-        """Know a robot no more, until it says Ready again."""
+        """Remove a robot until it says Ready again."""
         if self._forget_here(name) or self._forget_elsewhere(name):
             self.revision += 1
             self._removed[name] = self.revision
@@ -423,14 +423,14 @@ class Robots:
         return [name for name, revision in self._removed.items() if revision > since]
 
     def closed(self, name: str) -> None:
-        """Note that the robot closed its link in good order."""
+        """Record that the robot closed its link in good order."""
         robot = self._find(name)
         if robot is not None:
             robot.ended_in_order, robot.heard_since = True, False
             self._touch(robot)
 
     def measured(self, name: str, latency: float) -> None:
-        """Note how many seconds the robot's link took there and back; told with the robot's next change."""
+        """Record the round-trip time of the robot's link in seconds; sent with the robot's next change."""
         robot = self._find(name)
         if robot is not None and robot.latency != latency:
             self.revision += 1
@@ -444,7 +444,7 @@ class Robots:
             self._touch(robot)
 
     def clock_was_set(self, step: ClockStep) -> None:
-        """Keep the times since robots were heard: silent ones would be fresh again, or all of them lost."""
+        """Keep the ages of the last messages: silent robots would be fresh again, or all of them lost."""
         for robot in self._robots.values():
             robot.received_at = step.moved(robot.received_at)
             robot.pose_at = None if robot.pose_at is None else step.moved(robot.pose_at)
@@ -453,7 +453,7 @@ class Robots:
         self._other_columns.move_times(step)
 
     def age(self, now: float) -> None:
-        """Bring the state of every robot up to ``now``; what changed gets a new revision."""
+        """Update the state of every robot to ``now``; each one that changed gets a new revision."""
         for name in self._own_columns.outdated(now, self._stale_after, self._lost_after):
             robot = self._robots[name]
             # Were the gateway's clock set back, a silent robot would stay fresh until it has caught up.
@@ -475,47 +475,47 @@ class Robots:
         return [robot for robot in self._robots.values() if robot.revision > since]
 
     def own_described(self, since: int) -> list[Robot]:
-        """Return the robots of this gateway of which more than the place may have changed after ``since``."""
+        """Return this gateway's robots with possible changes after ``since`` beyond their position."""
         return [robot for robot in self._robots.values() if robot.described > since]
 
     def own_places(self, since: int = -1) -> RobotPlaces:
-        """Return where the robots of this gateway are that changed after revision ``since``."""
+        """Return the positions of the robots of this gateway that changed after revision ``since``."""
         return self._own_columns.places(since)
 
     def places_elsewhere(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
-        """Return where the robots of other gateways, but those of ``without``, are that changed after
+        """Return the positions of the robots of other gateways, except ``without``, that changed after
         revision ``since``."""
         return self._other_columns.places(since, without)
 
     def places(self, since: int = -1, without: Collection[str] = ()) -> RobotPlaces:
-        """Return where those are that changed after revision ``since``, those of this gateway first; without
-        the robots of some other gateways."""
+        """Return the positions of all robots that changed after revision ``since``, those of this gateway
+        first, without the robots of the other gateways ``without``."""
         return self.own_places(since).join(self.places_elsewhere(since, without))
 
     def only_seen(self) -> list[Robot]:
-        """Return the robots that can do nothing."""
+        """Return the robots without any ability."""
         here = [robot for robot in self._robots.values() if robot.abilities == ""]
         return here + self._renew(self._other_columns.only_seen())
 
     def known(self, names: Iterable[str]) -> list[Robot]:
-        """Return those of ``names`` that there are."""
+        """Return the robots of ``names`` that exist."""
         names = list(names)
         self._renew([name for name in names if name in self._elsewhere])
         found = (self._robots.get(name) or self._elsewhere.get(name) for name in names)
         return [robot for robot in found if robot is not None]
 
     def select(self, names: Iterable[str]) -> RobotSelection:
-        """Return those of ``names`` that there are, in the same order."""
+        """Return a selection of those of ``names`` that exist, in the same order."""
         known = [name for name in names if name in self]
         return RobotSelection(known, self._own_columns.find(known), self._other_columns.find(known))
 
     def is_outdated(self, selection: RobotSelection) -> bool:
-        """Tell whether robots have come, gone, or moved to another gateway since ``selection`` was made."""
+        """Return whether robots were added, removed, or moved to another gateway since ``selection``."""
         layouts = self._own_columns.layout, self._other_columns.layout
         return (selection.own.layout, selection.others.layout) != layouts
 
     def changed_of(self, selection: RobotSelection, since: int) -> list[Robot]:
-        """Return those of a selection, which is not outdated, that changed after revision ``since``."""
+        """Return the robots of a selection, which is not outdated, that changed after revision ``since``."""
         own = self._own_columns.changed_places(selection.own, since)
         others = self._other_columns.changed_places(selection.others, since)
         places = np.sort(np.concatenate([own, others])).tolist()
@@ -528,13 +528,13 @@ class Robots:
         return robot
 
     def _renew(self, names: Sequence[str]) -> list[Robot]:
-        """Return robots of other gateways as those say that they are by now."""
+        """Return robots of other gateways, updated to the last reports of those."""
         robots = [self._elsewhere[name] for name in names]
         self._other_columns.renew(robots, self._details)
         return robots
 
     def _add(self, robot: Robot) -> None:
-        """Count a robot as its gateway's from now on."""
+        """Add or move a robot to the gateway that it names."""
         self._removed.pop(robot.name, None)
         if robot.gateway is None:
             self._forget_elsewhere(robot.name)
@@ -556,7 +556,7 @@ class Robots:
         return self._elsewhere.pop(name, None)
 
     def _place(self, robot: Robot, pose: SendPos, now: float) -> None:
-        """Take a pose for the newest, which is doubted where its stamp says that the robot has gone on."""
+        """Set the newest pose; it is doubted where its stamp shows that the robot may have moved on."""
         delay = robot.order.delay
         robot.pose, robot.pose_at = pose, now - delay
         robot.doubt = OLD.format(delay) if delay >= self._stale_after else None

@@ -11,17 +11,17 @@ from ...core.errors import RefusedError
 from ...core.messages.queues import LONGEST_QUEUE, QueueReport, QueueState, QueueTask, TaskReport, TaskState
 from ...core.messages.safety import RobotState
 
-# --- A robot's queue as the gateway holds it, and the reports that operators are told of it ---
+# --- A robot's queue as the gateway holds it, and the reports of it to operators ---
 
 ENDS = (TaskState.DONE, TaskState.SKIPPED, TaskState.REMOVED)
 
 
 @dataclass(frozen=True)
 class QueuedTask:
-    """A task, how far it is, and the command that drives it.
+    """A task, its progress, and the command that drives it.
 
     ``place`` orders the tasks of a queue; ``leg`` counts the commands of this task that were reached, and
-    ``attempts`` how often it was begun. A current task without ``command`` waits to be sent its next leg.
+    ``attempts`` how often it was begun. A current task without ``command`` waits for its next leg to be sent.
     """
 
     task: QueueTask
@@ -39,7 +39,7 @@ class QueuedTask:
 
     @property
     def id(self) -> str:
-        """The id that the operator's side gave it."""
+        """The id that the desk gave it."""
         return self.task.task
 
     @property
@@ -49,12 +49,12 @@ class QueuedTask:
 
 
 REPORTED_ENDED = 10
-"""tasks that ended which a queue's report holds."""
+"""number of ended tasks in a queue's report."""
 
 
 @dataclass(frozen=True)
 class Queue:
-    """The open tasks of a robot in order; one that is current is the first."""
+    """The open tasks of a robot in order; a current one is the first."""
 
     robot: str
     revision: int = 0
@@ -66,7 +66,7 @@ class Queue:
 
     @property
     def running(self) -> bool:
-        """Whether the next task is sent by itself."""
+        """Whether the next task is sent automatically."""
         return self.state is QueueState.RUNNING
 
     @property
@@ -85,7 +85,7 @@ class Queue:
         return self.tasks[1:] if self.current else self.tasks
 
     def paused(self, reason: str, by: str, at: float) -> Queue:
-        """Return the queue paused, one revision further; one that is paused already stays as it is."""
+        """Return the queue paused, one revision further; one that is paused already is unchanged."""
         if not self.running:
             return self
         return dataclasses.replace(
@@ -97,12 +97,12 @@ class Queue:
         return dataclasses.replace(self, tasks=ordered_tasks(tasks), revision=self.revision + edited)
 
     def with_head(self, head: QueuedTask) -> Queue:
-        """Return the queue with another first task in place of the present one."""
+        """Return the queue with its first task replaced."""
         return self.with_tasks((head, *self.tasks[1:]))
 
 
 def ordered_tasks(tasks: Iterable[QueuedTask]) -> tuple[QueuedTask, ...]:
-    """Return ``tasks`` with places that rise; those that rise already are kept, as most are after a step."""
+    """Return ``tasks`` with ascending places; ascending ones are kept, as most are after a step."""
     found = tuple(tasks)
     places = [task.place for task in found]
     if all(a < b for a, b in itertools.pairwise(places)):
@@ -113,7 +113,7 @@ def ordered_tasks(tasks: Iterable[QueuedTask]) -> tuple[QueuedTask, ...]:
 def queue_report(
     queue: Queue, robot_state: RobotState, ended: Iterable[QueuedTask] = (), *, paths: bool = False
 ) -> QueueReport:
-    """Return what operators are told of a queue; ``ended`` are the newest tasks that did."""
+    """Return the report of a queue for operators; ``ended`` are the newest ended tasks."""
     return QueueReport(
         robot=queue.robot,
         revision=queue.revision,
@@ -128,7 +128,7 @@ def queue_report(
 
 
 def task_report(robot: str, queued: QueuedTask, *, paths: bool = False) -> TaskReport:
-    """Return what operators are told of a task."""
+    """Return the report of a task for operators."""
     task = queued.task
     return TaskReport(
         task=task.task,
@@ -156,12 +156,12 @@ def task_report(robot: str, queued: QueuedTask, *, paths: bool = False) -> TaskR
     )
 
 
-# --- What an operator changes in a queue. Every edit returns the queue one revision further ---
+# --- Edits of a queue by operators. Every edit returns the queue one revision further ---
 
 
 @dataclasses.dataclass(frozen=True)
 class Whereabouts:
-    """Where a task that was given before is: in whose queue, and what became of it there."""
+    """Location of a task that was submitted before: the robot with its queue, and its state there."""
 
     robot: str
     state: TaskState
@@ -170,10 +170,10 @@ class Whereabouts:
 def replace_tasks(
     queue: Queue, tasks: Sequence[QueueTask], known: Mapping[str, Whereabouts], by: str, at: float
 ) -> Queue:
-    """Return the queue with ``tasks`` in place of what is not begun.
+    """Return the queue with ``tasks`` in place of those not begun.
 
-    Those of this queue that are current or done are passed over; one that waits keeps its history. ``known``
-    says of each task that was given before where it is. Raises RefusedError for one that is elsewhere.
+    Those of this queue that are current or done are skipped; one that waits keeps its history. ``known``
+    locates each task that was submitted before. Raises RefusedError for one that is elsewhere.
     """
     waiting = {task.id: task for task in queue.waiting}
     current = queue.current
@@ -223,14 +223,14 @@ def remove_task(queue: Queue, task: str) -> Queue:
 
 
 def put_task_first(queue: Queue, task: str) -> Queue:
-    """Return the queue with a waiting task first, and what was current behind it; raises RefusedError."""
+    """Return the queue with a waiting task first, and the current one behind it; raises RefusedError."""
     found = _waiting(queue, task)
     rest = [return_task(other) for other in queue.tasks if other is not found]
     return queue.with_tasks([found, *rest], edited=True)
 
 
 def resume_queue(queue: Queue, by: str, at: float) -> Queue:
-    """Return the queue as one that goes on; raises RefusedError for one that is not paused."""
+    """Return the queue running; raises RefusedError for one that is not paused."""
     if queue.running:
         raise RefusedError(f"the queue of robot {queue.robot!r} is not paused; there is nothing to resume")
     return dataclasses.replace(
@@ -239,14 +239,14 @@ def resume_queue(queue: Queue, by: str, at: float) -> Queue:
 
 
 def return_task(task: QueuedTask, reason: str | None = None) -> QueuedTask:
-    """Return a current task as one that waits to be begun again; others are returned as they are."""
+    """Return a current task as waiting to be begun again; others are returned unchanged."""
     if not task.is_current:
         return task
     return dataclasses.replace(task, state=TaskState.WAITING, leg=0, reason=reason)
 
 
 def _renewed(waiting: QueuedTask, task: QueueTask) -> QueuedTask:
-    """Return a waiting task as it is wanted now; with another path or place it is begun again."""
+    """Return a waiting task with its new content; with another path or place it is begun again."""
     if waiting.task == task:
         return waiting
     return dataclasses.replace(waiting, task=task, state=TaskState.WAITING, command=None, reason=None)
