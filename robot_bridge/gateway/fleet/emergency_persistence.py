@@ -33,18 +33,18 @@ from ..storage.repositories import emergency_stops, requests
 from ..storage.repositories.emergency_stops import StopRow
 from ..storage.repositories.robots import FencedError
 
-# --- Emergency stops in force, or on their way into the database, in a small file of this computer ---
-# A stop goes out before it is stored. Where the database is away then, and the gateway dies before it is
-# back, or where an older state of the database is put back, the next gateway knows of the stop by this file.
+# --- Journal of emergency stops in force or not yet stored: a small file on this computer ---
+# A stop is sent before it is stored. Where the database is unavailable then, and the gateway dies before it
+# is back, or where an older state of the database is restored, the next gateway reads the stop here.
 
 log = logging.getLogger(__name__)
 
 
 def journal_file(database: URL, folder: Path, gateway: str | None = None) -> Path | None:
-    """Return the file for the stops of a gateway on ``database``; None for a database in memory.
+    """Return the path of the journal of a gateway on ``database``; None for a database in memory.
 
-    Beside the file of an SQLite database, else in ``folder``: gateways of several databases may share that,
-    and those of one that have names, each a ``gateway``.
+    It is beside the file of an SQLite database, else in ``folder``, which gateways of several databases may
+    share, and so may several named gateways (``gateway``) of one database.
     """
     if database.get_backend_name() == "sqlite":
         file = sqlite_file_of(database)
@@ -56,21 +56,21 @@ def journal_file(database: URL, folder: Path, gateway: str | None = None) -> Pat
 
 FULL = (errno.ENOSPC, errno.EDQUOT)
 ROOM = 16_384
-"""bytes that are set aside for stops on a disk that is full by then."""
+"""bytes reserved for stops in case the disk is full by then."""
 
 
 class StopJournal:
-    """The stops in force or not stored, as they were written down last; no file where there are none."""
+    """Journal file of the stops in force or not stored; there is no file where there are none."""
 
     def __init__(self, file: Path) -> None:
         self._file = file
-        # Two: the second stop on a full disk is noted before the first one's room is free again.
+        # Two: the second stop on a full disk is written before the first one's room is free again.
         self._rooms = [file.with_name(f".{file.name}.{name}") for name in ("room", "spare")]
-        # One thread: what is written last is what stands there in the end.
+        # One thread: the last write wins.
         self._thread = ThreadPoolExecutor(1, "emergency stops")
 
     def check(self) -> None:
-        """Raise BridgeError when stops could not be written down; set room aside for them."""
+        """Raise BridgeError when stops could not be written; reserve room for them."""
         folder = self._file.parent
         if not (folder.is_dir() and os.access(folder, os.W_OK | os.X_OK)):
             raise BridgeError(
@@ -81,17 +81,17 @@ class StopJournal:
         self._set_room_aside()
 
     def write(self, stops: Sequence[StopRow]) -> Future[None]:
-        """Write down ``stops``, and no others; done when they are on the disk.
+        """Write ``stops``, and no others; the future is done when they are on the disk.
 
-        What cannot be written is told to the log: it must keep no stop from going out.
+        A failed write is logged: it must not prevent a stop from being sent.
         """
         return self._thread.submit(self._write, list(stops))
 
     def read(self) -> list[StopRow]:
-        """Return what an earlier gateway left, oldest first.
+        """Return the stops that an earlier gateway left, oldest first.
 
-        What is there and cannot be read or understood was a stop all the same: one in force that nobody
-        needed costs a supervisor's word, one that is forgotten may cost more.
+        An entry that cannot be read or decoded counts as a stop all the same: a needless one is cleared by a
+        supervisor, a forgotten one may cost more.
         """
         try:
             content = self._file.read_bytes()
@@ -106,7 +106,7 @@ class StopJournal:
             )
             return [self._unknown(f"could not be read ({error.strerror})")]
         try:
-            # As far as it goes: a damaged byte of a reason hides no stop.
+            # Decoded as far as possible: a damaged byte of a reason must not hide a stop.
             noted = decode_json(content.decode("utf-8", errors="replace"))
         except DecodingError as error:
             log.error("%s could not be understood: %s", self._file, error)
@@ -118,7 +118,7 @@ class StopJournal:
         return [*understood, *([self._unknown("could not be understood")] if None in stops else [])]
 
     def _unknown(self, what: str) -> StopRow:
-        """Return the stop that stands for one of which nothing is known."""
+        """Return a stop in place of one that cannot be read."""
         reason = f"{self._file} {what}; look at every robot before this is cleared"
         return StopRow(f"damaged-{time.time_ns()}", time.time(), "gateway", reason)
 
@@ -145,7 +145,7 @@ class StopJournal:
             write_state_into(rooms[0], self._file, text)
 
     def _set_room_aside(self) -> None:
-        # On a disk that is full already there is none; what cannot be noted then is told to the log.
+        # A disk that is already full has no room; a stop that cannot be written then is logged.
         for room in self._rooms:
             with contextlib.suppress(OSError):
                 if not room.is_file():
@@ -157,7 +157,7 @@ def _plain(stop: StopRow) -> dict[str, object]:
 
 
 def _stop(noted: Any) -> StopRow | None:
-    """Return the stop that was noted; None for what is none, or could be stored in no database."""
+    """Return the journaled stop; None for an entry that is none, or that no database could store."""
     if not isinstance(noted, dict):
         return None
     id, at, by, reason = (noted.get(name) for name in ("id", "at", "by", "reason"))
@@ -170,19 +170,17 @@ def _stop(noted: Any) -> StopRow | None:
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)
 
 
-# --- How an emergency stop and the Aborts of its robots get into the database, whatever is wrong with one
-# robot All in one transaction where that can be done. Where it cannot, every robot is first sent a bare
-# Abort, which
-# belongs to no command: inserts alone, which wait for nobody. Then the robots are halved until those are
-# found
-# that were in the way: each group is a transaction of its own.
+# --- Storing an emergency stop and the Aborts of its robots, whatever is wrong with one robot ---
+# All in one transaction where possible. Else every robot is first sent a bare Abort, which belongs to no
+# command: inserts alone, which wait for no lock. Then the robots are halved until the failing ones are found:
+# each group is a transaction of its own.
 
 MOTIONS = (SetPosEnd, SetPath)
 HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
 
 
 class StopWriter:
-    """Writes stops into the database; knows the robots whose Abort is not stored yet."""
+    """Writes stops into the database; keeps the robots whose Abort is not stored yet ("owed")."""
 
     def __init__(self, commands: CommandService, database: Database) -> None:
         self._commands = commands
@@ -190,19 +188,19 @@ class StopWriter:
         self._news = TroubleNews()
         self._owed: dict[str, StopRow] = {}
         self._have_bare: set[str] = set()
-        """those of them that were sent a bare Abort."""
+        """robots that were sent a bare Abort."""
 
     @property
     def is_owing(self) -> bool:
-        """Whether some robot's Abort is not stored."""
+        """Whether the Abort of any robot is not stored yet."""
         return bool(self._owed)
 
     def forget(self, robot: str) -> None:
-        """Owe a robot no Abort: it was removed."""
+        """Drop the owed Abort of a removed robot."""
         self._owed.pop(robot, None)
 
     def end(self) -> None:
-        """Leave the Aborts that are owed still to the book, which stores them first: the stop is over."""
+        """Hand the owed Aborts to the command service, which stores them first: the stop is over."""
         self._commands.keep_aborts(
             order for robot, stop in self._owed.items() for order in orders_of(stop, [robot])
         )
@@ -219,7 +217,7 @@ class StopWriter:
 
         Return false where the database refuses the stop as data; the Aborts are stored all the same.
 
-        :raises StoreError: when the database cannot be used; the stop is then to be written again.
+        :raises StoreError: when the database cannot be used; the stop must then be written again.
         """
         try:
             await self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
@@ -228,7 +226,7 @@ class StopWriter:
             raise
         except Exception as error:
             text = "the emergency stop cannot be stored in one transaction and is stored in several"
-            # On a full disk this is tried every few seconds for as long as that lasts.
+            # On a full disk this is retried every few seconds for as long as that lasts.
             if self._news.has(stop.id, str(error)):
                 _explain(error, text)
         is_listed = await self._list(stop)
@@ -241,8 +239,8 @@ class StopWriter:
     async def write_owed(self) -> None:
         """Store the Aborts that could not be stored before.
 
-        A robot whose Abort is refused, or fails for a reason nobody foresaw, is left with a bare one; one
-        that another gateway has by now is left to that. What fails otherwise is tried again by the next call.
+        A robot whose Abort is refused, or fails unexpectedly, keeps a bare one; one that another gateway has
+        by now is left to that gateway. Other failures are retried by the next call.
 
         :raises StoreError: when the database cannot be used.
         """
@@ -258,7 +256,7 @@ class StopWriter:
 
     async def _is_settled(self, robot: str, error: Exception) -> bool:
         if isinstance(error, FencedError):
-            # The gateway that has the robot by now knows of the stop, and sends it that Abort.
+            # The gateway that has the robot now knows of the stop, and sends it that Abort.
             return True
         if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
             return False
@@ -274,7 +272,7 @@ class StopWriter:
         await self._database.run(_write_bare, robots)
 
     async def _list(self, stop: StopRow) -> bool:
-        """Store the stop alone; in plain letters and without a reason where the database refuses it."""
+        """Store the stop alone; in ASCII and without a reason where the database refuses it."""
         for row in (stop, _in_plain_letters(stop)):
             try:
                 await self._database.run(emergency_stops.add, row)
@@ -286,9 +284,9 @@ class StopWriter:
     async def _halve(
         self, robots: Sequence[str], write: Callable[[Sequence[str]], Awaitable[None]]
     ) -> dict[str, Exception]:
-        """Write for all ``robots`` at once, else half by half; return those for which it failed, and why.
+        """Write for all ``robots`` at once, else half by half; return the failed robots with their errors.
 
-        :raises StoreError: when it failed since the database cannot be used.
+        :raises StoreError: when it failed because the database cannot be used.
         """
         if not robots:
             return {}
@@ -305,7 +303,7 @@ class StopWriter:
 
 
 def abort_id(stop: StopRow, robot: str) -> str:
-    """Return the id of the command that tells a robot of a stop: the same whenever it is stored."""
+    """Return the id of the Abort of a robot for a stop: the same whenever it is stored."""
     return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{stop.id} {robot}"))
 
 
@@ -316,7 +314,7 @@ def orders_of(stop: StopRow, robots: Sequence[str]) -> list[CommandOrder]:
 
 
 def _write_stop(stop: StopRow, robots: Sequence[str], connection: Connection) -> None:
-    # What is withdrawn is not commands' messages alone, but answers to GetPath, too.
+    # This withdraws not only the messages of commands, but answers to GetPath, too.
     if emergency_stops.add(connection, stop):
         requests.remove_everywhere(connection, HELD_BACK)
     else:
@@ -333,14 +331,14 @@ def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
         with connection.begin_nested():
             requests.remove_unlocked(connection, robots, HELD_BACK)
     except ProgrammingError as error:
-        # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
+        # The account of an older set-up may not lock rows. Without a lock this waits for those who do.
         log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
         requests.remove_kinds(connection, robots, HELD_BACK)
     requests.add_answers(connection, [(robot, Abort(emergency=True)) for robot in robots])
 
 
 def _use(connection: Connection) -> None:
-    """Use the database: raises where it cannot be used at all."""
+    """Check that the database can be used; raises where it cannot."""
     emergency_stops.ids(connection, most=1)
 
 

@@ -1,4 +1,4 @@
-"""Emergency stop: every robot stopped before anything else is done, and what each robot answers."""
+"""Emergency stop: every robot is stopped before anything else; the answers of robots are counted."""
 
 from __future__ import annotations
 
@@ -30,59 +30,57 @@ from ..storage.repositories import commands, emergency_stops
 from ..storage.repositories.emergency_stops import StopRow
 from .emergency_persistence import HELD_BACK, MOTIONS, StopJournal, StopWriter, orders_of
 
-# --- The emergency stop: every robot is told to stop before anything else is done, and none is sent anywhere
-# until a supervisor clears it.
+# --- Emergency stop: every robot is sent the stop before anything else is done, and no motion until a
+# supervisor clears it.
 #
-# Safety comes before bookkeeping: a stop is in force the moment it is asked for, noted in a file of this
-# computer (a few milliseconds) and on its way over every open connection; it is stored as soon as the
-# database
-# can be written. What is not stored yet says so. Robots on SQL are reached by nothing but the database, so
-# they
-# are told when it can be written again.
+# Safety comes before bookkeeping: a stop is in force the moment it is requested, is written to a journal file
+# on this computer (a few milliseconds) and sent over every open connection; it is stored as soon as the
+# database can be written. Reports show that a stop is not stored yet. Robots on SQL are reached only by the
+# database, so the stop is sent to them when it can be written again.
 
 __all__ = ["HELD_BACK", "EmergencyStops"]
 
 log = logging.getLogger(__name__)
 
 STORED_WITHIN = 1.0
-"""seconds for which an operator waits to hear whether the stop is stored; it is in force before that."""
+"""seconds for which an operator waits for the stop to be stored; it is in force before that."""
 NOTED_WITHIN = 0.02
-"""seconds for which this gateway stands still until a stop is noted, before operators and robots hear of it.
-A disk that hangs must keep neither waiting; a turn of the loop may take longer where thousands of robots have
-theirs."""
+"""seconds for which this gateway blocks until a stop is in the journal, before it is sent to operators and
+robots. A disk that hangs must delay neither; a turn of the event loop may take longer with thousands of
+robots."""
 MOST_FIRST = 20
-"""operators who are notified of a stop before the robots: that takes a millisecond."""
+"""largest number of operators to be notified of a stop before the robots: that takes a millisecond."""
 ANSWERS_TOGETHER = 0.05
-"""seconds for which answers of robots wait for one another before operators are told: to count thousands at
-each answer of one of them would take all the time in which the robots are to be heard."""
+"""seconds for which answers of robots are collected before operators are notified: to count thousands at
+each answer of one of them would leave no time to receive from the robots."""
 REPEATED_S = 1.0
-"""seconds after which a stop in force is reported to operators again: who hears nothing knows nothing."""
+"""seconds after which a stop in force is reported to operators again, as a sign that reports arrive."""
 AHEAD_S = 1.0
-"""seconds by which a time may lie in the future: what is known of the database's clock is not exact."""
+"""seconds by which a time may lie in the future: the offset of the database's clock is not exact."""
 DOUBTED_S = 60.0
-"""seconds after the end of a stop in which a robot is aborted where nobody knows how old its motion is."""
+"""seconds after the end of a stop within which a robot with a motion of unknown age is aborted."""
 NAME_PREFIX = "emergency-"
-"""Begins the id of the call that tells a robot of a stop directly: a text, unlike the ids of SA."""
+"""Prefix of the id of the call that sends a stop directly to a robot: a text, unlike the ids of SA."""
 
 
 class StopRelay(Protocol):
-    """Tells other gateways of stops, and knows what came of that there. Nothing of it waits."""
+    """Relays stops to other gateways, and keeps their counts. No method waits."""
 
     def announce(self, stop: StopRow) -> None:
-        """Tell all others of a stop."""
+        """Send a stop to all other gateways."""
 
     def note_change(self) -> None:
-        """Note that something has changed that :meth:`EmergencyStops.local_counts` tells."""
+        """Record that :meth:`EmergencyStops.local_counts` has changed."""
 
     def add_counts(self, counts: dict[str, Any], stop: str) -> dict[str, Any]:
-        """Return ``counts`` of a stop with those of the other gateways, as an EmergencyReport has them."""
+        """Return ``counts`` of a stop with those of the other gateways added, as in an EmergencyReport."""
 
 
 class EmergencyStops:
-    """The stop in force, if one is, and what the robots say to it.
+    """The stop in force, if any, and the answers of the robots to it.
 
-    Every operator hears of it through ``listeners``. The one in force, and what is not stored yet, are noted
-    in ``journal``, where there is one.
+    Every operator is notified through ``listeners``. The stop in force, and those not stored yet, are written
+    to ``journal``, if given.
     """
 
     def __init__(
@@ -106,10 +104,10 @@ class EmergencyStops:
         self._relays: list[StopRelay] = []
         self._stop: StopRow | None = None
         self._in_force: dict[str, StopRow] = {}
-        """the stops that are in force, by id: operators of several gateways may make some at a time."""
+        """the stops in force, by id: operators of several gateways may make some at the same time."""
         self._unstored: list[StopRow] = []
         self._unlisted: list[StopRow] = []
-        """what the database refuses as data: noted on the disk alone, and stored no more."""
+        """stops that the database refuses as data: they are in the journal only, and not stored again."""
         self._writer = StopWriter(commands, database)
         self._seen: set[str] = set()
         self._tally = StopAnswers()
@@ -118,40 +116,40 @@ class EmergencyStops:
         self._answers_due: asyncio.TimerHandle | None = None
         self._announced_at = -math.inf
         self._observed = -1
-        """the revision of the robots up to which it was looked whether they stand."""
+        """revision of the robots up to which their standstill was checked."""
 
     def reach(self, link: Callable[[str], None]) -> None:
-        """Call ``link`` with the id of the call at every stop: it tells every robot at its other end."""
+        """Call ``link`` with the id of the call at every stop; it sends the stop to each of its robots."""
         self._links.append(link)
 
     def relay_by(self, relay: StopRelay) -> None:
-        """Have ``relay`` tell other gateways of each stop that is made here."""
+        """Send each stop that is made here to other gateways by ``relay``."""
         self._relays.append(relay)
 
     @property
     def known_ids(self) -> list[str]:
-        """The ids of the stops that are in force, and of the one that was last."""
+        """The ids of the stops in force, and of the last one."""
         return [*self._in_force, *([] if self._stop is None else [self._stop.id])]
 
     @property
     def in_force(self) -> bool:
-        """Whether robots must not be sent anywhere."""
+        """Whether a stop is in force, so that no motion may be sent."""
         return self._stop is not None and self._stop.cleared_at is None
 
     @property
     def call_id(self) -> str | None:
-        """The id of the call by which a robot that connects now is told, None when no stop is in force."""
+        """The id of the call that sends the stop to a connecting robot, None without a stop in force."""
         return f"{NAME_PREFIX}{self._stop.id}" if self._stop is not None and self.in_force else None
 
     def report(self) -> EmergencyReport:
-        """Return how things stand."""
+        """Return the state of the emergency stop, with the counts of robots."""
         stop = self._stop
         if stop is None:
             return EmergencyReport()
         counts = self.local_counts()
         for relay in self._relays:
             counts = relay.add_counts(counts, stop.id)
-        # Robots of a gateway that has not answered are counted all the same: they may drive.
+        # Robots of a gateway that has not answered are counted, too: they may be driving.
         counts["robots"] = max(counts["robots"], self._robots.count_commanded())
         return EmergencyReport(
             in_force=self.in_force,
@@ -172,13 +170,13 @@ class EmergencyStops:
         return self._stop
 
     def local_counts(self) -> dict[str, Any]:
-        """Return what the robots of this gateway said, as an EmergencyReport has it."""
+        """Return the counts of the answers of this gateway's robots, as in an EmergencyReport."""
         return self._tally.counts()
 
     def watch(self) -> None:
-        """Look whether robots stand that were stopped: to be called several times a second.
+        """Check whether stopped robots stand; must be called several times a second.
 
-        Only those are looked at that have changed since, and none while no stop is in force.
+        Only robots that changed since the last call are checked, and none while no stop is in force.
         """
         if not self.in_force:
             return
@@ -191,9 +189,9 @@ class EmergencyStops:
             self.announce()
 
     async def restore(self) -> None:
-        """Take up the stop that an earlier gateway left in force, stored or not, and what robots said to it.
+        """Restore the stop that an earlier gateway left in force, stored or not, and the robots' answers.
 
-        Raises StoreError when it cannot be known whether there is one.
+        Raises StoreError when it cannot be read whether there is one.
         """
         self._stop, in_force, self._seen, aborts = await self._database.run(_load)
         self._in_force = {stop.id: stop for stop in reversed(in_force)}
@@ -201,7 +199,7 @@ class EmergencyStops:
         for report in aborts:
             self._tally.note_step(report)
         if self._stop is not None and self.in_force:
-            # That gateway may have died before all of them were stored.
+            # That gateway may have died before all Aborts were stored.
             reached = {report.robot for report in aborts}
             self._writer.owe(
                 self._stop, [robot for robot in self._robots.commanded() if robot not in reached]
@@ -215,7 +213,7 @@ class EmergencyStops:
                 self._put_in_force(stop)
         await self._store_and_log()
         if noted or self.in_force:
-            self._note()
+            self._write_journal()
 
     def check(self, message: object) -> None:
         """Raise RefusedError for a message that would make a robot drive while a stop is in force."""
@@ -228,7 +226,7 @@ class EmergencyStops:
 
     @handles(EmergencyStop)
     async def stop(self, request: EmergencyStop, operator: str) -> EmergencyReport:
-        """Stop every robot; asked again under the same id it is the same stop.
+        """Stop every robot; a request repeated under the same id is the same stop.
 
         Returns when the stop is stored, or after a second if the database does not answer or cannot be
         written: it is in force all the same.
@@ -239,25 +237,25 @@ class EmergencyStops:
         return self.report()
 
     def begin(self, request: EmergencyStop, operator: str) -> None:
-        """Put a stop in force and tell everybody, without a turn of the loop; :meth:`stop` stores it."""
+        """Put a stop in force and send it to all, within this turn of the loop; :meth:`stop` stores it."""
         if request.command not in self._seen:
             self._begin(StopRow(request.command, self._clock.time(), _name(operator), request.line))
 
     def stop_elsewhere(self, stop: StopRow) -> None:
-        """Put a stop in force that was made at another gateway; the robots here are being told then.
+        """Put a stop in force that was made at another gateway, and send it to the robots here.
 
-        It is stored from here as well: the other gateway may not come to that.
+        It is stored from here as well: the other gateway may die before it does so.
         """
-        # It may come over several ways at the same time.
+        # It may be received by several ways at the same time.
         if stop.id not in self._seen:
             self._begin(stop, is_own=False)
             self._storing = asyncio.ensure_future(self._store_and_log())
 
     def learn(self, stop: StopRow) -> None:
-        """Take in how a stop is stored: put in force one that is new, end the one in force that was cleared.
+        """Apply a stop as stored: put in force a new one, end the one in force that was cleared.
 
-        What is not stored yet stays in force, whatever others have cleared. Of one that was over before this
-        gateway knew of it, the robots here are aborted as well.
+        A stop that is not stored yet stays in force, whatever others have cleared. For one that was over
+        before this gateway knew of it, the robots here are aborted as well.
         """
         if stop.cleared_at is None:
             self.stop_elsewhere(stop)
@@ -281,18 +279,18 @@ class EmergencyStops:
         self._stop = next(reversed(self._in_force.values()), stop)
         if not self.in_force:
             self._writer.end()
-        self._note()
+        self._write_journal()
         self.announce()
 
     def take_over(self, robots: Sequence[str], newest: StopRow | None) -> None:
         """Count robots that another gateway had; those that were sent no Abort yet are owed one.
 
-        That one may have died before it had stored theirs, and the stop may be over: ``newest`` is the stop
-        that was stored last, from after these robots were read.
+        That gateway may have died before it stored their Aborts, and the stop may be over: ``newest`` is the
+        stop that was stored last, read after these robots.
         """
         stop = self._stop
         if stop is None or not self.in_force:
-            # One may have been cleared since that was read.
+            # One may have been cleared since ``newest`` was read.
             over = [one for one in (stop, newest) if one is not None and one.cleared_at is not None]
             self._abort_overdue(max(over, key=lambda one: one.cleared_at or 0.0, default=None), robots)
             return
@@ -304,8 +302,8 @@ class EmergencyStops:
 
     @handles(ClearEmergencyStop)
     async def clear(self, request: ClearEmergencyStop, supervisor: str) -> EmergencyReport:
-        """Let robots be sent again. Raises RefusedError, and StoreError when that cannot be stored."""
-        # Who asks cannot mean a stop that comes while this waits.
+        """Clear the stop. Raises RefusedError, and StoreError when this cannot be stored."""
+        # The request cannot mean a stop that comes while this waits.
         seen, known = self._stop, frozenset(self._seen)
         async with self._writing:
             stop = self._stop
@@ -332,19 +330,19 @@ class EmergencyStops:
                 self._stop = stop._replace(cleared_at=at, cleared_by=supervisor, clear_reason=reason)
                 self._writer.end()
                 self._unlisted.clear()
-                self._note()
+                self._write_journal()
                 log.warning("emergency stop of %s cleared by %s%s", stop.by, supervisor, _because(reason))
         self.announce()
         return self.report()
 
     async def store(self) -> None:
-        """Store the stops and Aborts that are not stored yet; raises StoreError when the database is away."""
+        """Store the stops and Aborts not stored yet; raises StoreError when the database is unavailable."""
         if self._unstored or self._writer.is_owing:
             async with self._writing:
                 await self._store()
 
     async def ready(self, robot: str) -> None:
-        """Tell a robot that has just said Ready to stop, unless it is being told already."""
+        """Send an Abort to a robot that has just said Ready, unless one is on its way already."""
         stop = self._stop
         if stop is None or not self.in_force:
             return
@@ -355,18 +353,18 @@ class EmergencyStops:
         self._announce_answers()
 
     def answered(self, robot: str, call_id: str, refused: bool) -> None:
-        """Note what a robot answered to the call that told it directly."""
+        """Record the answer of a robot to the direct call."""
         if call_id == self.call_id and self._tally.answer(robot, refused=refused):
             self._announce_answers()
 
     def forget(self, robot: str) -> None:
-        """Wait for a robot no more: it was removed."""
+        """Stop waiting for a removed robot."""
         self._writer.forget(robot)
         if self._tally.forget(robot) and self.in_force:
             self._announce_answers()
 
     def note_step(self, report: CommandReport) -> None:
-        """Note what became of the Abort that a robot was sent."""
+        """Record a step of the Abort that was sent to a robot."""
         if self.in_force and self._tally.note_step(report):
             self._announce_answers()
 
@@ -382,14 +380,14 @@ class EmergencyStops:
         self._tally.begin(self._robots.commanded())
 
     def _abort_overdue(self, stop: StopRow | None, robots: Iterable[str]) -> None:
-        """Have robots aborted that drive since before a stop that is over: its Abort was stored for none.
+        """Abort robots that drive since before a stop that is over: its Aborts were not stored.
 
-        A stop that was cleared in the future is of a wrong clock: what was before it cannot be known.
+        A stop cleared in the future comes from a wrong clock: it is unknown what was before it.
         """
         now = self._clock.time()
         if stop is None or stop.cleared_at is None or stop.cleared_at > now + AHEAD_S:
             return
-        # Of a motion from a time to come, by a wrong clock of its gateway, nobody knows how old it is.
+        # The age of a motion from the future, by a wrong clock of its gateway, is unknown.
         doubted_from = now + AHEAD_S if now - stop.cleared_at < DOUBTED_S else math.inf
         overdue = [r for r in robots if self._commands.drives_since(r, stop.cleared_at, doubted_from)]
         if overdue:
@@ -403,21 +401,21 @@ class EmergencyStops:
     def _begin(self, stop: StopRow, *, is_own: bool = True) -> None:
         self._events.publish(StopBegun(stop.id))
         self._put_in_force(stop)
-        noting = None
-        # Whatever goes wrong in one of these, what comes after it is done.
+        writing = None
+        # If one of these steps fails, the next ones are done all the same.
         with log_and_continue(log, "noting an emergency stop"):
-            # The disk works while other gateways are told.
-            noting = self._note()
+            # The disk works while the stop is sent to other gateways.
+            writing = self._write_journal()
         for relay in self._relays if is_own else ():
             with log_and_continue(log, "telling other gateways of an emergency stop"):
                 relay.announce(stop)
         with log_and_continue(log, "waiting for the note of an emergency stop"):
-            # One from elsewhere is noted and stored there as well.
-            if noting is not None and is_own:
-                futures.wait([noting], NOTED_WITHIN)
+            # A stop from elsewhere is written to the journal and stored there as well.
+            if writing is not None and is_own:
+                futures.wait([writing], NOTED_WITHIN)
         operators_first = False
         with log_and_continue(log, "telling operators of an emergency stop"):
-            # Behind the note: nobody sees a stop in force that dies with this gateway.
+            # After the journal: operators must not see a stop in force that dies with this gateway.
             if operators_first := len(self._listeners) <= MOST_FIRST:
                 self.announce()
         for link in self._links:
@@ -429,10 +427,10 @@ class EmergencyStops:
         if not operators_first:
             self.announce()
 
-    def _note(self) -> futures.Future[None] | None:
-        """Have the stop in force noted on the disk, and those that are not stored.
+    def _write_journal(self) -> futures.Future[None] | None:
+        """Write the stop in force, and those that are not stored, to the journal.
 
-        The one in force is noted for as long as it is: the database may be set back to before it.
+        The one in force stays there for as long as it is: an older state of the database may be restored.
         """
         if self._journal is None:
             return None
@@ -455,18 +453,18 @@ class EmergencyStops:
                 self._unlisted.append(stop)
             self._unstored.remove(stop)
             with log_and_continue(log, "noting that an emergency stop is stored"):
-                self._note()
+                self._write_journal()
             self.announce()
         await self._writer.write_owed()
 
     def _announce_answers(self) -> None:
-        """Announce what robots answered, together with what others answer meanwhile."""
+        """Announce the answers of robots, together with those that follow shortly."""
         if self._answers_due is None:
             loop = asyncio.get_running_loop()
             self._answers_due = loop.call_later(ANSWERS_TOGETHER, self.announce)
 
     def announce(self) -> None:
-        """Tell every operator, and other gateways, how things stand."""
+        """Send the state of the stop to every operator and to other gateways."""
         self._announced_at = self._clock.steady()
         if self._answers_due is not None:
             self._answers_due.cancel()
@@ -487,7 +485,7 @@ def _load(
 
 
 def _name(operator: str) -> str:
-    """Return the name of an operator as it is stored: it must be refused by no database."""
+    """Return the name of an operator as stored, in a form that no database refuses."""
     return one_line(operator, LONGEST_OPERATOR).strip() or "an operator"
 
 

@@ -1,4 +1,4 @@
-"""The geofence at work: judges where robots are, tells operators, and stops robots if the site says so."""
+"""Geofence: judges robots' positions, notifies operators, and stops robots if the site demands it."""
 
 from __future__ import annotations
 
@@ -43,32 +43,32 @@ from .emergency_stop import EmergencyStops
 log = logging.getLogger(__name__)
 
 OPERATOR = "geofence"
-"""Who stands in the log as the one who stopped a robot."""
+"""Name in the log for the one who stopped a robot."""
 REPORT_EVERY_S = 1.0
 UNCHANGED_EVERY_S = 3.0
-"""Operators who have connected since then hear of it, and that somebody watches at all."""
+"""Interval of repetition, for operators who connected since then, and as a sign that the watch runs."""
 RETRY_AFTER_S = 1.0
 _LONGEST_NAME = 100
 
 
 class AuditNote(Protocol):
-    """What writes into the audit log (see :meth:`.access.journal.Journal.note`)."""
+    """Writes into the audit log (see :meth:`.access.journal.Journal.note`)."""
 
     def __call__(
         self, who: str, action: str, *, done: bool = ..., subject: str | None = ..., detail: str | None = ...
     ) -> None:
-        """Note that ``who`` did ``action``, or tried to."""
+        """Record that ``who`` did ``action``, or tried to."""
 
 
 class _Passed:
-    """A report as it was passed on last: again when it has changed, and after :data:`UNCHANGED_EVERY_S`."""
+    """The report sent last; one is due when it has changed, and after :data:`UNCHANGED_EVERY_S`."""
 
     def __init__(self) -> None:
         self._report: Geofence | None = None
         self._at = -UNCHANGED_EVERY_S
 
     def is_due(self, report: Geofence) -> bool:
-        """Tell whether ``report`` has to be passed on; it is the last one then."""
+        """Return whether ``report`` must be sent, and record it as the last one if so."""
         now, report = time.monotonic(), replace(report, t=0.0)
         if now - self._at < UNCHANGED_EVERY_S and self._report == report:
             return False
@@ -77,10 +77,10 @@ class _Passed:
 
 
 class GeofenceWatch:
-    """Judges some times a second the newest position of each robot that has moved, and no other.
+    """Judges the newest position of each robot that has moved, several times a second.
 
     Robots of other gateways are judged by those, and here where they report nothing. Each robot is stopped
-    by a task of its own: one that takes long, or fails, holds up no other.
+    by a task of its own: one that takes long, or fails, delays no other.
     """
 
     def __init__(
@@ -108,50 +108,50 @@ class GeofenceWatch:
         self._fenced: Fences | None = None
         self._fault: str | None = None
         self._seen = -1
-        """The revision of the robots that were judged."""
+        """The revision of the robots up to which they were judged."""
         self._elsewhere = ReportsElsewhere()
         self._left: frozenset[str] = frozenset()
         """The gateways that judge their robots themselves."""
         self._judged: set[str] = set()
-        """The robots that were judged here since they came from another gateway."""
+        """The robots of this gateway that were judged here since they are here."""
         self._acting = BackgroundTasks()
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
-        """When a report was made last, and of how many stays."""
+        """Time of the last report, and its number of stays."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
         events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
         events.subscribe(RobotClaimed, self._note_claimed)
         events.subscribe(RobotLeft, self._note_left)
 
     async def watch(self) -> None:
-        """Judge the robots that have moved since the last call, act on what that shows, and tell of it."""
+        """Judge the robots that have moved since the last call, act on the result, and report it."""
         fault = None
         try:
             await self._judge(await self._fences())
         except Exception as error:
-            # Again and again it would end the gateway, and every stop with it.
+            # Raised, it would recur and end the gateway, and every stop with it.
             if self._fault is None:
                 log.exception("keepouts and obstacles of site %s cannot be watched", self._site.site.id)
             fault = f"the site's areas cannot be used: {error}"
         self._fault = fault
-        self._tell()
+        self._notify()
 
     def report(self) -> Geofence:
-        """Return what operators are told."""
+        """Return the report for operators."""
         return self._join(self._own())
 
     def _own(self) -> Geofence:
-        """Return what was found of the robots of this gateway."""
+        """Return the report on the robots of this gateway."""
         gateway_of = self._robots.gateway_of
         stays = [stay for stay in self._stays if gateway_of(stay.robot) is None]
         return self._report(stays, self._robots.own_places())
 
     def _join(self, own: Geofence) -> Geofence:
-        """Return what was found of all robots."""
+        """Return the report on all robots."""
         gateway_of, reports = self._robots.gateway_of, self._elsewhere.at(self._clock.steady())
         stays = [stay for stay in self._stays if gateway_of(stay.robot) is not None]
         found = [self._report(stays, self._robots.places_elsewhere(without=self._left))]
         for gateway, report in reports.items():
-            # A robot that has gone from there since is judged by the gateway that has it now.
+            # A robot that has left that gateway since is judged by the gateway that has it now.
             alarms = [alarm for alarm in report.alarms if gateway_of(alarm.robot) == gateway]
             fault = None if report.fault is None else f"gateway {gateway}: {report.fault}"
             found.append(replace(report, alarms=alarms, fault=fault))
@@ -173,10 +173,10 @@ class GeofenceWatch:
         )
 
     async def _fences(self) -> Fences:
-        """Return what robots must not be in; what has changed of that is made beside all other work."""
+        """Return the areas that robots must not be in; changed ones are made in a thread."""
         fences = await asyncio.to_thread(self._site.fences)
         if fences is not self._fenced:
-            # With other objects alone the publication's areas are the same, and so are the stays in them.
+            # If only observed objects changed, the publication's areas and the stays in them are the same.
             if self._fenced is None or fences.keepouts is not self._fenced.keepouts:
                 self._stays.begin_publication()
             self._fenced, self._seen = fences, -1
@@ -202,7 +202,7 @@ class GeofenceWatch:
             log.warning("robot %s is %s at (%.2f, %.2f)", stay.robot, _where(stay), *stay.place)
         gateway_of = self._robots.gateway_of
         for stay in self._stays:
-            # What another gateway has, that one stops; what has come from there since is stopped here.
+            # Robots of another gateway are stopped by it; those that came from there since are stopped here.
             if _is_open(stay) and gateway_of(stay.robot) is None and not self._was_stopped_elsewhere(stay):
                 self._stop_by_task(stay)
         own = [name for name in names if gateway_of(name) is None]
@@ -213,8 +213,8 @@ class GeofenceWatch:
         return robot in self._robots and self._robots.gateway_of(robot) not in self._left
 
     def _was_stopped_elsewhere(self, stay: Stay) -> bool:
-        """Tell whether the robot came here inside the area and was stopped where it comes from; it may be on
-        its way out, and the stay goes on as it was there."""
+        """Return whether the robot came to this gateway inside the area and was stopped at its former one. It
+        may be on its way out, and the stay continues with the data from there."""
         if stay.robot in self._judged:
             return False
         known = self._elsewhere.alarm(stay.robot, stay.kind, stay.name, self._clock.steady())
@@ -228,7 +228,7 @@ class GeofenceWatch:
         self._acting.start(self._act(stay), f"geofence: {stay.action} {stay.robot}")
 
     async def _act(self, stay: Stay) -> None:
-        """Stop the robot; tried again for as long as it is there, under the same id."""
+        """Stop the robot; retried for as long as the stay lasts, under the same id."""
         command = str(uuid.uuid4())
         while True:
             try:
@@ -249,7 +249,7 @@ class GeofenceWatch:
 
     async def _stop(self, stay: Stay, command: str) -> None:
         if self._emergency.in_force:
-            # It has been told to stop already, and nothing sends it on before that is cleared.
+            # It was sent a stop already, and no motion is sent before that is cleared.
             stay.outcome = "stopped"
             return
         reason = _where(stay)
@@ -259,7 +259,7 @@ class GeofenceWatch:
                 stay.outcome = "paused"
                 return
             except (RefusedError, MessageError) as error:
-                # What cannot be kept for later is given up: the robot has to stand.
+                # A task that cannot be paused is aborted: the robot must stand.
                 log.warning("robot %s cannot be paused and is aborted: %s", stay.robot, error)
         await self._orders.abort(AbortTask(command, stay.robot, reason=reason), OPERATOR)
         stay.outcome = "aborted"
@@ -277,7 +277,7 @@ class GeofenceWatch:
         if self._note is not None:
             self._note(OPERATOR, stay.action, done=done, subject=stay.robot, detail=detail)
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         now = time.monotonic()
         if now - self._reported_at < REPORT_EVERY_S and len(self._stays) == self._reported:
             return
@@ -300,7 +300,7 @@ class GeofenceWatch:
         self._elsewhere.add_report(judged.gateway, judged.report, self._clock.steady())
 
     def _unjudged(self, places: RobotPlaces, now: float) -> list[str]:
-        """Return the robots that may be anywhere; those that have gone offline stand where they were."""
+        """Return the robots of unknown position; those that have gone offline stand where they were."""
         lost_after = self._site.settings.liveness.lost_after_s
         is_recent = now - places.table[POSE_AT] < lost_after
         seen = (places.states == FRESH) & ((places.flags & (LOCATED | DOUBTED)) == LOCATED) & is_recent
@@ -309,7 +309,7 @@ class GeofenceWatch:
 
 
 def _is_open(stay: Stay) -> bool:
-    """Tell whether something has to be done about a stay that nobody has begun yet."""
+    """Return whether the action on a stay is due and not begun yet."""
     return stay.action != "none" and stay.outcome == "none"
 
 
@@ -329,8 +329,8 @@ def _alarm(stay: Stay, *, is_placed: bool) -> FenceAlarm:
 
 
 def _placed(robots: Robots, since: int, without: AbstractSet[str]) -> tuple[list[str], Points]:
-    """Return the names and places, (n, 2), of those that changed after revision ``since`` and have said where
-    they are since they connected, without the robots of some gateways."""
+    """Return the names and positions, (n, 2), of robots that changed after revision ``since`` and have
+    reported a position since they connected, without those of the gateways ``without``."""
     found = robots.places(since, without)
     places = found.table[[X, Y]].T
     places[(found.flags & LOCATED) == 0] = np.nan

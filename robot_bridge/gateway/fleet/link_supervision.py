@@ -1,4 +1,4 @@
-"""Supervision of links' processes, and of robots' accounts that keep the database waiting."""
+"""Supervision of links and their processes, and of robots' accounts that block the database."""
 
 from __future__ import annotations
 
@@ -27,14 +27,14 @@ from ..model.robots import Robots
 from ..storage.database import Database
 from ..storage.roles import blocking_sessions
 
-# --- How each link is: connected or not, its own side in order or not, and what operators are told of that
+# --- State of each link: connected or not, its own side in order or not, and the reports to operators
 
 GRACE = 3.0
-"""seconds that a link may be away before operators are told: most come back by themselves."""
+"""seconds that a link may be away before operators are notified: most come back by themselves."""
 MOST_NAMES = 50
 AWAY = "it is not connected"
 REPLAY = "replay"
-"""The kind of links that play recordings."""
+"""Kind of links that play recordings."""
 
 Ask = Callable[[str, dict[str, Any]], Awaitable[Any]]
 """Calls a method of a link, and returns its result; raises RefusedError."""
@@ -42,7 +42,7 @@ Ask = Callable[[str, dict[str, Any]], Awaitable[Any]]
 
 @dataclass
 class LinkProcess:
-    """A link that the gateway starts; ``fault`` is why it does not run, in a line for operators."""
+    """A link that the gateway starts; ``fault`` is the reason why it does not run, one line for operators."""
 
     name: str
     kind: str
@@ -54,7 +54,7 @@ class LinkProcess:
 
 @dataclass(frozen=True)
 class ConnectedLink:
-    """A link that is connected: its kind, None before it said hello, and what it said last of itself."""
+    """A connected link: its kind, None before its hello, and its last report on itself."""
 
     name: str
     kind: str | None
@@ -75,7 +75,7 @@ class _Known:
 
 
 class LinkWatch:
-    """The links that a site names, and those that have been connected. Operators are told of each change."""
+    """The links that a site names, and those that have connected. Operators are notified of each change."""
 
     def __init__(self, robots: Robots, listeners: Listeners, clock: Clock = SYSTEM_CLOCK) -> None:
         self._robots = robots
@@ -85,7 +85,7 @@ class LinkWatch:
         self._last_report = Links()
 
     def update(self, connected: Iterable[ConnectedLink], processes: Iterable[LinkProcess] = ()) -> None:
-        """Take note of how things are, and tell operators what has changed."""
+        """Update the state of the links, and notify operators of changes."""
         now = self._clock.steady()
         for process in processes:
             self._known.setdefault(process.name, _Known(now, process.kind)).process = process
@@ -102,19 +102,19 @@ class LinkWatch:
             self._listeners.announce("links", "", to_json(report))
 
     def introduce(self, link: str, kind: str, ask: Ask) -> None:
-        """Note the kind of a link that has said hello, before it speaks for any robot, and how to ask it."""
+        """Record the kind of a link at its hello, before any message of a robot, and how to call it."""
         known = self._known.setdefault(link, _Known(self._clock.steady()))
         known.kind, known.ask = kind, ask
 
     def withdraw(self, link: str, ask: Ask) -> None:
-        """Note that a connection has ended; one that has come in its place is asked on."""
+        """Record that a connection has ended; one that has replaced it is kept."""
         known = self._known.get(link)
         if known is not None and known.ask == ask:
             known.ask = None
 
     @handles(SetPlayback)
     async def set_playback(self, request: SetPlayback) -> PlaybackReport:
-        """Have a link play its recording otherwise, and return how it does now; raises RefusedError."""
+        """Set how a link plays its recording, and return its playback state; raises RefusedError."""
         known = self._known.get(request.link)
         if known is None or known.kind != REPLAY:
             played = ", ".join(sorted(name for name, one in self._known.items() if one.kind == REPLAY))
@@ -128,12 +128,12 @@ class LinkWatch:
             raise RefusedError(f"link {request.link} answers with what is no report: {error}") from None
 
     def kind_of(self, link: str) -> str | None:
-        """Return the kind of a link; None for one that has not been heard, and for what is none."""
+        """Return the kind of a link; None for one that has not connected, and for an unknown name."""
         known = self._known.get(link)
         return None if known is None else known.kind
 
     def report(self) -> Links:
-        """Return how each link is; one that nobody starts and whose robots are all elsewhere is forgotten."""
+        """Return the state of each link; one not started here whose robots are all elsewhere is dropped."""
         now = self._clock.steady()
         found = []
         for name, known in sorted(self._known.items()):
@@ -156,11 +156,11 @@ class LinkWatch:
         return {(link,): each[name](known) for link, known in self._known.items()}
 
     def counts(self) -> dict[tuple[str, ...], float]:
-        """Return what links have counted, by link and name."""
+        """Return the counters of links, by link and name."""
         return {(link, name): n for link, known in self._known.items() for name, n in known.counts.items()}
 
     def _fault(self, known: _Known, now: float) -> str | None:
-        """Return what is wrong with a link, None where nothing is."""
+        """Return the fault of a link, None if it has none."""
         if now - known.seen_at > GRACE:
             return (known.process.fault if known.process else None) or AWAY
         if known.status is not None and not known.status.ok:
@@ -172,24 +172,24 @@ class LinkWatch:
 
 
 def _reaches(known: _Known, now: float) -> bool:
-    """Tell whether a link reaches its robots although something is the matter with some of them."""
+    """Return whether a link reaches its robots although some of them have a fault."""
     return now - known.seen_at <= GRACE and known.status is not None and bool(known.status.reached)
 
 
-# --- Links that a site names: each is started as a process of its own, and started again when it ends ---
+# --- Links that a site names: each is started as a process of its own, and restarted when it ends ---
 
 log = logging.getLogger(__name__)
 
 FIRST_WAIT, LONGEST_WAIT = 1.0, 60.0
 """seconds between two starts; each time twice as long, until one has lasted for LONGEST_WAIT."""
 END_WITHIN = 1.0
-"""seconds that a process has to end in good order: a gateway ends within five in all."""
+"""seconds for a process to end in good order: a gateway ends within five in all."""
 URL = "ROBOT_BRIDGE_LINK_URL"
-"""The environment variable that tells a link where its gateway is, unless its settings do."""
+"""The environment variable with the URL of the gateway for a link, unless its settings have one."""
 
 
 class LinkProcesses:
-    """Keeps the links going that ``options`` name, with settings in the site's ``folder``."""
+    """Keeps the links of ``options`` running, with settings in the site's ``folder``."""
 
     def __init__(self, options: LinkOptions, folder: Path) -> None:
         self._processes = [
@@ -198,11 +198,11 @@ class LinkProcesses:
 
     @property
     def states(self) -> Sequence[LinkProcess]:
-        """How each of them is."""
+        """The state of each process."""
         return self._processes
 
     async def run(self, url: str) -> None:
-        """Keep them going until cancelled, with the gateway at ``url``; then end them."""
+        """Keep them running until cancelled, with the gateway at ``url``; then end them."""
         async with asyncio.TaskGroup() as group:
             for one in self._processes:
                 group.create_task(self._keep(one, url))
@@ -216,7 +216,7 @@ class LinkProcesses:
             try:
                 one.fault = await self._run_once(one, url)
             except Exception as error:
-                # What goes wrong with one link ends no other, whose robots could not be stopped then.
+                # A failure of one link must end no other, whose robots could not be stopped then.
                 log.exception("link %s: unexpected %s", one.name, type(error).__name__)
                 one.fault = f"it cannot be kept going: {error}"
             if time.monotonic() - began > LONGEST_WAIT:
@@ -226,7 +226,7 @@ class LinkProcesses:
             wait = min(wait * 2, LONGEST_WAIT)
 
     async def _run_once(self, one: LinkProcess, url: str) -> str:
-        """Run a link to its end; return why it ended."""
+        """Run a link to its end; return the reason why it ended."""
         try:
             process = await asyncio.create_subprocess_exec(
                 *(sys.executable, "-m", "robot_bridge", "link", one.kind, "--config", str(one.file)),
@@ -250,14 +250,14 @@ class LinkProcesses:
 
 
 def _environment(url: str) -> Mapping[str, str]:
-    """Return the environment of a link: whom systemd watches is the gateway alone."""
+    """Return the environment of a link: systemd watches only the gateway."""
     left_out = ("NOTIFY_SOCKET", "WATCHDOG_USEC")
     own = {name: value for name, value in os.environ.items() if name not in left_out}
     return {**own, URL: url}
 
 
 async def _pass_on(lines: asyncio.StreamReader | None) -> str:
-    """Write what a link says into this log's stream; return its last line, which says why it ended."""
+    """Write a link's output into this log's stream; return its last line, the reason why it ended."""
     last = ""
     while lines is not None and (line := await _line(lines)):
         sys.stderr.write(line)
@@ -286,12 +286,12 @@ async def _end(process: asyncio.subprocess.Process) -> None:
         await process.wait()
 
 
-# --- Robots' accounts of the database that keep the others waiting again and again lose their connections
+# --- Suspension of robots' database accounts that block the others repeatedly
 
 MOST_OFFENCES, WITHIN_S = 3, 60.0
-"""So often an account may keep the gateway waiting in so many seconds; a flood is once too many."""
+"""How often an account may block the gateway, within how many seconds; one flood is too many."""
 FIRST_S, LONGEST_S = 60.0, 3600.0
-"""How long an account is locked; each time twice as long as the last time, unless that was long ago."""
+"""seconds for which an account is locked; twice as long each time, unless the last was long ago."""
 FORGIVEN_AFTER_S = 6 * 3600.0
 BLOCKS = "its transactions kept the gateway waiting again and again"
 FLOODS = "it sent notifications without end"
@@ -299,18 +299,18 @@ UPGRADE = "have an administrator run: robot-bridge database upgrade"
 
 
 class SuspendedCommands(Protocol):
-    """The commands that robots have."""
+    """The commands of robots, as far as suspensions need them."""
 
     def awaits_any_abort(self, robot: str) -> bool:
-        """Tell whether an Abort is on its way to the robot, an emergency stop's or another."""
+        """Return whether an Abort is on its way to the robot, an emergency stop's or another."""
 
 
 class AccountSuspensions:
-    """Locks such accounts for a while, says so to operators, and unlocks them.
+    """Locks such accounts for a while, notifies operators, and unlocks them.
 
     All by the database's second connection: the first one may be waiting for just these accounts.
     Those that an earlier gateway has locked are unlocked in time, too. No account is locked while an Abort is
-    on its way to its robot: a stop that could not be read would be worse than what the account does.
+    on its way to its robot: a stop that cannot be read would be worse than a blocked database.
     """
 
     def __init__(
@@ -330,7 +330,7 @@ class AccountSuspensions:
         self._not_locked: set[str] = set()
 
     def report(self) -> Suspensions:
-        """Return which accounts are suspended now."""
+        """Return the accounts that are suspended now."""
         return Suspensions(
             [
                 Suspension(robot, why, None if robot in self._not_locked else until)
@@ -339,27 +339,27 @@ class AccountSuspensions:
         )
 
     async def restore(self) -> None:
-        """Take over what an earlier gateway has locked; raises StoreError."""
+        """Restore the suspensions by an earlier gateway; raises StoreError."""
         self._in_force = await self._database.read(blocking_sessions.stored_suspensions)
         if self._in_force:
-            self._tell()
+            self._notify()
 
     async def follow(self) -> None:
-        """Take in what another gateway of the fleet has locked and unlocked; raises StoreError."""
+        """Apply the suspensions by another gateway of the fleet; raises StoreError."""
         stored = await self._database.run_aside(blocking_sessions.stored_suspensions)
         if stored != self._in_force:
             self._in_force = stored
             self._not_locked &= stored.keys()
-            self._tell()
+            self._notify()
 
     async def update(self) -> None:
-        """Lock accounts that have offended too often, unlock those whose time is over; raises StoreError."""
+        """Lock accounts that have offended too often, unlock expired ones; raises StoreError."""
         now = self._clock.time()
         for robot, why in (await self._offenders(now)).items():
             if robot not in self._in_force and not self._commands.awaits_any_abort(robot):
                 await self._suspend(robot, why, now)
         for robot, (until, _) in list(self._in_force.items()):
-            # A clock that was set back must not lock an account for ever.
+            # A clock that was set back must not lock an account forever.
             is_over = until <= now or until > now + LONGEST_S
             if is_over or self._commands.awaits_any_abort(robot):
                 await self._resume(robot)
@@ -384,7 +384,7 @@ class AccountSuspensions:
         seconds = min(2 * lasted, LONGEST_S) if lasted and now - last < FORGIVEN_AFTER_S else FIRST_S
         self._last[robot] = now, seconds
         in_force = self._in_force | {robot: (now + seconds, why)}
-        # Noted before it is done: whoever comes after a crash in between unlocks what may be locked.
+        # Stored before it is done: after a crash in between the next gateway unlocks what may be locked.
         await self._database.run_aside(blocking_sessions.store_suspensions, in_force)
         self._in_force = in_force
         if await self._database.run_aside(blocking_sessions.set_suspended, robot, True):
@@ -392,7 +392,7 @@ class AccountSuspensions:
         else:
             self._not_locked.add(robot)
             log.error("database account of robot %s: %s; it cannot be locked: %s", robot, why, UPGRADE)
-        self._tell()
+        self._notify()
 
     async def _resume(self, robot: str) -> None:
         await self._database.run_aside(blocking_sessions.set_suspended, robot, False)
@@ -401,7 +401,7 @@ class AccountSuspensions:
         self._in_force = in_force
         self._not_locked.discard(robot)
         log.warning("database account of robot %s: not locked any more", robot)
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         self._listeners.announce("suspensions", "", to_json(self.report()))

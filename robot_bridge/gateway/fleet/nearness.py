@@ -1,4 +1,4 @@
-"""Nearness of people and vehicles that are only seen to robots, now and soon."""
+"""Nearness of people and vehicles that are only seen to robots, now and predicted."""
 
 from __future__ import annotations
 
@@ -24,16 +24,16 @@ from ..traffic.robot_paths import TrafficSnapshot
 from ..traffic.service import TrafficControl
 from .link_supervision import LinkWatch
 
-# --- Who is near a robot, and who will be if both go on as they do; no I/O ---
+# --- People and vehicles near a robot now, or soon if both keep their motion; no I/O ---
 
 MARGIN_M = 1.0
-"""Metres beyond the limit at which who was near is so no more: phones are off by metres."""
+"""Metres beyond the limit at which nearness ends: positions of phones are off by metres."""
 Pair = tuple[str, str]
-"""Who is seen, and the robot."""
+"""Names of the person or vehicle that is seen, and of the robot."""
 
 
 class Meeting(NamedTuple):
-    """Two that are near, or will be in ``seconds``, with ``metres`` between them then, about ``place``."""
+    """A pair that is near, or will be in ``seconds``, with ``metres`` between them then, about ``place``."""
 
     seen: str
     robot: str
@@ -48,21 +48,21 @@ class Meeting(NamedTuple):
 
 
 class NearnessLimits(NamedTuple):
-    """Metres between the middles of two that are near, and seconds for which is looked ahead."""
+    """Metres between the centres of a near pair, and seconds of prediction."""
 
     metres: float
     within_s: float
 
 
 class Mover(NamedTuple):
-    """Somebody at ``place``, metres, with ``velocity``, m/s, both in the site frame."""
+    """A robot, person or vehicle at ``place``, metres, with ``velocity``, m/s, both in the site frame."""
 
     name: str
     place: tuple[float, float]
     velocity: tuple[float, float]
 
     def straight_on(self, now: float, seconds: float) -> Movement:
-        """Return the movement of who goes on for ``seconds`` as now, and stands then."""
+        """Return the movement with the present velocity for ``seconds``, and standing then."""
         begin = np.array(self.place, dtype=np.float64)
         points = np.stack([begin, begin + np.array(self.velocity, dtype=np.float64) * seconds])
         return Movement(self.name, points, np.array([now, now + seconds]), 0.0)
@@ -75,9 +75,9 @@ def find_meetings(
     now: float,
     near: Container[Pair] = (),
 ) -> list[Meeting]:
-    """Return who is near which robot now, and who will be soon, the soonest first.
+    """Return the pairs that are near now, and those that will be soon, the soonest first.
 
-    All radii are 0. Those in ``near`` were near before, and are so up to a margin beyond the limit.
+    All radii are 0. Pairs in ``near`` were near before, and are so up to a margin beyond the limit.
     """
     if not people or not robots:
         return []
@@ -112,25 +112,25 @@ def _near_now(
     return found
 
 
-# --- Nearness at work: people and vehicles that are only seen are held against robots, and operators told
+# --- Watch: people and vehicles that are only seen are compared with robots, and operators notified
 
 log = logging.getLogger(__name__)
 
 REPORT_EVERY_S = 1.0
 MOST_ALARMS = 300
 SLOWEST_MS = 0.3
-"""m/s below which somebody stands: receivers report some decimetres a second of who does not move."""
+"""m/s below which a mover counts as standing: receivers at rest report some decimetres a second."""
 FASTEST_MS = 40.0
-"""m/s that is assumed at most when it is sorted out who can meet at all."""
+"""m/s assumed at most in the selection of those who can meet at all."""
 REPLAY = "replay"
-"""The kind of links whose robots were there once, and can be near to nobody."""
+"""Kind of links with robots of a recording, which cannot be near to anybody."""
 CONNECTED = (RobotState.FRESH, RobotState.STALE)
 
 
 class NearnessWatch:
-    """Holds some times a second all that is only seen against all robots; it stops nobody.
+    """Compares all that is only seen with all robots, several times a second; it stops no robot.
 
-    Every operator hears of it through ``listeners``.
+    Every operator is notified through ``listeners``.
     """
 
     def __init__(
@@ -149,14 +149,14 @@ class NearnessWatch:
         self._clock = clock
         self._listeners = listeners
         self._since: dict[Pair, tuple[bool, float]] = {}
-        """Whether they are near now, and since when that or the prediction holds."""
+        """For each pair whether it is near now, and since when this or the prediction holds."""
         self._found: list[Meeting] = []
         self._fault: str | None = None
         self._last_report: tuple[float, bool] = (-math.inf, False)
-        """When operators were told last, and whether that was of something."""
+        """Time of the last notification, and whether it had any pairs."""
 
     async def watch(self) -> None:
-        """Judge where everybody is now, and tell of it."""
+        """Judge the present positions, and notify operators."""
         now, limits = self._clock.time(), self._site.settings.nearness
         try:
             found = await self._meetings(now, NearnessLimits(limits.metres, limits.within_s))
@@ -166,11 +166,11 @@ class NearnessWatch:
             self._fault, found = f"it cannot be judged: {error}", []
         else:
             self._fault = None
-        self._note(found)
-        self._tell()
+        self._record(found)
+        self._notify()
 
     def report(self) -> Nearness:
-        """Return what operators are told."""
+        """Return the report for operators."""
         limits, now = self._site.settings.nearness, self._clock.time()
         alarms = [
             NearnessAlarm(
@@ -207,11 +207,11 @@ class NearnessWatch:
         return await asyncio.to_thread(_judged, people, robots, situation, limits, near)
 
     def _is_seen(self, robot: Robot) -> bool:
-        """Tell whether who is only seen is there now: where somebody is who is lost is not known."""
+        """Return whether a robot is only seen and has a known position now: one that is lost has none."""
         replayed = self._links.kind_of(robot.link) == REPLAY
         return robot.state in CONNECTED and not replayed
 
-    def _note(self, found: list[Meeting]) -> None:
+    def _record(self, found: list[Meeting]) -> None:
         now = self._clock.time()
         since = {}
         for one in found:
@@ -222,7 +222,7 @@ class NearnessWatch:
                 log.warning("%s is %.1f m from robot %s", one.seen, one.metres, one.robot)
         self._since, self._found = since, found
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         reported_at, was_near = self._last_report
         something = bool(self._found or self._fault)
         if something is not was_near or (something and time.monotonic() - reported_at >= REPORT_EVERY_S):
@@ -231,14 +231,14 @@ class NearnessWatch:
 
 
 def _mover(robot: Robot, pose: SendPos) -> Mover:
-    # Who does not know where it heads stands, as far as can be known.
+    # One without a known heading counts as standing.
     goes = abs(pose.v) >= SLOWEST_MS and pose.theta_from != "unknown"
     velocity = (pose.v * math.cos(pose.theta), pose.v * math.sin(pose.theta)) if goes else (0.0, 0.0)
     return Mover(robot.name, (pose.x, pose.y), velocity)
 
 
 def _within(robots: list[Mover], people: list[Mover], reach: float) -> list[Mover]:
-    """Return the robots that anybody could come near to."""
+    """Return the robots that any of ``people`` could come near to."""
     if not robots:
         return []
     here, there = (np.array([one.place for one in some]) for some in (robots, people))
@@ -253,7 +253,7 @@ def _judged(
     limits: NearnessLimits,
     near: set[Pair],
 ) -> list[Meeting]:
-    """Return who is near whom; robots go on along their ways where those are known, all else straight on."""
+    """Return the near pairs; robots continue along their paths where known, all else straight on."""
     now, seconds = situation.now, limits.within_s
     on_ways = situation.movements()
     moving = [

@@ -1,4 +1,4 @@
-"""Updates of operators: robots as reports and as tables of numbers, and snapshots of what has changed."""
+"""Updates for operators: robots as reports and as tables of numbers, and snapshots of changes."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def reports_of(robots: Iterable[Robot], now: float, kind: Callable[..., Report])
 
 
 def _report_in_doubt(robot: Robot, now: float, kind: Callable[..., Report]) -> Report:
-    # The status says it as well, for desks that do not know the field.
+    # The status has it as well, for desks that do not know the field.
     return _report(robot, now, partial(kind, doubt=robot.doubt), robot.doubt)
 
 
@@ -103,7 +103,7 @@ _OF_A_POSE = {
     "device_time": "t",
     "fix_time": "fix_t",
 }
-"""Columns of a report, and where they stand."""
+"""Columns of a report, and where their values are."""
 _AGES = {"age", "pose_age"}
 """Columns of seconds since a time, in whole milliseconds."""
 _ROBOT, _POSE = attrgetter(*_OF_A_ROBOT.values()), attrgetter(*_OF_A_POSE.values())
@@ -113,7 +113,7 @@ _NOWHERE = (None,) * len(_OF_A_POSE)
 def position_table(
     robots: Sequence[Robot], now: float
 ) -> tuple[dict[str, npt.NDArray[np.float64]], list[str]]:
-    """Return what is told of ``robots`` at ``now``: (n,) by column, and the words of texts."""
+    """Return the table of ``robots`` at ``now``: (n,) by column, and the words of texts."""
     if not robots:
         return {name: np.empty(0) for name in POSITION_ALWAYS}, []
     facts = zip(*[_ROBOT(robot) for robot in robots], strict=True)
@@ -122,7 +122,7 @@ def position_table(
     words: dict[str | None, float] = {None: float("nan")}
     columns = {}
     for name, values in by_column.items():
-        # To count what most columns have of every robot takes longer than to fetch one more.
+        # Counting None in the columns that nearly all robots have takes longer than reading one value.
         if values[0] is None and values.count(None) == len(values):
             continue
         columns[name] = _places(values, words) if name in POSITION_TEXTS else np.array(values, np.float64)
@@ -142,9 +142,9 @@ def table_frame(
     everything: bool = False,
     form: PositionForm = PositionForm.COLUMNS,
 ) -> bytes:
-    """Return the binary frame that tells of ``robots`` at ``now``, under the gateway's time ``t``.
+    """Return the binary frame of ``robots`` at ``now``, under the gateway's time ``t``.
 
-    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    With ``everything`` they are all robots; else ``removed`` were removed since the last frame.
     """
     columns, words = position_table(robots, now)
     names = [robot.name for robot in robots]
@@ -159,7 +159,7 @@ def packed_table(
     form: PositionForm,
     **news: Any,
 ) -> bytes:
-    """Return the binary frame of a table by :func:`position_table`; ``news`` stand in its head besides."""
+    """Return the binary frame of a table by :func:`position_table`; ``news`` are added to its head."""
     value = POSITION_VALUE
     if form is PositionForm.PLACES:
         columns = {name: columns[name] for name in PLACE_COLUMNS if name in columns}
@@ -170,15 +170,15 @@ def packed_table(
 
 
 def _places(texts: Sequence[str | None], words: dict[str | None, float]) -> npt.NDArray[np.float64]:
-    """Return the place of each text among ``words``, which grow by those that are new; NaN for None."""
+    """Return the index of each text in ``words``, to which new ones are added; NaN for None."""
     if texts.count(texts[0]) == len(texts):
         # Nearly all robots are in one state and on one link.
         return np.full(len(texts), words.setdefault(texts[0], len(words) - 1))
-    # None is among them as well, so that a new word's place is one less than how many there are.
+    # None is among them as well, so that a new word's index is one less than the number of words.
     return np.array([words.setdefault(text, len(words) - 1) for text in texts], dtype=np.float64)
 
 
-# --- Positions as operators are sent them: what changed, encoded once for all who ask at the same rate
+# --- Positions sent to operators: changes, encoded once for all desks of the same rate
 
 EVERYTHING = -1
 MOST_RATES = 64
@@ -193,14 +193,14 @@ ReportRow = msgspec.defstruct(
     omit_defaults=True,
     gc=False,
 )
-"""A report as it is encoded: what is unknown is left out, and msgspec makes and writes it several times as
-fast as a dataclass. Thousands of them are told every second."""
+"""A report as encoded: unknown fields are left out, and msgspec makes and writes it several times as fast as
+a dataclass. Thousands of them are sent every second."""
 
 
 def positions(rows: Sequence[Any], removed: Sequence[str] = (), *, everything: bool) -> dict[str, Any]:
     """Return rows as the parameters of ``positions`` and the result of ``get_positions``.
 
-    With ``everything`` they are all that there are; else ``removed`` are gone since what was told last.
+    With ``everything`` they are all robots; else ``removed`` were removed since the last frame.
     """
     message: dict[str, Any] = {"t": round(time.time(), 3), "robots": rows}
     if removed:
@@ -216,7 +216,7 @@ class Snapshot(NamedTuple):
 
 
 class Tick(NamedTuple):
-    """A moment that all who are told every ``interval`` seconds share."""
+    """A time shared by all desks that are updated every ``interval`` seconds."""
 
     interval: float
     number: int
@@ -227,7 +227,7 @@ class Tick(NamedTuple):
         return cls(interval, math.floor(now / interval))
 
     def following(self, now: float) -> Tick:
-        """Return the next tick that is still to come; a timer that went off early counts as on time."""
+        """Return the next tick after ``now``; a timer that fired early counts as on time."""
         return Tick(self.interval, max(self.number, math.floor(now / self.interval)) + 1)
 
     def wait(self, now: float) -> float:
@@ -236,10 +236,10 @@ class Tick(NamedTuple):
 
 
 class Snapshots:
-    """Makes the frames: at each tick what changed since the one before, and everything for who missed that.
+    """Makes the frames: at each tick the changes since the one before, or everything for who missed that.
 
     So a hundred operators at one rate cost two encodings a tick and form at most, however slow some of them
-    are. ``clock`` is the one by which robots' messages came in.
+    are. ``clock`` is the one by which robots' messages were received.
     """
 
     def __init__(self, robots: Robots, clock: Clock) -> None:
@@ -250,9 +250,9 @@ class Snapshots:
     def after(
         self, revision: int, tick: Tick | None = None, form: PositionForm = PositionForm.ROWS
     ) -> Snapshot:
-        """Return what changed after ``revision``, an earlier snapshot's or EVERYTHING.
+        """Return the changes after ``revision``, an earlier snapshot's or EVERYTHING.
 
-        Who asks for the same ``tick`` is told the same; without one it is what is known now.
+        The snapshot of a ``tick`` is shared by all its desks; without a tick it is the present state.
         """
         if tick is None:
             return self._make(revision, form)
@@ -261,7 +261,7 @@ class Snapshots:
             made = {}
         if (form, revision) not in made:
             made[form, revision] = self._make(revision, form)
-        # Clients choose their rates; the one that was asked for longest ago is forgotten.
+        # Clients choose their rates; the least recently used one is dropped.
         self._made[tick.interval] = (tick.number, made)
         if len(self._made) > MOST_RATES:
             del self._made[next(iter(self._made))]

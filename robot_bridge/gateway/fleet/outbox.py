@@ -1,4 +1,4 @@
-"""Outbox of every robot: answers into SA, requests out of RR, what comes of both, and maps on their way."""
+"""Outboxes of robots: answers into SA, requests out of RR, their outcomes, and delivery of maps."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ from .emergency_stop import EmergencyStops
 
 log = logging.getLogger(__name__)
 
-# --- What comes of robots' requests, and how it is written: answers into SA, and requests out of RR ---
+# --- Outcomes of robots' requests, and their storage: answers into SA, and requests out of RR ---
 
 WHOLE_SITE = SetMap(b"")
-"""The map of the whole site for a robot that reads no rows itself: what delivers it has the map at hand.
+"""The map of the whole site for a robot that reads no rows itself: its link has the map at hand.
 
-A city's map has megabytes: written, checkpointed and deleted for each robot it keeps all others waiting.
+The map of a city has megabytes: written, checkpointed and deleted for each robot it delays all others.
 """
 
 
 @dataclass(frozen=True)
 class RequestOutcome:
-    """What comes of a robot's request: its OpAck, an answer, and the kinds of older answers that are void.
+    """Outcome of a robot's request: its OpAck, an answer, and the kinds of older answers that are void.
 
-    What is ``written`` stands in SA already, and only the request is still to be deleted. ``part``: its
-    map is a part of the site, and more of it may have to follow.
+    With ``written`` it is in SA already, and only the request must still be deleted. ``part``: its map is a
+    part of the site, and more of it may have to follow.
     """
 
     robot: str
@@ -59,18 +59,18 @@ class RequestOutcome:
 
     @property
     def admitted(self) -> bool:
-        """Tell whether the request was a Ready, and taken."""
+        """Return whether the request was a Ready, and accepted."""
         return self.ack is not None and self.ack.ok and self.ack.magic is not None
 
     def rows(self, *, acks: bool) -> list[tuple[str, Answer]]:
-        """Return what will be written into SA, the OpAck first."""
+        """Return the rows to be written into SA, the OpAck first."""
         if self.written:
             return []
         messages: list[Answer | None] = [self.ack if acks else None, self.answer]
         return [(self.robot, message) for message in messages if message is not None]
 
     def voided(self) -> tuple[str, ...]:
-        """Return the kinds of older answers that are void; a map or a Start is, when there is a newer one."""
+        """Return the kinds of older answers that are void, such as an older map or Start."""
         if self.written:
             return ()
         renewed = isinstance(self.answer, (SetMap, Start))
@@ -78,9 +78,9 @@ class RequestOutcome:
 
 
 def answer_rows(outcomes: Sequence[RequestOutcome], *, acks: bool) -> list[tuple[str, Answer]]:
-    """Return what will be written into SA; left out is what a later Ready of the same robot makes void.
+    """Return the rows to be written into SA, without those that a later Ready of the same robot makes void.
 
-    A robot that said Ready again and again while nobody read it is given the map of the whole site once.
+    A robot that repeated Ready while no gateway read it is given the map of the whole site once.
     """
     void: defaultdict[str, set[str]] = defaultdict(set)
     kept: list[tuple[str, Answer]] = []
@@ -99,14 +99,14 @@ def finish_requests(
     request_ids: Sequence[int],
     fixes: Sequence[PackedFix],
 ) -> None:
-    """Write what comes of requests, and where robots were, and delete the requests."""
+    """Write the outcomes of requests, and the positions of robots, and delete the requests."""
     void: defaultdict[str, set[str]] = defaultdict(set)
     for outcome in outcomes:
         void[outcome.robot].update(outcome.voided())
     answers.remove_void(connection, void)
     for outcome in outcomes:
         if request_ids and outcome.admitted and isinstance(outcome.answer, SetMap):
-            # It may have come over another link before, and is to read the rows itself from now on.
+            # It may have used another link before, and must read the rows itself from now on.
             answers.fill_maps(connection, outcome.robot, outcome.answer.map)
     answers.add_answers(connection, rows)
     trajectories.add(connection, fixes)
@@ -114,18 +114,18 @@ def finish_requests(
 
 
 class _FinishCalls(BatchedWork[None]):
-    """What comes of requests that were made over no table, without where robots were."""
+    """Writes the outcomes of requests that did not come through a table, without robots' positions."""
 
     def do_all(
         self,
         connection: Connection,
         asked: Sequence[tuple[Sequence[RequestOutcome], Sequence[tuple[str, Answer]]]],
     ) -> Sequence[None]:
-        """Write what comes of the requests of each, with the rows for SA."""
+        """Write the outcomes of all calls, with their rows for SA."""
         outcomes: list[RequestOutcome] = []
         rows: list[tuple[str, Answer]] = []
         for more, their_rows in asked:
-            # What comes of a robot's later request may make the answer to an earlier one void.
+            # The outcome of a robot's later request may make the answer to an earlier one void.
             if {one.robot for one in more} & {one.robot for one in outcomes}:
                 finish_requests(connection, outcomes, rows, [], [])
                 outcomes, rows = [], []
@@ -144,26 +144,25 @@ def finish_and_read(
     rows: Sequence[tuple[str, Answer]],
     reader: Outbox,
 ) -> list[AnswerRow]:
-    """Write what comes of requests, and return what then waits for one robot."""
+    """Write the outcomes of requests, and return the messages that then wait for one robot."""
     finish_requests(connection, outcomes, rows, [], [])
     return answers.read_answers(connection, *reader)
 
 
 def read_requests(connection: Connection, sent: Sequence[int]) -> tuple[list[answers.RequestRow], set[int]]:
-    """Return the oldest requests, and which of the messages ``sent`` still wait to be read."""
+    """Return the oldest requests, and those of the messages ``sent`` that are still unread."""
     # In this order: a robot deletes what it read before it acknowledges it.
     rows = answers.read_requests(connection)
     return rows, answers.waiting(connection, sent)
 
 
-# --- The robots' mailboxes in the database: what waits for each in SA, and what they have said into RR
-# A message stays in SA until its robot has read it, a request in RR until its answer is stored: what is
-# lost on
-# the way is sent again.
+# --- The robots' mailboxes in the database: messages for each in SA, and their requests in RR ---
+# A message stays in SA until its robot has read it, a request in RR until its answer is stored: if one is
+# lost on the way it is sent again.
 
 
 class RobotOutboxes:
-    """What links read and write for the robots at their other ends; coroutines raise StoreError."""
+    """Mailboxes that links read and write for their robots; coroutines raise StoreError."""
 
     def __init__(
         self,
@@ -181,22 +180,22 @@ class RobotOutboxes:
         self._events: dict[str, asyncio.Event] = {}
         self._changes: Counter[str] = Counter()
         self._fresh: dict[str, tuple[Outbox, list[AnswerRow]]] = {}
-        """what was read as an answer was written, until anything else is written for that robot."""
+        """messages read when an answer was written, until anything else is written for that robot."""
         self.parts: asyncio.Queue[str] = asyncio.Queue()
-        """the robots for which a map of a part of the site was stored in place of the whole one."""
+        """robots for which a map of a part of the site was stored in place of the whole one."""
 
     def event(self, robot: str) -> asyncio.Event:
-        """Return the event that is set whenever SA holds something new for the robot."""
+        """Return the event that is set whenever SA has something new for the robot."""
         return self._events.setdefault(robot, asyncio.Event())
 
     def changed(self, robot: str) -> None:
-        """Note that SA holds something new for the robot."""
+        """Record that SA has something new for the robot."""
         self._changes[robot] += 1
         self._fresh.pop(robot, None)
         self.event(robot).set()
 
     async def outbox(self, robot: str, after: int, after_urgent: int = 0) -> list[AnswerRow]:
-        """Return the robot's messages as :func:`.answers.read`, without those that must not be sent now."""
+        """Return the robot's messages as :func:`.answers.read`, without those held back now."""
         reader = robot, after, after_urgent
         read, rows = self._fresh.pop(robot, (None, []))
         if read != reader:
@@ -204,30 +203,30 @@ class RobotOutboxes:
         return [row for row in rows if row.op not in HELD_BACK] if self._emergency.in_force else rows
 
     async def mark_sending(self, robot: str, id: int) -> bool:
-        """Note that message ``id`` of SA is about to be sent to its robot; false where it must not be."""
+        """Record that message ``id`` of SA is about to be sent to its robot; false if it must not be."""
         return await self._commands.mark_sending(robot, id)
 
     def may_send(self, robot: str, checked_at: float) -> bool:
-        """Return whether what :meth:`mark_sending` allowed at ``checked_at`` (steady clock) still counts."""
+        """Return whether the permission of :meth:`mark_sending` at ``checked_at`` (steady clock) holds."""
         return self._commands.may_send(robot, checked_at)
 
     async def delivered(self, ids: Iterable[int]) -> None:
-        """Note that messages of SA have reached their robots."""
+        """Record that messages of SA have reached their robots."""
         await self._commands.delivered(ids)
 
     async def delivered_by_deletion(self, link: str) -> None:
-        """Note the messages that the robots of ``link`` have read and deleted from SA themselves."""
+        """Record the messages that the robots of ``link`` have read and deleted from SA themselves."""
         sent = self._undelivered(link)
         if sent:
             await self._commands.delivered(sent - await self._database.run(answers.waiting, sorted(sent)))
 
     async def load_backlog(self) -> int:
-        """Take note of what waits in RR from before it was read; return the id of the newest of it.
+        """Load the backlog in RR from before this gateway read it; return the id of its newest request.
 
-        Acknowledgements among that may have been dealt with already: their commands are judged by positions
-        that come after them alone.
+        Acknowledgements in it may have been processed already: their commands are judged only by positions
+        that come after them.
         """
-        # Only what concerns a command with a step to come: of other robots nothing is read here.
+        # Only robots with an unfinished command: for others nothing is read here.
         waiting = sorted(self._commands.robots())
         newest, acknowledged = await self._database.read(answers.backlog, waiting)
         for robot, ids in acknowledged.items():
@@ -236,11 +235,11 @@ class RobotOutboxes:
         return newest
 
     async def read_requests(self, link: str) -> list[answers.RequestRow]:
-        """Return the oldest requests in RR, which stay there until :meth:`finish`; note what was read."""
+        """Return the oldest requests in RR, which stay there until :meth:`finish`; record what was read."""
         sent = self._undelivered(link)
         rows, waiting = await self._database.read(read_requests, sorted(sent))
         if rows and (late := self._undelivered(link) - sent):
-            # Sent while the database looked; its acknowledgement may be among the rows already.
+            # Sent while the database was read; the acknowledgement may be among the rows already.
             sent |= late
             waiting |= await self._database.read(answers.waiting, sorted(late))
         if sent - waiting:
@@ -257,21 +256,21 @@ class RobotOutboxes:
     ) -> None:
         """Write the answers of requests into SA, with their OpAcks if ``acks``, and delete them from RR.
 
-        One transaction, with the positions that they told: a request is either answered and gone, or will be
-        dealt with again. A robot that said Ready is stored before. ``reader`` is the robot of a single
+        One transaction, with the positions that they reported: a request is either answered and deleted, or
+        will be processed again. A robot that said Ready is stored before. ``reader`` is the robot of a single
         outcome, whose connection then sends the answer without reading SA once more.
         """
         fresh = None
         if outcomes or request_ids:
             rows = answer_rows(outcomes, acks=acks)
             if admitted := {outcome.robot for outcome in outcomes if outcome.admitted}:
-                # Together: one by one, the Readys of a whole fleet outlast a gateway that is killed soon.
+                # Together: one by one, the Readys of a whole fleet may outlast a gateway that is soon killed.
                 await self._saving.save(*admitted)
-            # What is given out outlives a power cut, also a map, which would be sent again: the next message
-            # would have its id, and a robot acknowledges what it knows and does nothing, be it an Abort.
+            # Answers must outlive a power cut, even a map, which would be sent again: else the next message
+            # would have its id, and a robot acknowledges a known id and does nothing, even for an Abort.
             if request_ids:
-                # A request that a power cut brought back is dealt with again.
-                # It may have waited for long: where the robot was then must not be in memory alone.
+                # A request that a power cut brought back is processed again.
+                # It may have waited for long: the robot's position then must not be in memory alone.
                 work = finish_requests, outcomes, rows, request_ids
                 await self._saving.write_with(*work, lasting=bool(rows))
             elif reader is None or not all(
@@ -281,7 +280,7 @@ class RobotOutboxes:
             else:
                 changes = self._changes[reader[0]]
                 read = await self._database.run(finish_and_read, outcomes, rows, reader)
-                # Whatever else was written for it meanwhile may not be among that.
+                # Anything else written for it meanwhile may not be included.
                 fresh = (reader, read) if self._changes[reader[0]] == changes else None
         for outcome in outcomes:
             if outcome.answer is not None:
@@ -299,7 +298,7 @@ class RobotOutboxes:
         }
 
 
-# --- Maps on their way to robots: what there is at once, and what follows when more is known ---
+# --- Delivery of maps to robots: a part at once, and the rest when it is known ---
 
 RETRY_AFTER = 1.0
 """seconds after which a map that could not be stored is stored once more."""
@@ -308,9 +307,9 @@ Place = tuple[float, float]
 
 
 class MapSender:
-    """Sends robots the map of the whole site, or that of a window around them where the whole is too large.
+    """Sends robots the map of the whole site, or of a window around them where the whole is too large.
 
-    A robot never waits for a map to be made: it is sent a window, and the whole one when it is there.
+    A robot never waits for a map to be made: it is sent a window, and the whole one when it is ready.
     """
 
     def __init__(self, site: ServedSite, robots: Robots, outboxes: RobotOutboxes, database: Database) -> None:
@@ -319,16 +318,16 @@ class MapSender:
         self._outboxes = outboxes
         self._database = database
         self._parts: dict[str, Border] = {}
-        """what the newest map of a robot covers that was not sent the whole one."""
+        """area of the newest map of each robot that was not sent the whole one."""
         self._making = asyncio.Lock()
         self._unplaced: set[str] = set()
-        """robots that have such a map, and are still to say where they are."""
+        """robots that have such a map, and have not reported their position yet."""
 
     async def first(self, robot: str, *, reads_itself: bool) -> tuple[SetMap, bool]:
-        """Return the map that ``robot`` is sent behind the acknowledgement of its Ready, and whether it is a
+        """Return the map that ``robot`` is sent after the acknowledgement of its Ready, and whether it is a
         part of the site.
 
-        Of a part :meth:`.Mailboxes.finish` is to be told, so that more can follow. Raises StoreError.
+        A part must be marked in the :class:`RequestOutcome`, so that more can follow. Raises StoreError.
         """
         offer = await self._offer(robot)
         self._unplaced.discard(robot)
@@ -337,7 +336,7 @@ class MapSender:
         return WHOLE_SITE if is_at_hand else SetMap(offer.content), not offer.is_whole
 
     def located(self, poses: Sequence[RobotPose]) -> None:
-        """Note that robots have said where they are."""
+        """Record that robots have reported their positions."""
         if self._unplaced:
             for robot in self._unplaced.intersection([robot for robot, _ in poses]):
                 self._unplaced.discard(robot)
@@ -345,9 +344,9 @@ class MapSender:
 
     @handles(SendMap)
     async def send_requested(self, request: SendMap) -> Done:
-        """Return when the map for a robot is stored; it replaces one that still waits for it.
+        """Store the map for a robot; it replaces one that still waits for it.
 
-        :raises RefusedError: for a robot that is not known, or is not there.
+        :raises RefusedError: for a robot that is not known, or is not connected.
         """
         self._robots.check_known(request.robot)
         robot = self._robots.get(request.robot)
@@ -361,7 +360,7 @@ class MapSender:
         return Done()
 
     async def send(self, robot: str) -> None:
-        """Send ``robot`` the map of the whole site, or of what is around it; raises StoreError."""
+        """Send ``robot`` the map of the whole site, or of its surroundings; raises StoreError."""
         content = await asyncio.to_thread(self._site.whole_map)
         if content is None:
             await self._store(robot, SetMap((await self._offer(robot)).content))
@@ -369,10 +368,10 @@ class MapSender:
             await self._store_whole(robot, content)
 
     async def whole_or_around(self, robot: str) -> bytes:
-        """Return the map of the whole site, or of what is around ``robot``; raises StoreError."""
+        """Return the map of the whole site, or of the surroundings of ``robot``; raises StoreError."""
         if (whole := self._site.small_map_at_hand()) is not None:
             return whole.content
-        # While it is made again all robots may wait for it, but in one thread: others have work for the rest.
+        # While it is made again all robots may wait for it, but only one thread: other work needs the rest.
         async with self._making:
             content = await asyncio.to_thread(self._site.whole_map)
         return (await self._offer(robot)).content if content is None else content
@@ -387,7 +386,7 @@ class MapSender:
                 await self.send(name)
 
     async def run(self) -> None:
-        """Send what follows the parts that robots were sent, until cancelled."""
+        """Send the maps that follow the parts sent to robots, until cancelled."""
         await asyncio.to_thread(self._site.whole_map)
         while True:
             robot = await self._outboxes.parts.get()
@@ -398,7 +397,7 @@ class MapSender:
                 self._outboxes.parts.put_nowait(robot)
                 await asyncio.sleep(RETRY_AFTER)
             except Exception:
-                # The maps of all other robots go out; again and again it would end the gateway.
+                # The maps of all other robots must be sent; raised, it would recur and end the gateway.
                 log_unforeseen(log, f"the map for robot {robot!r}")
 
     async def _follow(self, robot: str) -> None:
@@ -420,7 +419,7 @@ class MapSender:
         return await asyncio.to_thread(self._site.map_at_once, place)
 
     async def _place(self, robot: str) -> Place | None:
-        """Return where the robot was last, else where it was told that it stands."""
+        """Return the last position of the robot, else the one of its last SetPosIni."""
         pose = self._robots.get(robot).pose if robot in self._robots else None
         if pose is not None:
             return pose.x, pose.y

@@ -1,4 +1,4 @@
-"""Registration of robots that say Ready, their takeover by a gateway, claims to names, decommissioning."""
+"""Registration of robots that say Ready, their takeover by a gateway, name claims, decommissioning."""
 
 from __future__ import annotations
 
@@ -39,14 +39,14 @@ from .outbox import MapSender, RequestOutcome, RobotOutboxes
 
 log = logging.getLogger(__name__)
 
-# --- Robots that this gateway gets or loses: what is known of them is taken up, and dropped ---
+# --- Takeover: stored data of robots that this gateway gets are loaded, those of lost ones dropped ---
 
 AT_ONCE = 500
-"""robots of which what is stored is read in one piece."""
+"""number of robots with their stored data read in one piece."""
 
 
 class StoredState(NamedTuple):
-    """What is stored of some robots, queues with their newest tasks that ended, and the newest stop."""
+    """Stored data of some robots, queues with their newest ended tasks, and the newest stop."""
 
     robots: list[Robot]
     commands: list[StoredCommand]
@@ -55,9 +55,9 @@ class StoredState(NamedTuple):
 
 
 def _load(connection: Connection, robots: Sequence[str]) -> StoredState:
-    """Return what is stored of some robots: one piece of work, since each waits for its turn.
+    """Return the stored data of some robots: one piece of work, since each waits for its turn.
 
-    The stop is read last: one that ended motions which were read before is among what is known.
+    The stop is read last, so that a stop which ended motions that were read before is included.
     """
     return StoredState(
         stored_robots.load(connection, robots),
@@ -68,7 +68,7 @@ def _load(connection: Connection, robots: Sequence[str]) -> StoredState:
 
 
 class Takeover:
-    """Follows who has which robot. One of another gateway is known by what that tells, and not commanded."""
+    """Follows the ownership of robots. Those of other gateways are known by reports, and not commanded."""
 
     def __init__(
         self,
@@ -95,15 +95,15 @@ class Takeover:
         self._events = events
         self._waiting: dict[str, asyncio.Future[None]] = {}
         self._left: set[str] = set()
-        """the gateways that had those who wait."""
+        """the gateways that had the waiting robots."""
         self._taking_up: asyncio.Task[None] | None = None
-        self._unasked: set[str] = set()
-        """gateways that have robots which this one did not know to be theirs, until they were asked."""
+        self._unsynced: set[str] = set()
+        """gateways with newly learned robots, until their positions are requested."""
 
     async def claim(self, robot: str) -> None:
-        """Have a robot that says Ready here, whoever had it, and take up what is stored of it.
+        """Claim a robot that says Ready here, from whichever gateway had it, and load its stored data.
 
-        :raises StoreError: when that cannot be done; the robot is not in then.
+        :raises StoreError: when this fails; the robot is then not registered.
         """
         before = self._robots.gateway_of(robot)
         if before is not None:
@@ -114,11 +114,11 @@ class Takeover:
             await self._take_up_together(robot)
 
     async def claim_left(self) -> None:
-        """Have the robots that no living gateway has, if this gateway leads; raises StoreError."""
+        """Claim the robots that no living gateway has, if this gateway leads; raises StoreError."""
         await self._take_up(await self._ownership.claim_left())
 
     async def follow(self) -> None:
-        """Drop the robots that another gateway has by now, and learn which others there are (StoreError)."""
+        """Drop the robots that another gateway has by now, and add new ones of others; raises StoreError."""
         changes = await self._ownership.refresh()
         for robot in sorted(changes.lost):
             self._drop(robot, changes.gateways.get(robot))
@@ -134,18 +134,18 @@ class Takeover:
             known = self._robots.gateway_of(robot)
             if known is not None and known != gateway:
                 self._robots.let_go(robot, gateway)
-                self._unasked.add(gateway)
-        # Lost while they were let in, and known as this gateway's again by that.
+                self._unsynced.add(gateway)
+        # Lost during their registration, which made them this gateway's again.
         for robot, gateway in self._ownership.had_elsewhere(self._robots.own_names()).items():
             self._drop(robot, gateway)
-        # What those said of these robots before this gateway knew that they have them was not taken in.
-        for gateway in sorted(self._unasked):
+        # Reports on these robots from before this gateway knew their owner were ignored.
+        for gateway in sorted(self._unsynced):
             self._exchange.wake("positions", gateway)
-        self._unasked.clear()
+        self._unsynced.clear()
         self._ownership.note_followed()
 
     async def _meet(self, names: Collection[str], gateways: dict[str, str]) -> None:
-        """Get to know robots that other gateways have."""
+        """Load robots that other gateways have."""
         for robot in await self._database.read(stored_robots.load, sorted(names)):
             if robot.name not in self._robots and not self._ownership.owns(robot.name):
                 robot.gateway = gateways[robot.name]
@@ -153,7 +153,7 @@ class Takeover:
                 self._robots.restore(robot, self._clock.time())
 
     async def _take_up_together(self, robot: str) -> None:
-        """Take up a robot in one piece with those that come meanwhile: all those of a gateway that died."""
+        """Load a robot together with those that come meanwhile, such as all of a gateway that died."""
         waiting = self._waiting.get(robot)
         if waiting is None:
             waiting = self._waiting[robot] = asyncio.get_running_loop().create_future()
@@ -170,7 +170,7 @@ class Takeover:
                 self._exchange.wake("owners", gateway)
 
     async def _take_up_for(self, some: dict[str, asyncio.Future[None]]) -> None:
-        """Take up robots for those who wait for them; what is wrong with one concerns that one."""
+        """Load robots and resolve their futures; an error with one robot concerns only that one."""
         try:
             await self._take_up(list(some))
         except asyncio.CancelledError:
@@ -183,7 +183,7 @@ class Takeover:
                 return
             for waiting in some.values():
                 waiting.set_exception(error)
-                # Whoever waited may have gone.
+                # The waiting caller may be gone.
                 waiting.exception()
         else:
             for waiting in some.values():
@@ -195,7 +195,7 @@ class Takeover:
             try:
                 await self._read(some)
             except StoreError:
-                # Taken up by a later look, as robots that turn out to be this gateway's.
+                # Loaded by a later :meth:`follow`, as robots found to be this gateway's.
                 self._ownership.forget(names[begin:])
                 raise
 
@@ -208,7 +208,7 @@ class Takeover:
         for robot in known:
             self._robots.restore(robot, self._clock.time())
             self._robots.assign(robot.name, self._commands.busy_with(robot.name))
-        # One that is stored nowhere yet is known to this gateway by its Ready alone.
+        # One that is not stored yet is known to this gateway only by its Ready.
         for name in set(some) - {robot.name for robot in known}:
             self._robots.remove(name)
         self._saving.begin([robot.name for robot in known])
@@ -227,37 +227,37 @@ class Takeover:
             self._robots.remove(robot)
         else:
             self._robots.let_go(robot, gateway)
-            self._unasked.add(gateway)
+            self._unsynced.add(gateway)
         self._events.publish(RobotLeft(robot, gateway or "none"))
 
 
-# --- Who holds a robot's name: a second robot that says Ready under the same account is noticed and refused
+# --- Claims to names: a second robot that says Ready under the same account is detected and refused
 
 
 class ConnectionClaim(Protocol):
     """A connection of a robot."""
 
     async def answers(self) -> bool:
-        """Tell whether the robot at its other end is there; takes a second at most."""
+        """Return whether the robot at its other end responds; takes a second at most."""
 
 
 class ConnectionClaims:
-    """The connections that robots hold, by name. Robots on SQL have none."""
+    """The connections of robots, by name. Robots on SQL have none."""
 
     def __init__(self) -> None:
         self._holds: dict[str, ConnectionClaim] = {}
 
     def claim(self, robot: str, hold: ConnectionClaim) -> None:
-        """Note that ``robot`` is at the other end of ``hold``, and of no other."""
+        """Record that ``robot`` is at the other end of ``hold``, and of no other."""
         self._holds[robot] = hold
 
     def free(self, robot: str, hold: ConnectionClaim) -> None:
-        """Note that ``robot`` is no longer at the other end of ``hold``."""
+        """Record that ``robot`` is no longer at the other end of ``hold``."""
         if self._holds.get(robot) is hold:
             del self._holds[robot]
 
     async def answers(self, robot: str) -> bool:
-        """Tell whether the robot holds a connection and is there."""
+        """Return whether the robot has a connection and responds."""
         hold = self._holds.get(robot)
         return hold is not None and await hold.answers()
 
@@ -267,8 +267,8 @@ async def claim_refusal(
 ) -> str | None:
     """Return why a Ready with ``magic`` is refused: it comes from another robot than the one of this name.
 
-    ``silent`` is seconds since that one was heard. One that was restarted is let in: its old connection is
-    closed or does not answer; on SQL it said Stopped, or is silent for ``stale_after`` seconds.
+    ``silent`` is the seconds since the last message of that one. A restarted robot is admitted: its old
+    connection is closed or does not answer; on SQL it said Stopped, or is silent for ``stale_after`` seconds.
     """
     if robot.magic == magic or silent >= stale_after:
         return None
@@ -281,11 +281,11 @@ async def claim_refusal(
     )
 
 
-# --- Robots that say Ready: let in, told what they are to know, or refused as a second one of their name
+# --- Registration of robots that say Ready: admitted with map and messages, or refused as a second one
 
 
 class Registration:
-    """Takes robots in. ``holds`` are the connections that they hold, told by their links."""
+    """Registers robots. ``holds`` are their connections, as claimed by their links."""
 
     def __init__(
         self,
@@ -317,22 +317,22 @@ class Registration:
         self._greeting: dict[str, asyncio.Lock] = {}
 
     async def restore(self) -> None:
-        """Learn the name of the database, which robots are greeted with; raises StoreError."""
+        """Load the id of the database, which is sent to robots in greetings; raises StoreError."""
         self._database_id = await self._database.run(metadata.database_id)
 
     @property
     def database_id(self) -> str:
-        """The name that tells the database from every other."""
+        """The unique id of the database."""
         return self._database_id
 
     def greeting(self) -> Start:
-        """Return what robots are told when the gateway begins to listen to them."""
+        """Return the message to robots when the gateway begins to listen to them."""
         return Start(self._database_id)
 
     async def receive(self, robot: str, link: str, request: Ready, id: int | None) -> RequestOutcome:
-        """Let a robot in that said Ready as request ``id``, or refuse it, one of a name at a time.
+        """Register a robot that said Ready as request ``id``, or refuse it, one of a name at a time.
 
-        :raises StoreError: when that cannot be stored; the robot is not in then.
+        :raises StoreError: when this cannot be stored; the robot is then not registered.
         """
         async with self._greeting.setdefault(robot, asyncio.Lock()):
             reason = await self._refusal_anywhere(robot, request.magic)
@@ -347,19 +347,19 @@ class Registration:
                 content, part = await self._maps.first(robot, reads_itself=link == "sql")
             ack = OpAck(id=id, magic=request.magic, robot=robot, database=self._database_id)
             welcome: list[Answer | None] = [ack if link == "sql" else None, content]
-            if await self._let_in(robot, link, request, [one for one in welcome if one is not None]):
+            if await self._admit(robot, link, request, [one for one in welcome if one is not None]):
                 return RequestOutcome(robot, ack, content, written=True, part=part)
             return RequestOutcome(robot, ack, content, void=("Start", "OpAck"), part=part)
 
-    async def _let_in(self, robot: str, link: str, ready: Ready, welcome: list[Answer]) -> bool:
-        """Let a robot in; tell whether it starts again, and ``welcome`` is written before all else for it."""
+    async def _admit(self, robot: str, link: str, ready: Ready, welcome: list[Answer]) -> bool:
+        """Register a robot; return whether it restarted: ``welcome`` is then already written, as first."""
         if starts_anew := self._robots.starts_anew(robot, ready.magic):
-            # Before it is known by its new number: after a failure it must be seen to start again once more.
+            # Before its new magic number is recorded: after a failure the restart must be detected again.
             await self._outboxes.delivered_by_deletion(self._robots.get(robot).link)
             reason = f"robot {robot} started anew; sent once more"
             expire_after = self._site.settings.commands.expire_after_s
-            # In one transaction: a gateway that dies next must not take it for another new start,
-            # and send it once more what it is doing by then.
+            # In one transaction: the gateway after a crash must not take this for another restart,
+            # and send again what the robot is doing by then.
             note_run = partial(stored_robots.note_run, robot=self._robots.get(robot), magic=ready.magic)
             await self._commands.deliver_again(robot, reason, expire_after, welcome, note_run)
         self._robots.ready(robot, ready.magic, link, self._clock.time(), ready.paths, ready.can)
@@ -371,22 +371,22 @@ class Registration:
         return starts_anew
 
     async def refusal(self, robot: str, magic: int) -> str | None:
-        """Return why a Ready with ``magic`` is refused: another robot of that name is here. None if not."""
+        """Return why a Ready with ``magic`` is refused: another robot of that name is here; else None."""
         if robot not in self._robots or self._robots.gateway_of(robot) is not None:
             return None
         known, limit = self._robots.get(robot), self._site.report.stale_after
         return await claim_refusal(known, magic, self._silence(known), limit, self.holds)
 
     async def _refusal_anywhere(self, robot: str, magic: int) -> str | None:
-        """Return as :meth:`refusal`, also where the other robot is at another gateway of the fleet."""
+        """Return as :meth:`refusal`, also if the other robot is at another gateway of the fleet."""
         gateway = self._robots.gateway_of(robot)
         if gateway is None or self._claims is None:
             return await self.refusal(robot, magic)
         known, limit = self._robots.get(robot), self._site.report.stale_after
-        # One that goes on here, as those of a gateway that died do all at once, is not asked about.
+        # One that continues here, as all robots of a dead gateway do at once, needs no query there.
         if known.magic == magic or self._silence(known) >= limit:
             return None
-        # A robot that said Ready there a moment ago is stored, and its number not told yet.
+        # A robot that said Ready there a moment ago is stored, but its magic number not reported yet.
         if any(one.magic == magic for one in await self._database.read(stored_robots.load, [robot])):
             return None
         return await self._claims.refusal(robot, magic, gateway)
@@ -395,17 +395,17 @@ class Registration:
         return self._clock.time() - known.received_at
 
 
-# --- Robots that somebody removes while the gateway runs, with a program or at a desk: gone everywhere
+# --- Decommissioning of robots that are removed while the gateway runs, by a program or at a desk
 
 REASON = "the robot was removed"
 MOST_NAMED = 10
-"""Robots that a text names."""
+"""Most robots named in a text."""
 
 
 class Decommissioning:
-    """Takes robots out of the fleet that are found missing where they were stored.
+    """Removes robots from the fleet that are no longer stored in the database.
 
-    One that says Ready again, as it can where no tokens are asked for, is a new robot.
+    One that says Ready again, as it can where no tokens are required, is a new robot.
     """
 
     def __init__(
@@ -426,10 +426,10 @@ class Decommissioning:
         self._queues = queues
         self._database = database
         self._leaving: set[str] = set()
-        """robots that are gone, and of whose commands that may not be stored yet."""
+        """robots that are removed, while the end of their commands may not be stored yet."""
 
     def begin(self, known: Iterable[str]) -> None:
-        """Take note of the robots that are stored: others were removed while no gateway ran."""
+        """Record the robots that are stored: others were removed while no gateway ran."""
         self._saving.begin(known)
         self._leaving = self._commands.robots().difference(known)
 
@@ -437,7 +437,7 @@ class Decommissioning:
     async def remove(self, request: RemoveRobots, operator: str) -> RobotsRemoved:
         """Remove those of the robots that are lost or offline, with their queues and commands.
 
-        What they say next is answered with an Abort: one that comes back may still be under way.
+        Their next message is answered with an Abort: one that comes back may still be driving.
 
         :raises RefusedError: when none of them can be removed, or an emergency stop is in force; StoreError.
         """
@@ -448,7 +448,7 @@ class Decommissioning:
             )
         for robot in self._gone(request.robots):
             await self._queues.end(robot, operator, REASON)
-        # Storing that took time, in which robots may have come back.
+        # Storing took time, in which robots may have come back.
         removed = self._gone(request.robots)
         kept = [KeptRobot(robot, why) for robot in request.robots if (why := self._why_kept(robot))]
         if not removed:
@@ -459,7 +459,7 @@ class Decommissioning:
             await self._saving.save()
             await self.carry_out()
         except StoreError as error:
-            # They are removed, and the rest is done with what is stored next.
+            # They are removed, and the rest is done with the next :meth:`carry_out`.
             log.error("%s", error)
         return RobotsRemoved(removed, kept)
 
@@ -467,7 +467,7 @@ class Decommissioning:
         return sorted({robot for robot in robots if self._why_kept(robot) is None})
 
     def _why_kept(self, robot: str) -> str | None:
-        """Return why a robot is not removed; None for one that is lost or offline."""
+        """Return the reason why a robot is kept; None for one that is lost or offline."""
         if robot not in self._robots:
             return f"robot {robot!r} is not known to this gateway"
         state = self._robots.get(robot).state
@@ -476,7 +476,7 @@ class Decommissioning:
         return f"robot {robot!r} is {state.value}; only robots that are lost or offline are removed"
 
     async def carry_out(self) -> None:
-        """Take out who was removed since the last call; raises StoreError, and goes on at the next."""
+        """Remove the robots deleted since the last call; raises StoreError, and continues at the next."""
         for robot in sorted(self._saving.take_removed()):
             log.warning("robot %s was removed", robot)
             self._robots.remove(robot)
@@ -494,6 +494,6 @@ class Decommissioning:
         if robot not in self._robots:
             await self._commands.give_up(robot, REASON)
             await self._waiting.forget(robot)
-            # Behind the end of its Abort, which would count as its answer.
+            # After the end of its Abort, which would count as its answer.
             self._emergency.forget(robot)
         self._leaving.discard(robot)

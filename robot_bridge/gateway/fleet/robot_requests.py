@@ -1,4 +1,4 @@
-"""What robots ask, and what they saw: answers (maps, paths, surfaces), and observations kept and reviewed."""
+"""Requests of robots: answers (maps, paths, surfaces), and observations stored and reviewed."""
 
 from __future__ import annotations
 
@@ -52,15 +52,15 @@ from ..storage.repositories import commands, records
 from ..storage.repositories.records import NewObservation
 from ..traffic.robot_paths import RobotPaths
 
-# --- What a robot's questions are answered with ---
+# --- Answers to robots' questions ---
 # GetMap, GetPath, GetPosIni and GetPosEnd are of the paper (1, table II), GetSurface is this project's own.
 
 
 class Maps(Protocol):
-    """Where maps come from."""
+    """Source of maps."""
 
     def is_quick(self, x: float, y: float, area: float) -> bool:
-        """Tell whether the map of such a square is made in a few milliseconds."""
+        """Return whether the map of a square of ``area`` is made in a few milliseconds."""
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
@@ -70,14 +70,14 @@ class Maps(Protocol):
 
 
 class RobotReply(NamedTuple):
-    """An answer, and what the robot is told with it."""
+    """An answer, and the note sent with it to the robot."""
 
     message: SetMap | SetPath | SetPosIni | SetPosEnd | SetSurface
     note: str = ""
 
 
 class RobotAnswers:
-    """Answers questions from what is known of the robots, their commands and the site."""
+    """Answers questions from the state of the robots, their commands and the site."""
 
     def __init__(
         self,
@@ -96,7 +96,7 @@ class RobotAnswers:
         self._ways = ways
 
     async def answer(self, robot: str, question: Question) -> RobotReply:
-        """Return the answer to ``question``; raises RefusedError where there is none, saying why."""
+        """Return the answer to ``question``; raises RefusedError with the reason where there is none."""
         if isinstance(question, GetMap):
             return RobotReply(SetMap(await self._map(question.x, question.y, question.area)))
         if isinstance(question, GetPath):
@@ -147,7 +147,7 @@ class RobotAnswers:
         return given
 
     async def _given(self, question: str, robot: str, *ops: str) -> Answer:
-        """Return the newest of such commands, unless it was given up."""
+        """Return the newest command of kinds ``ops``, unless it was given up."""
         found = await self._database.read(commands.last_given_track, robot, ops)
         if found is None:
             raise RefusedError(
@@ -161,7 +161,7 @@ class RobotAnswers:
         return decode_answer(found.op, found.params)
 
 
-# --- What robots saw: stored before it is acknowledged, reviewed by operators, and then on the map ---
+# --- Observations of robots: stored before the acknowledgement, reviewed by operators, then on the map ---
 
 log = logging.getLogger(__name__)
 
@@ -169,18 +169,18 @@ PENDING, ACCEPTED, REJECTED = ObservationState
 
 
 class ObservedSite(Ground, Protocol):
-    """What is needed of a site to keep observations of it."""
+    """Required parts of a site for observations of it."""
 
     @property
     def settings(self) -> SiteSettings:
         """The settings of the site."""
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
-        """Draw accepted objects, and no others, on the maps from now on; oldest first."""
+        """Draw accepted objects, and no others, on the maps; oldest first."""
 
 
 class ObservationService:
-    """Every observation of the robots of one site; ObservationChanged is published after one was stored."""
+    """The observations by robots of one site; ObservationChanged is published after one was stored."""
 
     def __init__(
         self,
@@ -195,39 +195,39 @@ class ObservationService:
         self._events = events
         self._lock = asyncio.Lock()
         self._undrawn = False
-        """whether something may have been accepted, or rejected, that the maps do not show yet."""
+        """whether there may be reviews that the maps do not show yet."""
         self._unsure: set[tuple[str, str]] = set()
-        """robots and sources of what may have been stored, and nobody was told."""
-        self._untold: set[int] = set()
-        """what may have been reviewed, and nobody was told."""
+        """robots and sources of observations that may have been stored, and were not published."""
+        self._unpublished: set[int] = set()
+        """ids of observations that may have been reviewed, and were not published."""
 
     async def restore(self) -> None:
-        """Draw on the maps what operators accepted before."""
+        """Draw the stored accepted observations on the maps."""
         self._site.show(await self._database.run(records.on_map))
         self._undrawn = False
 
     async def redraw(self) -> None:
-        """Draw on the maps what is accepted by now; raises StoreError."""
+        """Draw the observations accepted by now on the maps; raises StoreError."""
         async with self._lock:
             await self.restore()
 
     async def catch_up(self) -> None:
-        """Draw and tell what could not be drawn or told when it was stored or reviewed; raises StoreError."""
+        """Draw and publish what could not be when it was stored or reviewed; raises StoreError."""
         if self._undrawn:
             await self.redraw()
         for robot, source in list(self._unsure):
             found = await self._database.run(records.find_reported, robot, source)
             self._unsure.discard((robot, source))
-            self._tell(found)
-        for id in list(self._untold):
+            self._publish(found)
+        for id in list(self._unpublished):
             found = await self._database.run(records.find, id)
-            self._untold.discard(id)
-            self._tell(found)
+            self._unpublished.discard(id)
+            self._publish(found)
 
     async def add(self, robot: Robot, link: str, observed: Observed, id: int | None) -> ObservationReport:
-        """Store what a robot told by its message ``id``; what it told before is there already.
+        """Store an observation by a robot from its message ``id``; a repeated one is stored once.
 
-        :raises RefusedError: when an object is not on the site, an image too large, or too much waits;
+        :raises RefusedError: when an object is not on the site, an image too large, or too many are pending;
             MessageError when an image is none.
         """
         if isinstance(observed, SetObject):
@@ -243,7 +243,7 @@ class ObservationService:
             self._unsure.add(key)
             raise
         if is_new or key in self._unsure:
-            self._tell(report)
+            self._publish(report)
         self._unsure.discard(key)
         return report
 
@@ -270,7 +270,7 @@ class ObservationService:
 
     @handles(ReviewObservation)
     async def review(self, review: ReviewObservation, operator: str) -> ObservationReport:
-        """Accept or reject an observation; returns when that is stored. The same again changes nothing.
+        """Accept or reject an observation; returns when this is stored. A repetition changes nothing.
 
         :raises RefusedError: when there is no such observation, or it was reviewed otherwise before.
         """
@@ -279,23 +279,23 @@ class ObservationService:
             if report is None:
                 raise RefusedError(f"there is no observation {review.observation}; see get_observations")
             state = ACCEPTED if review.accept else REJECTED
-            if _says_the_same(report, review, state):
+            if _is_same_review(report, review, state):
                 return report
             _check_review(report, review)
             values = {name: getattr(review, name) for name in ("semantics", "height", "radius", "reason")}
             is_drawn = report.op == SetObject.__name__
             self._undrawn |= is_drawn
-            self._untold.add(report.observation)
+            self._unpublished.add(report.observation)
             reviewed = await self._database.run(
                 records.review, report.observation, state, operator, self._clock.time(), values
             )
             if is_drawn and ACCEPTED in (report.state, reviewed.state):
                 await self.restore()
-        self._tell(reviewed)
-        self._untold.discard(reviewed.observation)
+        self._publish(reviewed)
+        self._unpublished.discard(reviewed.observation)
         return reviewed
 
-    def _tell(self, report: ObservationReport | None) -> None:
+    def _publish(self, report: ObservationReport | None) -> None:
         if report is not None:
             self._events.publish(ObservationChanged(report))
 
@@ -322,17 +322,17 @@ def _new(robot: str, observed: Observed, occasion: str, now: float) -> NewObserv
 
 
 def _occasion(robot: Robot, link: str, observed: Observed, id: int | None) -> str:
-    """Return on what occasion a robot told something: its own source, else the message that it came with."""
+    """Return the occasion of an observation: for one with a source the run, else its message."""
     if observed.source is None and link == "sql":
         return f"row {id}"
-    # The ids of calls, and most sources, begin again with each run of a robot.
+    # The ids of calls, and most sources, start again with each run of a robot.
     return f"run {robot.magic}" if observed.source is not None else f"run {robot.magic} call {id}"
 
 
 def _source(observed: Observed, occasion: str) -> str:
-    """Return what two tellings have in common only if they are one.
+    """Return a digest that two messages share only if they are the same observation.
 
-    The content counts: a robot that uses a source or a call's id once more for something else loses nothing.
+    It includes the content: a robot that reuses a source or a call's id for something else loses nothing.
     """
     identity: dict[str, Any] = {"op": type(observed).__name__, "occasion": occasion, **to_json(observed)}
     if observed.source is not None:
@@ -342,7 +342,7 @@ def _source(observed: Observed, occasion: str) -> str:
     return content.hexdigest()
 
 
-def _says_the_same(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
+def _is_same_review(report: ObservationReport, review: ReviewObservation, state: ObservationState) -> bool:
     if report.state is not state:
         return False
     values = {name: getattr(review, name) for name in ("semantics", "height", "radius")}

@@ -1,7 +1,7 @@
-"""The fleet: what robots say and ask goes in here, and so does what operators want of them.
+"""The fleet: entry point for messages of robots and requests of operators.
 
-Links and the desk server call it; it knows neither. Everything that must outlive the process is committed
-before it is answered.
+Links and the desk server call it; it imports neither. Everything that must outlive the process is committed
+before the answer is sent.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ from .views import FleetViews
 log = logging.getLogger(__name__)
 
 Rest = tuple[str, Awaitable[None] | Exception]
-"""A robot, and what is being stored since it said where it is, or what is wrong with that."""
+"""A robot, and the storing due after its position to be awaited, or the error in that position."""
 
 
 class Fleet:
@@ -92,7 +92,7 @@ class Fleet:
         self._announced_gateways: Gateways | None = None
         self._announced_addresses: frozenset[str] = frozenset()
         self.listeners = events.Listeners()
-        """the operators' sessions, told what happens."""
+        """the operators' sessions, to be notified."""
         self.events = events.EventBus()
         self.robots = Robots(site.report.stale_after, site.report.lost_after, self.events)
         self.links = LinkWatch(self.robots, self.listeners)
@@ -103,7 +103,7 @@ class Fleet:
             database, self.robots, site.report.reached_tolerance, clock, rules, waiting, self.events, fence
         )
         self.orders = CommandRequests(site, self.robots, self._commands, database)
-        # A stop that one gateway clears ends at others what was begun before that.
+        # A stop that is cleared by one gateway ends motions at others that began before.
         stop_clock = clock if cluster is None else cluster.membership.shared_clock
         self.emergency = EmergencyStops(
             self._commands, database, stop_clock, self.robots, self.listeners, self.events, stops
@@ -183,7 +183,7 @@ class Fleet:
         self._subscribe()
 
     def _follow_owners(self, cluster: Cluster) -> Takeover:
-        """Have robots taken up that this gateway gets, and dropped that others have."""
+        """Create the takeover of robots that this gateway gets or loses."""
         return Takeover(
             cluster.ownership,
             cluster.exchange,
@@ -198,7 +198,7 @@ class Fleet:
         )
 
     def _subscribe(self) -> None:
-        """Say who is told of what; each is told in this order, whatever becomes of those before."""
+        """Subscribe the parts to events; each receives them in this order, even if one before fails."""
         subscribe = self.events.subscribe
         subscribe(events.OutboxChanged, lambda event: self.outboxes.changed(event.robot))
         subscribe(events.CommandChanged, self._assign)
@@ -229,15 +229,15 @@ class Fleet:
 
     @property
     def database(self) -> Database:
-        """The database that everything is kept in."""
+        """The database of all stored data."""
         return self._database
 
     async def start(self) -> None:
-        """Go on where the last gateway on this database stopped, and tell its robots Start."""
+        """Continue where the last gateway on this database stopped, and send Start to its robots."""
         await self.reception.restore()
         known = await self._database.run(stored_robots.load)
         if self.takeover is not None:
-            # Those of gateways that are gone are taken up once all others are known of.
+            # Robots of dead gateways are taken over once all others are known.
             known = [robot for robot in known if self._fence.owns(robot.name)]
         for robot in known:
             self.robots.restore(robot, self._clock.time())
@@ -264,26 +264,26 @@ class Fleet:
     # --- robots ---------------------------------------------------------------------------------------
 
     def greeting(self, endpoint: str) -> Start:
-        """Return what is told who connects to ``endpoint``, such as ``/robot``."""
+        """Return the greeting for connections to ``endpoint``, such as ``/robot``."""
         return replace(self.reception.greeting(), gateways=self.gateway_urls(endpoint))
 
     def gateway_urls(self, endpoint: str) -> list[str] | None:
-        """Return the URLs of ``endpoint`` at the gateways of the fleet, None where one serves it alone."""
+        """Return the URLs of ``endpoint`` at the gateways of the fleet, None for a single gateway."""
         if self.cluster is None:
             return None
         addresses = self.cluster.membership.addresses()[:MOST_GATEWAYS]
         return [f"{address}{endpoint}" for address in addresses] or None
 
     def gateways_at(self, endpoint: str) -> Gateways | None:
-        """Return the gateways of the fleet by their URLs of ``endpoint``, None where one serves it alone."""
+        """Return the gateways of the fleet by their URLs of ``endpoint``, None for a single gateway."""
         if self.cluster is None:
             return None
         return Gateways(self.cluster.membership.name, self.gateway_urls(endpoint) or [])
 
     async def announce_gateways(self) -> None:
-        """Announce where the gateways of the fleet are, where that has changed.
+        """Announce the addresses of the fleet's gateways, if they have changed.
 
-        Operators go by their order as well; robots and links draw one of their own.
+        Operators follow their order as well; robots and links draw one of their own.
         """
         gateways = self.gateways_at(PATHS[TokenKind.OPERATOR])
         if gateways is None or gateways == self._announced_gateways:
@@ -297,12 +297,12 @@ class Fleet:
     async def receive(
         self, robot: str, link: str, request: Request, id: int | None, *, waited: bool = False
     ) -> RequestOutcome:
-        """Deal with request ``id`` of a robot; its link sends what comes of it: :meth:`.Mailboxes.finish`.
+        """Process request ``id`` of a robot; its link sends the outcome by :meth:`.RobotOutboxes.finish`.
 
-        One that has ``waited`` until there was a gateway to read it tells what was, not what is.
+        One that has ``waited`` until there was a gateway to read it describes the past, not the present.
 
-        :raises NotReadyError: from a robot that never said Ready; RefusedError for what is not done, saying
-            why; MessageError for what is wrong in itself.
+        :raises NotReadyError: from a robot that never said Ready; RefusedError for a refused request, with
+            the reason; MessageError for an invalid one.
         """
         now = self._clock.time()
         self.counters.requests[link, type(request).__name__] += 1
@@ -320,25 +320,25 @@ class Fleet:
         if isinstance(request, OpAck):
             await self._acknowledge(robot, link, request, now, waited=waited)
             return RequestOutcome(robot)
-        known = self._hear(robot, link, request, now, waited=waited)
+        known = self._receive(robot, link, request, now, waited=waited)
         answer, note = await self._deal_with(known, link, request, id)
         return RequestOutcome(
             robot, OpAck(id=id, reason=note or None) if request.acknowledged else None, answer
         )
 
     def acknowledge(self, robot: str, link: str, ack: OpAck) -> Awaitable[None]:
-        """Deal with an OpAck as :meth:`receive` does, at once but for what is returned, to be awaited.
+        """Process an OpAck as :meth:`receive` does, at once; return its storing, to be awaited.
 
-        That is its storing, behind that of what the robot acknowledged before. Positions go on meanwhile.
+        It is stored after earlier acknowledgements of the robot. Positions are processed meanwhile.
         """
         self.counters.requests[link, "OpAck"] += 1
         self.robots.check_run(robot, ack.magic, link)
         return self._acknowledge(robot, link, ack, self._clock.time())
 
     def take_pose(self, robot: str, link: str, pose: SendPos) -> Awaitable[None] | None:
-        """Deal with a position as :meth:`receive` does, at once but for what is returned, to be awaited.
+        """Process a position as :meth:`receive` does, at once; return the rest, to be awaited.
 
-        That is the storing of a command that the robot has carried out, nearly always None.
+        The rest is the storing of a command that the robot has carried out, nearly always None.
         """
         now = self._clock.time()
         self.counters.requests[link, "SendPos"] += 1
@@ -348,9 +348,9 @@ class Fleet:
         return self._moved(robot, pose, now) if moved else None
 
     def take_poses(self, link: str, poses: Sequence[RobotPose]) -> list[Rest]:
-        """Deal with positions of many robots, each named once, as :meth:`take_pose` does with that of one.
+        """Process positions of many robots, each named once, as :meth:`take_pose` does for one.
 
-        Return what is left for some: what is to be awaited, or what is wrong with a position.
+        Return for some the rest to be awaited, or the error in the position.
         """
         now, near, follow = self._clock.time(), self._places.near(), self.robots.follow
         self.counters.requests[link, "SendPos"] += len(poses)
@@ -373,20 +373,20 @@ class Fleet:
         return [(robot, rest) for robot, rest in rests if rest is not None]
 
     def refuse_large(self, robot: str, link: str, fault: str) -> None:
-        """Note that a robot sent what is too large to be read: it is there, and its operators are told."""
+        """Record that a robot sent a message too large to be read; operators are notified."""
         if robot in self.robots:
             self.robots.disbelieve(robot, link, self._clock.time(), fault)
 
     def check_owned(self, robot: str) -> None:
-        """Raise FencedError where another gateway has got a robot while it was let in here.
+        """Raise FencedError where another gateway took over a robot during its registration here.
 
-        Whoever loses a robot closes its connection, but not one on which it is not in yet.
+        A gateway that loses a robot closes its connection, but not one on which it is not registered yet.
         """
         if not self._fence.owns(robot):
             raise FencedError(f"robot {robot}: another gateway has got it meanwhile; say Ready again")
 
     def closed(self, robot: str) -> None:
-        """Note that the robot closed its link in good order."""
+        """Record that the robot closed its link in good order."""
         self.robots.closed(robot)
         self._saving.touch(robot)
 
@@ -397,11 +397,11 @@ class Fleet:
         return reports_of(self.robots.changed(since), self._clock.time(), RobotReport)
 
     def open_commands(self) -> Counter[CommandState]:
-        """Return how many commands with a step to come are in each state."""
+        """Return the number of unfinished commands in each state."""
         return self._commands.count()
 
     async def site_changed(self) -> None:
-        """Go by the site's newest facts and settings from now on, and tell operators of them."""
+        """Apply the site's newest data and settings, and notify operators of them."""
         report = self.site.report
         self.robots.limit(report.stale_after, report.lost_after)
         self._commands.set_tolerance(report.reached_tolerance)
@@ -410,30 +410,30 @@ class Fleet:
         self.announce_site()
 
     def announce_site(self) -> None:
-        """Tell operators of the site that is served."""
+        """Notify operators of the served site."""
         report = self.site.report
         self.listeners.announce("site", report.id, to_json(report))
 
     # --- time -----------------------------------------------------------------------------------------
 
     async def watch_roads(self) -> None:
-        """See to closed roads, and to robots in each other's way."""
+        """Check closed roads, and conflicts between robots."""
         await self.roads.watch(listened_to=bool(self.listeners))
 
     def clock_was_set(self, step: ClockStep) -> None:
-        """Keep the times for which robots are not heard, or wait."""
+        """Keep the ages of robots' messages and of waiting when the clock was set."""
         self.robots.clock_was_set(step)
         self.roads.waiting.clock_was_set(step)
 
     def age(self) -> None:
-        """Bring the liveness of every robot up to now, and see whether those stand that were stopped."""
+        """Update the liveness of every robot, and check whether stopped robots stand."""
         self.robots.age(self._clock.time())
         self.emergency.watch()
 
     async def save(self) -> None:
-        """Store what is not stored yet, an emergency stop first; see to who was removed and what is too old.
+        """Store what is not stored yet, an emergency stop first; drop removed robots and expired commands.
 
-        Each is done whatever becomes of the others. Raises StoreError when one of them could not be.
+        Each is done even if others fail. Raises StoreError when one of them failed.
         """
         expire_after = self.site.settings.commands.expire_after_s
         await self._steps.run(
@@ -448,14 +448,14 @@ class Fleet:
         )
 
     async def finish_trajectories(self) -> None:
-        """Store where robots are and have been, up to the last position of each: the gateway ends."""
+        """Store the positions of robots up to the last one of each: the gateway ends."""
         self.recorder.finish()
         await self.save()
 
     # ---------------------------------------------------------------------------------------------------
 
-    def _hear(self, robot: str, link: str, request: Request, now: float, *, waited: bool = False) -> Robot:
-        """Note that a robot is there, and return it."""
+    def _receive(self, robot: str, link: str, request: Request, now: float, *, waited: bool = False) -> Robot:
+        """Record a message of a robot, and return the robot."""
         stopped = isinstance(request, Stopped)
         known = self.robots.note_received(robot, link, now, stopped=stopped, waited=waited)
         self._saving.touch(robot)
@@ -464,7 +464,7 @@ class Fleet:
     def _acknowledge(
         self, robot: str, link: str, ack: OpAck, now: float, *, waited: bool = False
     ) -> Awaitable[None]:
-        known = self._hear(robot, link, ack, now, waited=waited)
+        known = self._receive(robot, link, ack, now, waited=waited)
         if ack.reason is not None:
             ack = replace(ack, reason=one_line(ack.reason, LONGEST_REFUSAL))
         return self._measured(known, self._commands.acknowledge(robot, ack))
@@ -475,7 +475,7 @@ class Fleet:
     async def _deal_with(
         self, robot: Robot, link: str, request: Request, id: int | None
     ) -> tuple[Answer | None, str]:
-        """Deal with what is neither Ready nor a position; return the answer to it, and a note about that."""
+        """Process a request that is neither Ready nor a position; return the answer, and a note about it."""
         if isinstance(request, Stopped):
             await self._commands.on_idle(robot.name, robot.pose if robot.located else None)
         elif isinstance(request, Observed):
@@ -503,7 +503,7 @@ class Fleet:
     def _check_place(
         self, robot: str, link: str, place: tuple[float, float], now: float, *, waited: bool = False
     ) -> None:
-        """Raise RefusedError for a place where the robot cannot be; it is heard all the same."""
+        """Raise RefusedError for a place where the robot cannot be; it counts as received all the same."""
         fault = self._places.fault(self.robots.get(robot), place, now)
         if fault is not None:
             self.robots.disbelieve(robot, link, now, fault, waited=waited)
@@ -527,14 +527,14 @@ class Fleet:
     def _moved(self, robot: str, pose: SendPos, now: float) -> Awaitable[None] | None:
         self._saving.observe(now, [(robot, pose)])
         self.maps.located([(robot, pose)])
-        # A place where it was a while ago says neither that it stands nor that it has arrived.
+        # A position of a while ago shows neither that the robot stands nor that it has arrived.
         return None if self.robots.is_doubted(robot) else self._commands.observe(robot, pose)
 
     def _measure(self, robot: Robot, written_at: float | None) -> None:
-        """Take the time from a message's writing to its OpAck for the latency of a link that has no pings."""
+        """Measure the latency of a link without pings, from the writing of a message to its OpAck."""
         if robot.link == "sql" and written_at is not None:
             took = self._clock.time() - written_at
-            # A robot that was away in between says nothing about its link.
+            # For a robot that was away in between this is not the latency of its link.
             if 0 <= took < self.site.report.lost_after:
                 self.robots.measured(robot.name, took)
 
@@ -542,7 +542,7 @@ class Fleet:
 def _attempt(
     take: Callable[..., Awaitable[None] | None], *arguments: Any
 ) -> Awaitable[None] | Exception | None:
-    """Return what is left to be awaited, or what went wrong: that concerns one robot and no other."""
+    """Return the rest to be awaited, or the error: it concerns one robot and no other."""
     try:
         return take(*arguments)
     except Exception as error:

@@ -1,8 +1,8 @@
-"""What desks are told of a fleet too large for them: robots in a view, or how many there are where.
+"""Views of a fleet too large to send to a desk as a whole: the robots in a view, or their density.
 
-Where everybody is is looked up twice a second for all desks together, what is told of a robot is made a row
-once for all desks that see it, and how many there are in each cell is counted once. So another desk costs
-what it is sent, and the size of the fleet costs the gateway and no desk.
+The positions of all robots are read twice a second for all desks together, the row of a robot is made once
+for all desks that see it, and the robots in each cell are counted once. So another desk costs what it is
+sent, and the size of the fleet costs the gateway and no desk.
 """
 
 from __future__ import annotations
@@ -43,25 +43,25 @@ from ..site.places import Ground
 from .operator_updates import EVERYTHING, ReportRow, packed_table, position_table, positions, reports_of
 
 PLACES_EVERY_S = 0.5
-"""How old it may be where everybody is: who comes into a view is told of that much later."""
+"""Age that the positions of all robots may have: a robot that enters a view is sent that much later."""
 PLACES_PART = 0.1
-"""The part of the gateway's time that it may take to look that up; in large fleets it is done less often."""
+"""Share of the gateway's time for reading the positions; in large fleets they are read less often."""
 DENSE_UNTIL = 0.9
-"""The part of the most robots in a view down to which a density stays one, so that it does not flicker."""
+"""Share of the most robots in a view down to which a density is kept, as hysteresis against flicker."""
 SPARE = 1000
 
 Floats = npt.NDArray[np.float64]
 Bounds = tuple[float, float, float, float]
 
-# --- Where all robots are at one moment, as arrays ---
+# --- Positions of all robots at one moment, as arrays ---
 
 _STATES = tuple(state.value for state in STATES)
 _GROUPS = np.array([{"fresh": 0, "offline": 2}.get(state, 1) for state in _STATES])
-"""Of each state whether it counts as fresh, silent or offline."""
+"""Group of each state: fresh, silent or offline."""
 
 
 class FleetPlaces:
-    """All robots at one moment; what is asked of it is worked out once. ``bounds`` are the site's."""
+    """All robots at one moment; results are computed once. ``bounds`` are the site's."""
 
     def __init__(self, robots: Robots, bounds: Bounds) -> None:
         places = robots.places()
@@ -81,7 +81,7 @@ class FleetPlaces:
         return rows
 
     def alarmed(self, limits: AlarmLimits) -> tuple[list[str], int]:
-        """Return the first :data:`MOST_ALARMED` robots with an alarm, and how many have one."""
+        """Return the first :data:`MOST_ALARMED` robots with an alarm, and the number of those with one."""
         if limits not in self._alarmed:
             rows = np.flatnonzero(self._are_alarmed(limits))
             first = [self.names[row] for row in rows[:MOST_ALARMED].tolist()]
@@ -89,13 +89,13 @@ class FleetPlaces:
         return self._alarmed[limits]
 
     def density(self, bounds: Bounds) -> Density:
-        """Return how many robots are in each cell of a grid over ``bounds``."""
+        """Return the number of robots in each cell of a grid over ``bounds``."""
         if self._grid is None:
             self._grid = DensityGrid(self._x, self._y, _GROUPS[self._codes])
         return self._grid.over(bounds)
 
     def _are_alarmed(self, limits: AlarmLimits) -> npt.NDArray[np.bool_]:
-        # What is not known is NaN, and compares false.
+        # Unknown values are NaN, and compare false.
         found: npt.NDArray[np.bool_] = (self._codes == LOST) | self._disbelieved
         if limits.low_battery is not None:
             found |= self._battery < limits.low_battery
@@ -109,14 +109,14 @@ class FleetPlaces:
         return found
 
 
-# --- How many robots are where: a grid of all that is made once, and coarser ones that are sums of it ---
+# --- Density of robots: one fine grid of all, and coarser ones as its sums ---
 
 BASE_CELLS = 512
 """Cells of the finest grid of all robots along an axis, at most."""
 
 
 class Cells(NamedTuple):
-    """A part of the grid with cells of 2**``level`` m: its first cell, from the origin, and its size."""
+    """Part of the grid with cells of 2**``level`` m: its first cell, from the origin, and its size."""
 
     level: int
     column: int
@@ -126,7 +126,7 @@ class Cells(NamedTuple):
 
     @classmethod
     def over(cls, bounds: Bounds, most: int, level: int = 0) -> Cells:
-        """Return the cells that hold ``bounds``, the smallest of which there are at most ``most`` an axis."""
+        """Return the smallest cells of which at most ``most`` an axis cover ``bounds``."""
         x_min, y_min, x_max, y_max = bounds
         while True:
             size = 2.0**level
@@ -138,7 +138,7 @@ class Cells(NamedTuple):
 
 
 class DensityGrid:
-    """How many robots are in each cell; ``x`` and ``y`` (n,), metres, and ``groups`` (n,), 0, 1 or 2."""
+    """Number of robots in each cell; ``x`` and ``y`` (n,), metres, and ``groups`` (n,), 0, 1 or 2."""
 
     def __init__(self, x: Floats, y: Floats, groups: npt.NDArray[np.intp]) -> None:
         placed = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
@@ -153,14 +153,14 @@ class DensityGrid:
         self._made: dict[Cells, Density] = {}
 
     def over(self, bounds: Bounds) -> Density:
-        """Return the density over ``bounds``; the same object to all who see the same cells."""
+        """Return the density over ``bounds``; the same object for all views of the same cells."""
         cells = Cells.over(bounds, MOST_CELLS)
         if cells not in self._made:
             self._made[cells] = _density(cells, self._counts(cells))
         return self._made[cells]
 
     def _counts(self, cells: Cells) -> npt.NDArray[np.intp]:
-        """Return (3, rows, columns) how many of each group are in each of ``cells``."""
+        """Return (3, rows, columns) the number of robots of each group in each of ``cells``."""
         counts = np.zeros((3, cells.rows, cells.columns), dtype=np.intp)
         if not self._levels:
             return counts
@@ -201,7 +201,7 @@ def _halved(cells: Cells, counts: npt.NDArray[np.intp]) -> tuple[Cells, npt.NDAr
 
 
 def _shared(first: int, count: int, other: int, others: int) -> tuple[slice, slice]:
-    """Return where two ranges, each with its first and its count, are the same: in the one, in the other."""
+    """Return the overlap of two ranges, given by first and count: as a slice of each."""
     begin, end = max(first, other), min(first + count, other + others)
     end = max(begin, end)
     return slice(begin - first, end - first), slice(begin - other, end - other)
@@ -225,7 +225,7 @@ def _density(cells: Cells, counts: npt.NDArray[np.intp]) -> Density:
     )
 
 
-# --- What is told of robots as rows of a table, each made once for all desks that see its robot ---
+# --- Rows of the table of robots, each made once for all desks that see its robot ---
 
 _COLUMNS = (*POSITION_NUMBERS, *POSITION_FLAGS, *POSITION_TEXTS)
 _AT = {name: place for place, name in enumerate(_COLUMNS)}
@@ -234,17 +234,17 @@ _AGES = {"age": "received_at", "pose_age": "pose_at"}
 
 
 class RowStore:
-    """The newest row of each robot that some desk sees; made again when its robot has changed."""
+    """The newest row of each robot that a desk sees; made again when its robot has changed."""
 
     def __init__(self) -> None:
         self._forget()
 
     def table(self, robots: Sequence[Robot], now: float) -> tuple[dict[str, Floats], list[str]]:
-        """Return what :func:`position_table` does."""
+        """Return the table as :func:`position_table`."""
         if not robots:
             return {name: np.empty(0) for name in POSITION_ALWAYS}, []
         if len(self._words) > SPARE + 2 * len(self._rows) or len(self._rows) > SPARE + 4 * len(robots):
-            # Words that no robot says any more, and robots that nobody looks at.
+            # Words that no robot uses any more, and robots that no desk sees.
             self._forget()
         rows = self._rows_of(robots, now)
         table = self._table[:, rows]
@@ -294,23 +294,23 @@ class RowStore:
         self._table[:, [row for row, _ in changed]] = fresh
 
     def _own_words(self, table: Floats) -> list[str]:
-        """Return the words that ``table`` says, and have it point at those."""
+        """Return the words that ``table`` uses, and renumber its texts to them."""
         texts = table[_TEXTS_AT]
         known = ~np.isnan(texts)
         places = texts[known].astype(np.intp)
-        said = np.zeros(len(self._words), dtype=np.bool_)
-        said[places] = True
-        texts[known] = (np.cumsum(said) - 1)[places]
+        used = np.zeros(len(self._words), dtype=np.bool_)
+        used[places] = True
+        texts[known] = (np.cumsum(used) - 1)[places]
         table[_TEXTS_AT] = texts
         words = list(self._words)
-        return [words[place] for place in np.flatnonzero(said).tolist()]
+        return [words[place] for place in np.flatnonzero(used).tolist()]
 
 
 # --- The views of all desks ---
 
 
 class FleetViews:
-    """What the views of all desks share, and the search for robots by name."""
+    """Shared data of the views of all desks, and the search for robots by name."""
 
     def __init__(self, robots: Robots, site: Ground, clock: Clock) -> None:
         self.robots = robots
@@ -321,7 +321,7 @@ class FleetViews:
         self._due_at = -math.inf
 
     def places(self) -> FleetPlaces:
-        """Return where everybody was at most :data:`PLACES_EVERY_S` ago, in large fleets a little longer."""
+        """Return all positions of at most :data:`PLACES_EVERY_S` ago, in large fleets a little longer."""
         now = self.clock.steady()
         if self._places is None or now >= self._due_at:
             began = time.perf_counter()
@@ -332,7 +332,7 @@ class FleetViews:
 
     @handles(GetPositions)
     async def now(self, request: GetPositions) -> Encoded[Positions]:
-        """Return where every robot is now, or what there is to be told by a view."""
+        """Return the present positions of all robots, or the content of a view."""
         if request.view is not None:
             return Encoded(ViewWatch(self, request.view, 1.0, PositionForm.ROWS).everything())
         rows = reports_of(self.robots.changed(EVERYTHING), self.clock.time(), ReportRow)
@@ -340,19 +340,19 @@ class FleetViews:
 
     @handles(FindRobots)
     async def find(self, request: FindRobots) -> Encoded[FoundRobots]:
-        """Return the robots whose names hold a text, or are that text, by name."""
+        """Return the robots with names that contain a text, or equal it, by name."""
         text, known = request.text.lower(), self.robots.names()
         if request.whole:
             names = [name for name in known if name.lower() == text]
         else:
             names = [name for name in known if text in name.lower()]
-        told = islice((name for name in names if name > request.after), request.limit)
-        rows = reports_of(self.robots.known(told), self.clock.time(), ReportRow)
+        page = islice((name for name in names if name > request.after), request.limit)
+        rows = reports_of(self.robots.known(page), self.clock.time(), ReportRow)
         return Encoded({"t": round(time.time(), 3), "robots": rows, "count": len(names)})
 
 
 class ViewWatch:
-    """What one desk was told by its view, and what it has to be told next."""
+    """State of one desk's view: what was sent to it, and what must be sent next."""
 
     def __init__(self, views: FleetViews, view: View, rate: float, form: PositionForm) -> None:
         self.rate, self.form = rate, form
@@ -361,12 +361,12 @@ class ViewWatch:
         self._views = views
         self._view = view
         self._places: FleetPlaces | None = None
-        """those by which it was chosen whom to tell of."""
+        """positions by which the robots to be sent were chosen."""
         self._chosen: list[str] = []
         self._selection: RobotSelection | None = None
-        """what is known of those; None once others were chosen."""
+        """selection of the chosen robots; None once others were chosen."""
         self._is_dense = False
-        self._told: set[str] = set()
+        self._sent: set[str] = set()
         self._seen = EVERYTHING
         self._seen_view: FleetView | None = None
 
@@ -376,37 +376,37 @@ class ViewWatch:
         self.changed.set()
 
     def next_frame(self) -> bytes | None:
-        """Return the frame that tells what is new since the last one; None where nothing is."""
-        robots, seen, told = self._views.robots, self._seen, self._told
+        """Return the frame with the changes since the last one; None without any."""
+        robots, seen, sent = self._views.robots, self._seen, self._sent
         fleet = self._choose()
         news: dict[str, Any] = {}
-        removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in told]
+        removed = [] if seen == EVERYTHING else [name for name in robots.removed(seen) if name in sent]
         fresh: list[Robot] = []
         selection = self._selection
         if selection is None or robots.is_outdated(selection):
             self._selection = selection = robots.select(self._chosen)
-            self._told = set(selection.names)
-            fresh = robots.known(name for name in selection.names if name not in told)
-            if untracked := sorted(told - self._told - set(removed)):
+            self._sent = set(selection.names)
+            fresh = robots.known(name for name in selection.names if name not in sent)
+            if untracked := sorted(sent - self._sent - set(removed)):
                 news["untracked"] = untracked
         met = {robot.name for robot in fresh}
         fresh += [robot for robot in robots.changed_of(selection, seen) if robot.name not in met]
         if fleet != self._seen_view:
-            news["view"] = _told(fleet)
+            news["view"] = _known_fields(fleet)
         self._seen, self._seen_view = robots.revision, fleet
         if not (fresh or removed or news):
             return None
         return self._encoded(fresh, removed, news, everything=seen == EVERYTHING)
 
     def everything(self) -> dict[str, Any]:
-        """Return all that there is to be told now, as the result of ``get_positions``."""
+        """Return the whole content of the view now, as the result of ``get_positions``."""
         fleet = self._choose()
         there = self._views.robots.known(self._chosen)
         rows = reports_of(there, self._views.clock.time(), ReportRow)
-        return {**positions(rows, everything=True), "view": _told(fleet)}
+        return {**positions(rows, everything=True), "view": _known_fields(fleet)}
 
     def _choose(self) -> FleetView:
-        """Choose whom to tell of, where everybody was looked up anew or the view is another one."""
+        """Choose the robots to send, when the positions were read again or the view was changed."""
         places = self._views.places()
         if places is self._places and self._seen_view is not None:
             return self._seen_view
@@ -440,5 +440,5 @@ class ViewWatch:
         return packed_table(t, names, columns, words, self.form, **news)
 
 
-def _told(fleet: FleetView) -> dict[str, Any]:
+def _known_fields(fleet: FleetView) -> dict[str, Any]:
     return {name: value for name, value in vars(fleet).items() if value is not None}
