@@ -1,4 +1,4 @@
-"""Active commands: life of each, effects of acknowledgements, index by robot; no I/O."""
+"""Active commands: states of each, effects of acknowledgements, index by robot; no I/O."""
 
 from __future__ import annotations
 
@@ -13,17 +13,17 @@ from ...core.messages.commands import CommandReport, CommandState, CommandStep
 from ...core.messages.robots import Abort, Command, OpAck, SendPos, SetPath, SetPosEnd
 from ..model.arrival import Arrival, PathArrival, arrival_judge
 
-# --- The life of a command as reported: queued → delivered → acknowledged → reached, or another end ---
+# --- States of a command as reported: queued → delivered → acknowledged → reached, or another end ---
 
 _FORWARD = (CommandState.QUEUED, CommandState.DELIVERED, CommandState.ACKNOWLEDGED, CommandState.REACHED)
 
 
 class CommandLifeError(Exception):
-    """A step that the life of a command does not have."""
+    """A step that is not allowed in the state of a command."""
 
 
 def may_become(now: CommandState, then: CommandState) -> bool:
-    """Tell whether a command may step from ``now`` to ``then``.
+    """Return whether a command may step from ``now`` to ``then``.
 
     Steps may be skipped forward (an acknowledgement proves the delivery) and never go back.
     """
@@ -43,7 +43,7 @@ def advance(
     deviation: float | None = None,
     stood: tuple[float, float, float] | None = None,
 ) -> CommandReport:
-    """Return ``command`` one step further; raises CommandLifeError for a step it may not take."""
+    """Return ``command`` one step further; raises CommandLifeError for a step that is not allowed."""
     if not may_become(command.state, state):
         raise CommandLifeError(
             f"command {command.command} is {command.state.value} and cannot become {state.value}"
@@ -58,11 +58,11 @@ def advance(
 
 
 def note(command: CommandReport, at: float, by: str, reason: str) -> CommandReport:
-    """Return ``command`` in the same state with one more line in its history."""
+    """Return ``command`` in the same state with one more step in its history."""
     return dataclasses.replace(command, steps=[*command.steps, CommandStep(command.state, at, by, reason)])
 
 
-# --- A command with a step to come, and how the commands of one robot bear on each other; no I/O ---
+# --- Open commands, and the effects of the commands of one robot on each other; no I/O ---
 
 GATEWAY = "gateway"
 NOTHING = ""
@@ -70,13 +70,13 @@ NOTHING = ""
 
 @dataclass(frozen=True)
 class CommandOrder:
-    """A command to be issued: who asks which robot for what, under which id, and why.
+    """A command to be issued: its id, robot, message, operator and reason.
 
-    It is given up when the robot has not fetched it within ``expires_in`` seconds (None: by the site's
-    settings). With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of``
-    unless that is and nobody has asked for its end; NOTHING stands for a robot that does nothing. ``task``
-    is the task of the robot's queue that it is for; an order beside the queue pauses that. One that is
-    ``fenced`` is refused where it leads into a keepout of the site.
+    It expires when the robot has not fetched it within ``expires_in`` seconds (None: by the site's settings).
+    With ``aborts`` it is void unless that command is still the robot's task, with ``instead_of`` unless that
+    is and its end was not requested; NOTHING stands for an idle robot. ``task`` is the task of the robot's
+    queue that it is for; an order outside the queue pauses the queue. One that is ``fenced`` is refused where
+    it leads into a keepout of the site.
     """
 
     command: str
@@ -98,11 +98,11 @@ class CommandOrder:
 
 @dataclass
 class ActiveCommand:
-    """A command with a step to come; ``sa_id`` is its message's row in SA, written at ``written_at``.
+    """An open command; ``sa_id`` is the row of its message in SA, written at ``written_at``.
 
-    ``handed`` is where the robot was, as far as it is known, before it can have read that. It was
-    ``out_of_sight`` where it may have driven since then without being seen. While its
-    ``acknowledgement_waits`` to be dealt with again the command is not judged.
+    ``handed`` is the robot's last known pose before it can have read the message. The robot is
+    ``out_of_sight`` if it may have driven since then without being seen. While its ``acknowledgement_waits``
+    to be processed again the command is not judged.
     """
 
     report: CommandReport
@@ -117,49 +117,49 @@ class ActiveCommand:
 
     @property
     def is_motion(self) -> bool:
-        """Tell whether it makes the robot drive."""
+        """Return whether it makes the robot drive."""
         return isinstance(self.message, (SetPosEnd, SetPath))
 
     @property
     def is_abort(self) -> bool:
-        """Tell whether it ends what the robot does."""
+        """Return whether it is an Abort, which ends the robot's task."""
         return isinstance(self.message, Abort)
 
     @property
     def is_emergency(self) -> bool:
-        """Tell whether it is the Abort of an emergency stop."""
+        """Return whether it is the Abort of an emergency stop."""
         return isinstance(self.message, Abort) and self.message.emergency
 
     @property
     def is_on_its_way(self) -> bool:
-        """Tell whether the robot has not said yet that it took it on."""
+        """Return whether the robot has not acknowledged it yet."""
         return self.report.state in (CommandState.QUEUED, CommandState.DELIVERED)
 
     @property
     def acknowledged_at(self) -> float:
-        """When the robot took it on last; when it was issued, where it has not."""
+        """Time of its last acknowledgement; time of its issue without one."""
         steps = self.report.steps
-        taken = [step.at for step in steps if step.state is CommandState.ACKNOWLEDGED]
-        return taken[-1] if taken else steps[0].at
+        times = [step.at for step in steps if step.state is CommandState.ACKNOWLEDGED]
+        return times[-1] if times else steps[0].at
 
     @property
     def driven(self) -> float | None:
-        """Metres of its path that the robot has driven, None for what is no path."""
+        """Metres of its path that the robot has driven, None for other commands."""
         return self.arrival.driven if isinstance(self.arrival, PathArrival) else None
 
     @property
     def line(self) -> Polyline | None:
-        """Its path once the robot has taken that on, None before and for what is no path."""
+        """Its path once the robot has acknowledged it, None before and for other commands."""
         return self.arrival.line if isinstance(self.arrival, PathArrival) else None
 
     def expired(self, now: float, after: float) -> bool:
-        """Tell whether nobody has fetched it in time; ``after`` seconds where it says nothing itself.
+        """Return whether it was not fetched in time: by ``expires_at``, else within ``after`` seconds.
 
-        The Abort of an emergency stop waits for its robot however long that is away.
+        The Abort of an emergency stop never expires, however long its robot is away.
         """
         issued = self.report.steps[0].at
         span = after if self.expires_at is None else self.expires_at - issued
-        # One from so far in the future was issued before the clock was set back, nobody knows how long ago.
+        # One from as far in the future was issued before the clock was set back, at an unknown time.
         return not self.is_emergency and abs(now - issued) >= span
 
     def step(
@@ -175,16 +175,16 @@ class ActiveCommand:
         return dataclasses.replace(self, report=advance(self.report, state, at, by, reason, deviation, stood))
 
     def noted(self, at: float, by: str, reason: str) -> ActiveCommand:
-        """Return the command in the same state with a note, and not judged any more."""
+        """Return the command in the same state with a note, and without an arrival judge."""
         return dataclasses.replace(self, report=note(self.report, at, by, reason), arrival=None)
 
     def judged(self, tolerance: float) -> ActiveCommand:
-        """Return the command as one that the robot has just taken on."""
+        """Return the command with its arrival judge, as just acknowledged by the robot."""
         judged = arrival_judge(self.message, tolerance, under_way=self.out_of_sight, handed=self.handed)
         return dataclasses.replace(self, arrival=judged)
 
     def lose_sight(self) -> None:
-        """Take it that the robot may have driven since its last pose without being seen."""
+        """Allow for the robot having driven since its last pose without being seen."""
         self.out_of_sight = True
         if isinstance(self.arrival, PathArrival):
             self.arrival.lose_sight()
@@ -192,10 +192,10 @@ class ActiveCommand:
 
 @dataclass(frozen=True)
 class Recall:
-    """A ``queued`` command whose message is to be taken back from SA, and how it ``ended`` then.
+    """A ``queued`` command with a message to be withdrawn from SA, and the command as ``ended`` by that.
 
-    A robot on SQL may have fetched it without the gateway having seen that yet: then it goes on, and may be
-    done already.
+    A robot on SQL may have fetched it without the gateway having seen that yet: then the command continues,
+    and may be done already.
     """
 
     queued: ActiveCommand
@@ -203,7 +203,7 @@ class Recall:
 
     @property
     def fetched(self) -> ActiveCommand:
-        """The command where its message had been fetched before."""
+        """The command if its message had already been fetched."""
         return self.queued.step(CommandState.DELIVERED, self.ended.report.steps[-1].at, GATEWAY)
 
 
@@ -223,7 +223,7 @@ def create_command(order: CommandOrder, now: float) -> ActiveCommand:
 
 
 def superseded(order: CommandOrder, mine: list[ActiveCommand], now: float) -> list[ActiveCommand]:
-    """Return the ends of those commands of the robot, ``mine``, that ``order`` takes the place of."""
+    """Return the ends of those commands of the robot, ``mine``, that ``order`` replaces."""
     reason = f"by command {order.command}"
     return [
         command.step(CommandState.SUPERSEDED, now, order.operator, reason)
@@ -233,9 +233,9 @@ def superseded(order: CommandOrder, mine: list[ActiveCommand], now: float) -> li
 
 
 def recalled(order: CommandOrder, mine: list[ActiveCommand], now: float) -> list[Recall]:
-    """Return the recalls of those tasks of the robot, ``mine``, that an Abort finds before it fetched them.
+    """Return the recalls, by an Abort, of those motions of the robot, ``mine``, that it has not fetched.
 
-    What it has fetched may be done by the time that the Abort comes, so that ends when it acknowledges the
+    Fetched ones may be done by the time that the Abort arrives, so they end when the robot acknowledges the
     Abort.
     """
     if not isinstance(order.message, Abort):
@@ -247,7 +247,7 @@ def recalled(order: CommandOrder, mine: list[ActiveCommand], now: float) -> list
 
 
 def ended_by(abort: ActiveCommand, mine: list[ActiveCommand], now: float, why: str) -> list[ActiveCommand]:
-    """Return the ends of those commands of the robot, ``mine``, that came before an Abort of an operator."""
+    """Return the ends of those motions of the robot, ``mine``, that were issued before an Abort."""
     if not abort.is_abort:
         return []
     reason = because(why, abort.report.steps[0].reason)
@@ -259,9 +259,9 @@ def ended_by(abort: ActiveCommand, mine: list[ActiveCommand], now: float, why: s
 
 
 def given_up_by(command: ActiveCommand, mine: list[ActiveCommand]) -> ActiveCommand | None:
-    """Return the Abort that the robot has acknowledged and that ``command`` came before, None without one.
+    """Return the Abort after ``command`` that the robot has acknowledged, None without one.
 
-    ``mine`` are the open commands of the robot. Such a command waits for where the robot is seen to be.
+    ``mine`` are the open commands of the robot. Such a command waits for the robot's next position.
     """
     if not command.is_motion:
         return None
@@ -270,12 +270,12 @@ def given_up_by(command: ActiveCommand, mine: list[ActiveCommand]) -> ActiveComm
 
 
 def because(what: str, reason: str | None) -> str:
-    """Return what happened, with the operator's reason if one was given."""
+    """Return ``what`` happened, with the operator's reason if one was given."""
     return what if not reason else f"{what}: {reason}"
 
 
 def _replaces(message: Command, command: ActiveCommand) -> bool:
-    """Tell whether a new ``message`` makes an older command void: each kind its own."""
+    """Return whether a new ``message`` makes an older ``command`` of the same kind void."""
     if isinstance(message, (SetPosEnd, SetPath)):
         return command.is_motion
     if command.is_emergency and not (isinstance(message, Abort) and message.emergency):
@@ -283,13 +283,13 @@ def _replaces(message: Command, command: ActiveCommand) -> bool:
     return isinstance(command.message, type(message))
 
 
-# --- What comes of a robot's commands when it answers to one, or starts again and may have forgotten; no I/O
+# --- Effects on a robot's commands of its acknowledgements, and of its restart; no I/O
 
 ABORTED = "the robot acknowledged the Abort"
 
 
 class RestartedCommands(NamedTuple):
-    """The commands of a robot whose messages are written ``again``, and those that have ``ended`` instead."""
+    """The commands of a robot with messages to be written ``again``, and those that ``ended`` instead."""
 
     again: list[ActiveCommand]
     ended: list[ActiveCommand]
@@ -304,10 +304,10 @@ def acknowledge_command(
     *,
     unseen: bool,
 ) -> list[ActiveCommand]:
-    """Return what an OpAck of ``command`` changes in those of the robot, ``mine``, in the order of the steps.
+    """Return the changes by an OpAck of ``command`` in the robot's commands, ``mine``, in order of the steps.
 
-    ``tolerance`` is metres within which a target counts as reached; ``unseen`` whether the robot may have
-    come further since it was seen last.
+    ``tolerance`` is the metres within which a target counts as reached; ``unseen`` whether the robot may have
+    moved since its last position.
     """
     robot = command.report.robot
     if not ack.ok:
@@ -315,12 +315,12 @@ def acknowledge_command(
     if may_become(command.report.state, CommandState.ACKNOWLEDGED):
         steps = []
         if command.report.state is CommandState.QUEUED:
-            # What a robot answers to has reached it, even if that was not seen yet.
+            # A message that a robot answers has reached it, even if its delivery was not seen yet.
             command = command.step(CommandState.DELIVERED, now, GATEWAY)
             steps.append(command)
         steps.append(command.step(CommandState.ACKNOWLEDGED, now, robot).judged(tolerance))
-        # One that nobody saw lately may have come to the end of what it had taken on before the Abort
-        # reached it: that ends with its next position.
+        # A robot that was not seen lately may have completed its motion before the Abort reached it: that
+        # command ends with its next position.
         ending = [one for one in mine if not (unseen and one.arrival)]
         return [*steps, *ended_by(command, ending, now, ABORTED)]
     if command.arrival is None:
@@ -335,11 +335,11 @@ def restart_commands(
     expire_after: float,
     seen: Callable[[str], SendPos | None],
 ) -> RestartedCommands:
-    """Return what becomes of the commands of a robot that starts again.
+    """Return the changes of the commands of a robot that restarted.
 
-    What was never fetched is written again too, behind the map; but for an Abort that nothing waits before,
-    which needs none. What is older than ``expire_after`` seconds is not sent again. ``seen`` tells where a
-    robot was seen last.
+    Commands never fetched are written again too, after the map; but not an Abort with nothing before it,
+    which needs no map. Those older than ``expire_after`` seconds are not sent again. ``seen`` returns the
+    last pose of a robot.
     """
     ended = [end for command in mine for end in ended_by(command, mine, now, "the robot started anew")]
     ended += [
@@ -360,20 +360,20 @@ def restart_commands(
 def _to_be_sent_again(
     command: ActiveCommand, reason: str, now: float, seen: Callable[[str], SendPos | None]
 ) -> ActiveCommand:
-    """Return a command to be sent once more; one that was never fetched keeps its place behind."""
+    """Return a command to be sent again; one never fetched keeps its place after the others."""
     if command.report.state is CommandState.QUEUED:
         reason = "behind what the robot is told once more"
     noted, handed = command.noted(now, GATEWAY, reason), seen(command.report.robot)
     return dataclasses.replace(noted, written_at=now, handed=handed, out_of_sight=False)
 
 
-# --- The open commands by their ids, by their robots and by their messages; no I/O ---
+# --- Index of the open commands by id, robot and message; no I/O ---
 
 
 class ActiveCommands:
-    """Holds them so that what a pose or an OpAck concerns is found without looking at all of them.
+    """Index of the open commands, to find those that a pose or an OpAck concerns without a search.
 
-    ``queued`` are those whose message waits in SA, by its id.
+    ``queued`` are those with a message waiting in SA, by the id of the message.
     """
 
     def __init__(self) -> None:
@@ -400,7 +400,7 @@ class ActiveCommands:
         return list(mine.values()) if mine else []
 
     def add(self, command: ActiveCommand) -> None:
-        """Take in a command, in place of what was known of it."""
+        """Add a command, or replace its former state."""
         report = command.report
         former = self._by_id.get(report.command)
         if former is not None:
@@ -426,7 +426,7 @@ class ActiveCommands:
                 del self._by_robot[former.report.robot]
 
     def progress(self, least: float) -> dict[str, float]:
-        """Return the metres driven of paths that have grown by ``least`` since they were noted."""
+        """Return the metres driven of paths, where they have grown by ``least`` since they were stored."""
         return {
             id: driven
             for id, stored in self._stored_driven.items()
@@ -434,5 +434,5 @@ class ActiveCommands:
         }
 
     def note_progress(self, driven: Mapping[str, float]) -> None:
-        """Take note of metres driven that are stored now."""
+        """Record the metres driven as stored."""
         self._stored_driven.update({id: metres for id, metres in driven.items() if id in self._stored_driven})

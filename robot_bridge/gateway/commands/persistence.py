@@ -1,4 +1,4 @@
-"""Persistence of commands: transactions, locks of robots, their order, Aborts that wait for the database."""
+"""Persistence of commands: transactions, locks by robot, order of processing, Aborts not stored yet."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from ..storage.rows import BatchedWork, do_together
 from .active_command import ActiveCommand, CommandOrder, Recall, because, note
 
-# --- How commands and their messages in SA are written, in one transaction; called in the database's thread
-# Nothing here changes anything but the database, so that a transaction can be done again.
+# --- Writing commands and their messages in SA, in one transaction; called in the database's thread
+# Nothing here changes anything but the database, so that a transaction can be repeated.
 
 
 class CommandInsert(NamedTuple):
-    """An order with the command it makes, ends and recalls of older ones, and why it is refused, if it is.
+    """An order with its command, the ends and recalls of older ones, and the refusal of the order, if any.
 
     ``ends_waiting`` is true for a robot that waits for another.
 
-    An order whose command is stored already is neither done again nor refused.
+    An order with a command that is stored already is neither done again nor refused.
     """
 
     order: CommandOrder
@@ -48,18 +48,18 @@ class CommandInsert(NamedTuple):
 
 
 class WrittenCommands(NamedTuple):
-    """What was written: commands as they now stand, in the order asked for, and older ones that changed."""
+    """Written commands: the ordered ones in their new states, in order, and older ones that changed."""
 
     issued: list[ActiveCommand]
     changed: list[ActiveCommand]
 
 
 FORGOTTEN = ("Start", "OpAck", "SetMap")
-"""What waits for a robot that starts again, and is void."""
+"""Messages that are void when their robot restarts."""
 Also = Callable[[Connection], None]
-"""More to be written in the same transaction."""
+"""Further writes in the same transaction."""
 AlsoOf = Callable[[str], Also]
-"""What more is to be written, made from the id of the command that the robot then carries out."""
+"""Makes the further writes from the id of the command that the robot then carries out."""
 
 
 def insert_commands(
@@ -91,12 +91,12 @@ def insert_commands(
 
 
 class _WriteSteps(BatchedWork[None]):
-    """The newest step of commands; what ended takes its message out of SA."""
+    """Writes the newest step of commands; for ended ones it removes the message from SA."""
 
     def do_all(
         self, connection: Connection, asked: Sequence[tuple[Sequence[ActiveCommand]]]
     ) -> Sequence[None]:
-        """Write the steps that each asks for."""
+        """Write the steps of all calls."""
         steps = [command for (some,) in asked for command in some]
         commands.save_all(connection, [_stored(command) for command in steps])
         answers.remove_answers(connection, [c.sa_id for c in steps if not c.report.state.is_open])
@@ -107,9 +107,10 @@ write_steps = _WriteSteps()
 
 
 def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[ActiveCommand]:
-    """Take messages back that were not fetched, and write what becomes of their commands; return those.
+    """Withdraw messages that were not fetched, and write the new states of their commands; return those.
 
-    Fetched is also what its robot has acknowledged without having deleted it, read by the gateway or not.
+    A message also counts as fetched if its robot has acknowledged it without deleting it, whether the gateway
+    has read that or not.
     """
     taken_back = answers.take_back(connection, [recall.queued.sa_id for recall in recalls])
     if taken_back:
@@ -120,18 +121,18 @@ def write_recalls(connection: Connection, recalls: Sequence[Recall]) -> list[Act
 
 
 def _acknowledged(connection: Connection, recalls: Sequence[Recall]) -> set[int]:
-    """Return the messages of ``recalls`` whose OpAcks stand in RR; looked for when the messages are gone."""
+    """Return the messages of ``recalls`` with OpAcks in RR; to be read after deleting the messages."""
     by_robot = answers.acknowledged(connection, sorted({recall.queued.report.robot for recall in recalls}))
     return {r.queued.sa_id for r in recalls if r.queued.sa_id in by_robot[r.queued.report.robot]}
 
 
 class _WriteAcknowledged(BatchedWork[None]):
-    """What robots' OpAcks of messages in SA change; those are taken out of SA."""
+    """Writes the changes by robots' OpAcks of messages in SA; removes these messages."""
 
     def do_all(
         self, connection: Connection, asked: Sequence[tuple[str, int | None, Sequence[ActiveCommand]]]
     ) -> Sequence[None]:
-        """Write what each OpAck changes: robot, message and steps."""
+        """Write the changes by each OpAck: robot, message and steps."""
         answers.remove_own(connection, [(robot, sa_id) for robot, sa_id, _ in asked if sa_id is not None])
         return write_steps.do_all(connection, [(steps,) for _, _, steps in asked])
 
@@ -140,16 +141,16 @@ write_acknowledged = _WriteAcknowledged()
 
 
 class _WriteLate(BatchedWork[CommandReport | None]):
-    """Messages that no open command waits for, taken out of SA.
+    """Removes messages without an open command from SA.
 
-    A robot may have read the message of a command that ended while it was on its way: then its log says so,
-    once, and its report is what comes of it.
+    A robot may have read the message of a command that ended while it was on its way: then this is recorded
+    in the command's log, once, and the result is its report.
     """
 
     def do_all(
         self, connection: Connection, asked: Sequence[tuple[str, int, float]]
     ) -> list[CommandReport | None]:
-        """Take the message of each, by robot, id and time."""
+        """Remove the message of each call, by robot, id and time."""
         messages = [(robot, sa_id) for robot, sa_id, _ in asked]
         answers.remove_own(connection, messages)
         found = commands.find_messages(connection, messages)
@@ -157,7 +158,7 @@ class _WriteLate(BatchedWork[CommandReport | None]):
         reports: list[CommandReport | None] = []
         for robot, sa_id, at in asked:
             stored = found.get((robot, sa_id))
-            report = None if stored is None else _noted_late(stored.report, at)
+            report = None if stored is None else _with_late_reading(stored.report, at)
             if stored is not None and report is not None:
                 noted.append(stored._replace(report=report))
                 found[robot, sa_id] = noted[-1]
@@ -169,7 +170,7 @@ class _WriteLate(BatchedWork[CommandReport | None]):
 write_late = _WriteLate()
 
 
-def _noted_late(report: CommandReport, at: float) -> CommandReport | None:
+def _with_late_reading(report: CommandReport, at: float) -> CommandReport | None:
     if report.state.is_open or any(step.by == report.robot for step in report.steps):
         return None
     return note(report, at, report.robot, "the robot had read it by then, and acknowledged it")
@@ -183,12 +184,11 @@ def write_again(
     ended: Sequence[ActiveCommand],
     note_run: Callable[[Connection], bool],
 ) -> list[ActiveCommand]:
-    """Write ``welcome`` for a robot that starts again, then the messages of its commands; return those.
+    """Write ``welcome`` for a robot that restarted, then the messages of its commands; return those.
 
-    All that is done once for each run of a robot: ``note_run`` notes that, and returns false where it was
-    noted before, by a transaction of which nobody heard that it was done. The messages keep the order in
-    which they stood. Nothing else that sets a robot in motion stays: it answers questions that the robot has
-    forgotten.
+    This is done once for each run of a robot: ``note_run`` records it, and returns false where it is already
+    recorded, by a transaction with an unknown outcome. The messages keep their order. Other messages that
+    set a robot in motion are removed: they answer questions that the robot has forgotten.
     """
     if not note_run(connection):
         return []
@@ -204,12 +204,12 @@ def write_again(
 
 
 def write_driven(connection: Connection, driven: Mapping[str, float]) -> None:
-    """Write how many metres of their paths robots have driven, by command."""
+    """Write the metres of their paths that robots have driven, by command."""
     commands.save_driven(connection, driven)
 
 
 def opened(stored: StoredCommand, message: Command | None = None) -> ActiveCommand:
-    """Return a stored command as one with a step to come, not judged yet."""
+    """Return a stored command as an open one, not judged yet."""
     report = stored.report
     if message is None:
         decoded = decode_answer(report.op, report.params)
@@ -219,7 +219,7 @@ def opened(stored: StoredCommand, message: Command | None = None) -> ActiveComma
 
 
 def _held(draft: CommandInsert) -> QueueHold | None:
-    """Return why the robot's queue pauses: it must not overtake whoever orders the robot about."""
+    """Return the pause of the robot's queue, which must not interfere with an order outside it."""
     order, message = draft.order, draft.order.message
     if order.task is not None or isinstance(message, SetPosIni):
         return None
@@ -234,13 +234,13 @@ def _stored(command: ActiveCommand) -> StoredCommand:
     return StoredCommand(command.report, command.sa_id, command.driven, command.expires_at)
 
 
-# --- Aborts that the database did not take, kept until it does ---
+# --- Aborts that could not be stored, kept until they are ---
 
 
 class UnstoredAborts:
-    """The newest Abort of each robot, and of each command that was to be aborted alone.
+    """The newest unstored Abort of each robot, and of each single command to be aborted.
 
-    That of an emergency stop is among them once the stop is over: before, the stop keeps it.
+    The Abort of an emergency stop is among them once the stop is over: before, the stop keeps it.
     """
 
     def __init__(self) -> None:
@@ -257,11 +257,11 @@ class UnstoredAborts:
         return [order for robot in robots for order in self._orders.get(robot, {}).values()]
 
     def robots(self) -> list[str]:
-        """Return the names of the robots of which there are some."""
+        """Return the names of the robots with unstored Aborts."""
         return list(self._orders)
 
     def postpone(self, robot: str) -> None:
-        """Name a robot last: others are not to wait for what keeps its Aborts from being stored."""
+        """Move a robot to the end: others must not wait while its Aborts cannot be stored."""
         self._orders[robot] = self._orders.pop(robot)
 
     def drop(self, robot: str) -> None:
@@ -277,7 +277,7 @@ class UnstoredAborts:
             self._orders.pop(order.robot, None)
 
 
-# --- Robots held while what concerns them is stored; what may have been stored or not is looked up first
+# --- Locks on robots during transactions; after one with an unknown outcome the database is read first
 
 T = TypeVar("T")
 
@@ -290,7 +290,7 @@ class NamedLocks:
 
     @contextlib.asynccontextmanager
     async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
-        """Hold some robots, in the one order in which everybody does."""
+        """Hold the locks of some robots, always in the same order."""
         async with contextlib.AsyncExitStack() as stack:
             for name in sorted(set(names)):
                 await stack.enter_async_context(self._locks.setdefault(name, asyncio.Lock()))
@@ -298,16 +298,16 @@ class NamedLocks:
 
 
 class StoredCommands(Protocol):
-    """What is known of what the database holds."""
+    """In-memory state of the stored commands."""
 
     async def read_again(self) -> None:
-        """Find out what holds; raises StoreError where it cannot, and is asked again then."""
+        """Read the stored state; raises StoreError where this fails, and is called again then."""
 
 
 class RobotLocks:
-    """Robots by name, each held by one at a time: what concerns one waits only for what concerns the same.
+    """Locks by robot, so that work on a robot waits only for work on the same one.
 
-    Once a transaction may have been done or not, ``known`` is brought up to what is stored before anything
+    After a transaction with an unknown outcome, ``known`` is updated to the stored state before anything
     else is done with any robot.
     """
 
@@ -321,24 +321,24 @@ class RobotLocks:
 
     @property
     def has_uncertain_commit(self) -> bool:
-        """Whether nobody knows what holds."""
+        """Whether a transaction with an unknown outcome is not resolved yet."""
         return self._doubts > self._settled
 
     @contextlib.asynccontextmanager
     async def of(self, names: Iterable[str]) -> AsyncIterator[None]:
-        """Hold some robots, in the one order in which everybody does; none only looks up what is in doubt."""
+        """Hold some robots, always in the same order; with none it only resolves uncertain commits."""
         async with self._locks.of(names):
             if self.has_uncertain_commit:
                 before = self._doubts
                 await self._known.read_again()
-                # What came into doubt meanwhile may not have been seen.
+                # Commits that became uncertain meanwhile may not have been read.
                 self._settled = max(self._settled, before)
             yield
 
     async def run(self, names: Iterable[str], work: Callable[..., T], *arguments: Any) -> T:
-        """Run ``work``, which concerns the robots ``names``, in a transaction.
+        """Run ``work`` on the robots ``names`` in a transaction.
 
-        :raises FencedError: when this gateway has not all of them: nothing is done then.
+        :raises FencedError: when this gateway does not have all of them: nothing is done then.
         :raises StoreError: when the database cannot be used; UncertainError when it may have been done.
         """
         try:
@@ -350,7 +350,7 @@ class RobotLocks:
             raise
 
     async def confirm(self, names: Sequence[str]) -> None:
-        """Raise FencedError unless this gateway has the robots ``names``; StoreError where nobody knows."""
+        """Raise FencedError unless this gateway has the robots ``names``; StoreError where unknown."""
         if self._fence is not SOLE_FENCE:
             await self._database.read(self._fence.check, names)
 
@@ -364,42 +364,42 @@ class _FencedWork(BatchedWork[Any]):
     def do_all(
         self, connection: Connection, asked: Sequence[tuple[Sequence[str], Callable[..., Any], Any]]
     ) -> list[Any]:
-        """Do what each asks for as ``(robots, work, arguments)``; raises FencedError for all."""
+        """Do the work of all calls ``(robots, work, arguments)``; raises FencedError for all."""
         self._fence.check(connection, sorted({robot for robots, _, _ in asked for robot in robots}))
         results = dict(do_together(connection, [(work, arguments) for _, work, arguments in asked]))
         return [results[number] for number in range(len(asked))]
 
 
-# --- What a robot says of its commands, in its order: acknowledgements stored, positions judged behind them
+# --- Messages of a robot on its commands, in order: acknowledgements stored, positions judged after them
 
 log = logging.getLogger(__name__)
 
 MOST_WAITING = 500
-"""that one robot said and that waits; from then on the oldest positions are left out."""
+"""messages of one robot that may wait; beyond that the oldest positions are dropped."""
 
 
 class ArrivalEvaluator(Protocol):
-    """What judges the commands of robots by where they are."""
+    """Judges the commands of robots by their positions."""
 
     def evaluate_arrival(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
-        """Return what stores the commands that are done, None where none is."""
+        """Return the coroutine that stores the commands that are done, None without any."""
 
     def lose_sight(self, robot: str) -> None:
-        """Note that nobody saw for a while where a robot drove."""
+        """Record that a robot may have driven without being seen."""
 
 
 class _Work(NamedTuple):
-    """Something that is stored, and who waits for it."""
+    """A piece of storing, and the future of its caller."""
 
     work: Coroutine[Any, Any, Any]
     future: asyncio.Future[Any]
 
 
 class RobotSequences:
-    """Does for each robot what it said in its order, though the database may take seconds for a part of it.
+    """Processes the messages of each robot in order, although the database may take seconds for some.
 
-    Only positions may wait here with nobody waiting for them: they are shown and recorded before they are
-    judged, and those who watch a robot do not wait for a database.
+    Only positions wait here without a caller: they are shown and recorded before they are judged, so that
+    operators do not wait for the database.
     """
 
     def __init__(self, evaluator: ArrivalEvaluator) -> None:
@@ -408,7 +408,7 @@ class RobotSequences:
         self._tasks = BackgroundTasks()
 
     def add_position(self, robot: str, pose: SendPos) -> bool:
-        """Have a position judged behind what is being done; false, where that is nothing."""
+        """Queue a position to be judged after the work in progress; return false if there is none."""
         waiting = self._waiting.get(robot)
         if waiting is None:
             return False
@@ -421,7 +421,7 @@ class RobotSequences:
         return True
 
     def add(self, robot: str, work: Coroutine[Any, Any, T]) -> asyncio.Future[T]:
-        """Begin ``work`` now, or behind what is being done; it goes on when nobody waits for it any more."""
+        """Begin ``work`` now, or after the work in progress; it continues when its caller is cancelled."""
         future: asyncio.Future[T] = asyncio.get_running_loop().create_future()
         entry = _Work(work, future)
         if (waiting := self._waiting.get(robot)) is not None:
@@ -453,7 +453,7 @@ class RobotSequences:
                 if (work := self._evaluator.evaluate_arrival(robot, pose)) is not None:
                     await work
             except StoreError as error:
-                # Its command is open still, and judged by the next position.
+                # Its command is still open, and judged by the next position.
                 log.warning("robot %r: %s", robot, error)
 
 
@@ -464,7 +464,7 @@ async def _do(entry: _Work) -> None:
         entry.future.cancel()
         raise
     except BaseException as error:
-        # Whatever it is: who waits would wait for ever.
+        # On any exception: the caller would wait forever.
         if not entry.future.done():
             entry.future.set_exception(error)
     else:

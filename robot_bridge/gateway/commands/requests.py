@@ -1,4 +1,4 @@
-"""What operators order robots to do: understood, checked against robot and site, and put into the book."""
+"""Operators' orders to robots: decoded, checked against robot and site, and issued as commands."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ STORED_LATER = "it is stored and sent as soon as the database takes it"
 
 
 class CommandRequests:
-    """Takes operators' orders. Each method returns when what it ordered is stored.
+    """Handles operators' orders. Each method returns when its commands are stored.
 
-    All raise RefusedError for what cannot be done, MessageError for what cannot be understood, StoreError
-    when it cannot be stored.
+    All raise RefusedError for an order that cannot be done, MessageError for an invalid one, StoreError when
+    it cannot be stored.
     """
 
     def __init__(
@@ -54,15 +54,15 @@ class CommandRequests:
         self._links: list[Callable[[str, str], bool]] = []
 
     def reach(self, link: Callable[[str, str], bool]) -> None:
-        """Call ``link`` with a robot and the id of a call where an Abort cannot be stored.
+        """Call ``link`` with a robot and the id of a call when an Abort cannot be stored.
 
-        It sends that over the robot's open connection, and returns whether there is one.
+        It sends the Abort over the robot's open connection, and returns whether there is one.
         """
         self._links.append(link)
 
     @handles(Send)
     async def send(self, send: Send, operator: str) -> CommandReport:
-        """Issue one command; asked again it is answered as it stands, whatever would be refused by now."""
+        """Issue one command; a repeated request returns its state, even if it would be refused by now."""
         try:
             order = await self._order(send.command, send.robot, send.op, send.params, operator)
         except RefusedError as refusal:
@@ -90,7 +90,7 @@ class CommandRequests:
 
     @handles(AbortTask)
     async def abort(self, request: AbortTask, operator: str) -> CommandReport:
-        """Tell a robot to abort its task, or to abort one command if that still is its task."""
+        """Send a robot an Abort of its task, or of one command if that still is its task."""
         try:
             order = await self._order(request.command, self._robot_of(request), Abort.__name__, {}, operator)
         except RefusedError as refusal:
@@ -100,7 +100,7 @@ class CommandRequests:
 
     @handles(AbortAll)
     async def abort_all(self, request: AbortAll, operator: str) -> Commands:
-        """Tell every robot to abort its task; asked again with the same ``command`` id it changes nothing."""
+        """Send every robot an Abort; repeated with the same ``command`` id it changes nothing."""
         command = request.command or str(uuid.uuid4())
         ids = {name: uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {name}") for name in self._robots.commanded()}
         orders = [CommandOrder(str(id), name, Abort(), operator, request.reason) for name, id in ids.items()]
@@ -137,9 +137,9 @@ class CommandRequests:
         return is_sent
 
     async def _issued_before(self, command: str, refusal: RefusedError) -> CommandReport:
-        """Return a command as it stands if it was issued before; raises ``refusal`` otherwise.
+        """Return the present state of a command if it was issued before; raises ``refusal`` otherwise.
 
-        Whoever got no answer asks again, and the site, the robots or the task may be others by now.
+        A client without an answer repeats its request, when site, robots or task may have changed.
         """
         known = await self._database.run(commands.find, command)
         if known is None:
@@ -174,7 +174,7 @@ class CommandRequests:
         return CommandOrder(id, robot, message, operator)
 
     def _check_cone(self, robot: str) -> None:
-        """Raise RefusedError for a robot that would drive a path and leave out the cone at its end."""
+        """Raise RefusedError for a robot that would drive a path and ignore the cone at its end."""
         if not self._robots.get(robot).places_on_paths:
             raise RefusedError(
                 f"SetPath: robot {robot!r} has not declared in Ready that it takes cones with a path "

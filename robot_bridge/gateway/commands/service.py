@@ -1,4 +1,4 @@
-"""The open commands of the fleet: issued, delivered, acknowledged, judged, ended; each step stored first."""
+"""Service of open commands: issued, delivered, acknowledged, judged, ended; each step is stored first."""
 
 from __future__ import annotations
 
@@ -31,19 +31,19 @@ log = logging.getLogger(__name__)
 __all__ = ["GATEWAY", "ActiveCommand", "CommandOrder", "CommandService"]
 
 DRIVEN_STEP = 0.5
-"""metres along a path between two that are stored."""
+"""metres along a path between two stored values of progress."""
 NOWHERE = SendPos(x=1e8, y=1e8, theta=0.0, v=0.0)
-"""Where a robot was of which that was not stored: far from wherever it is now."""
+"""Stands for a pose that was not stored: far from any real one."""
 ABORTED_TOO_LATE = "it stood at its end when it was heard again, and the Abort came too late"
 MOST_LATE = 1000
-"""acknowledgements of ended commands that wait for the database."""
+"""most acknowledgements of ended commands that wait for the database."""
 
 
 class CommandService(CommandReader):
-    """Holds the open commands and takes them through their lives.
+    """Holds the open commands and takes them through their states.
 
-    Every change is committed before it is shown: published are CommandChanged with each command's new report,
-    and OutboxChanged with the robot for which SA holds something new.
+    Every change is committed before it is published: CommandChanged with the command's new report, and
+    OutboxChanged with the robot that has a new message in SA.
     """
 
     def __init__(
@@ -72,21 +72,21 @@ class CommandService(CommandReader):
         self._unstored = persistence.UnstoredAborts()
 
     def set_tolerance(self, tolerance: float) -> None:
-        """Let a target count as reached within ``tolerance`` metres from now on."""
+        """Set the metres within which a target counts as reached."""
         self._tolerance = tolerance
 
     async def restore(self) -> None:
-        """Take up the commands that an earlier gateway left open."""
+        """Load the commands that an earlier gateway left open."""
         stored = await self._database.run(commands.still_open)
         self.adopt(command for command in stored if self._fence.owns(command.report.robot))
 
     def adopt(self, stored: Iterable[StoredCommand]) -> None:
-        """Take up commands of robots that another gateway had."""
+        """Add commands of robots that another gateway had."""
         for command in stored:
             self._open.add(self._restored(command))
 
     def drop(self, robots: Iterable[str]) -> None:
-        """Know nothing more of the commands of robots that another gateway has."""
+        """Remove the commands of robots that another gateway has."""
         for robot in robots:
             for command in self._open.of(robot):
                 self._open.remove(command.report.command)
@@ -96,10 +96,10 @@ class CommandService(CommandReader):
     async def issue(
         self, orders: list[CommandOrder], also: persistence.Also | None = None
     ) -> list[CommandReport]:
-        """Store new commands with their messages, all or none, and ``also`` more; return them as stored.
+        """Store new commands with their messages, and the writes ``also``, all or none; return the reports.
 
-        A command whose id is known already is returned as it stands and changes nothing. An Abort that the
-        database does not take is kept, and stored before anything else that its robot is told.
+        A command with a known id is returned in its present state and changes nothing. An Abort that cannot
+        be stored is kept, and stored before any other message to its robot.
         """
         return await to_its_end(self._issue(orders, also))
 
@@ -108,17 +108,17 @@ class CommandService(CommandReader):
         self._unstored.keep(aborts)
 
     async def lead(self, robot: str, task: str, path: SetPath, write: Callable[[Connection], None]) -> None:
-        """Tell a robot the way to its target; ``write`` writes that. The target stays the command.
+        """Send a robot the path to its target by ``write``. The target stays the command.
 
-        :raises RefusedError: when ``task`` is not what the robot does any more; StoreError.
+        :raises RefusedError: when ``task`` is no longer the robot's command; StoreError.
         """
         await to_its_end(self._lead(robot, task, path, write))
 
     async def mark_sending(self, robot: str, sa_id: int) -> bool:
-        """Note that message ``sa_id`` is delivered, before it is sent; false where its command has ended.
+        """Record message ``sa_id`` as delivered, before it is sent; return false where its command has ended.
 
-        Were it noted afterwards, a gateway that is killed in between would leave a command queued that the
-        robot carries out, and take it back as one that never reached it.
+        If recorded afterwards, a gateway that is killed in between would leave a command queued that the
+        robot carries out, and withdraw it as one that never reached the robot.
 
         :raises FencedError: when another gateway has the robot, or may have it by now.
         """
@@ -133,33 +133,33 @@ class CommandService(CommandReader):
         return known
 
     def may_send(self, robot: str, checked_at: float) -> bool:
-        """Tell whether what :meth:`mark_sending` allowed at ``checked_at`` may be sent still.
+        """Return whether a message that :meth:`mark_sending` allowed at ``checked_at`` may still be sent.
 
         ``checked_at`` is of :func:`.steady_time`.
 
-        A process that stood still in between may find that another gateway has the robot by now, or that an
-        operator has given the command up: that is read before the message comes again.
+        After a halt of the process in between another gateway may have the robot, or an operator may have
+        given the command up: this is read before the message is offered again.
         """
         return self._fence.may_command(robot) and steady_time() - checked_at < CHECK_VALID_S
 
     async def delivered(self, sa_ids: Iterable[int]) -> None:
-        """Note that the messages ``sa_ids`` have reached their robots."""
+        """Record that the messages ``sa_ids`` have reached their robots."""
         queued = [id for id in sa_ids if id in self._open.queued]
         if queued:
             await to_its_end(self._delivered(queued))
 
     def acknowledge(self, robot: str, ack: OpAck) -> Awaitable[float | None]:
-        """Note a robot's OpAck: it took the message on, or (``ok`` false) will not do it, or gave it up.
+        """Process a robot's OpAck: it accepted the message, or (``ok`` false) refused it, or gave it up.
 
-        That is begun at once; positions that come before it is stored are judged behind it. Its result is
-        when the message was written into SA, if it was a command's and is acknowledged at first.
+        This is begun at once; positions that come before it is stored are judged after it. The result is the
+        time when the message was written into SA, for the first acknowledgement of a command.
         """
         return self._sequences.add(robot, self._acknowledge(robot, ack))
 
     def observe(self, robot: str, pose: SendPos) -> Awaitable[None] | None:
-        """Judge the robot's acknowledged commands by where it is now, behind what is being stored of it.
+        """Judge the robot's acknowledged commands by its present pose, after work in progress on it.
 
-        Return what stores those that are done, which has begun; None where none is, or that waits.
+        Return the storing of those that are done, already begun; None without any, or if it waits.
         """
         if self._sequences.add_position(robot, pose):
             return None
@@ -169,7 +169,7 @@ class CommandService(CommandReader):
     def evaluate_arrival(self, robot: str, pose: SendPos) -> Coroutine[Any, Any, None] | None:
         """Judge the robot's acknowledged commands by ``pose``.
 
-        Return what stores those that are done, to be awaited; None where none is.
+        Return the storing of those that are done, to be awaited; None without any.
         """
         mine = self._open.of(robot)
         done = [
@@ -189,18 +189,19 @@ class CommandService(CommandReader):
     def await_again(self, robot: str, sa_id: int) -> None:
         """Judge the command with this message only by positions that come after its acknowledgement.
 
-        It waits to be dealt with, if not for the first time; positions before it are older than the command.
+        The acknowledgement waits to be processed, perhaps again; earlier positions are older than the
+        command.
         """
         for command in self._open.of(robot):
             command.acknowledgement_waits |= command.sa_id == sa_id
 
     def lose_sight(self, robot: str) -> None:
-        """Note that nobody saw for a while where a robot drove."""
+        """Record that a robot may have driven without being seen."""
         for command in self._open.of(robot):
             command.lose_sight()
 
     async def on_idle(self, robot: str, pose: SendPos | None) -> None:
-        """Note that a robot, at ``pose`` for all that is known, says that it has nothing to do."""
+        """Process the report of a robot, at ``pose`` as far as known, that it is idle."""
         await self._sequences.add(robot, self._rests(robot, pose))
 
     async def deliver_again(
@@ -211,36 +212,36 @@ class CommandService(CommandReader):
         welcome: Sequence[Answer],
         note_run: Callable[[Connection], bool],
     ) -> None:
-        """Send once more what a robot that started again may have forgotten, unless it is too old.
+        """Send again the messages that a restarted robot may have forgotten, unless they are too old.
 
-        All that waits for it, too, comes behind ``welcome``: it must not drive before it has its map.
-        ``note_run`` notes in the same transaction that it has started again, and returns false where that is
-        noted: then all is sent.
+        Waiting messages, too, are put after ``welcome``: it must not drive before it has its map.
+        ``note_run`` records the restart in the same transaction, and returns false where it is already
+        recorded: then all is sent.
         """
         await to_its_end(self._deliver_again(robot, reason, expire_after, welcome, note_run))
 
     async def expire(self, expire_after: float) -> None:
-        """End the commands that were not fetched in time: ``expire_after`` seconds, or as they say."""
+        """End the commands not fetched in time: by their own limit, else within ``expire_after`` seconds."""
         now = self._clock.time()
         late = [c for c in self._open.queued.values() if c.expired(now, expire_after)]
         if late:
             await to_its_end(self._expire([c.report.command for c in late]))
 
     async def give_up(self, robot: str, reason: str) -> None:
-        """End every command of a robot, which will not carry it out."""
+        """End every command of a robot, which will not carry them out."""
         await to_its_end(self._give_up(robot, reason))
 
     async def look_up(self) -> None:
-        """Find out what became of a transaction that may have been done or not; raises StoreError."""
+        """Resolve a transaction with an unknown outcome from the database; raises StoreError."""
         if self._held.has_uncertain_commit:
             async with self._held.of(()):
-                # Whoever holds robots looks it up.
+                # Taking the locks resolves it.
                 return
 
     async def save_progress(self) -> None:
-        """Store kept Aborts, how far robots have come along their paths, and late acknowledgements.
+        """Store kept Aborts, the progress of robots along their paths, and late acknowledgements.
 
-        A robot that another gateway has by now keeps no other one's from being stored. Raises StoreError.
+        A robot that another gateway has by now does not prevent storing those of others. Raises StoreError.
         """
         await self.look_up()
         for robot in self._unstored.robots():
@@ -252,7 +253,7 @@ class CommandService(CommandReader):
                 self._unstored.postpone(robot)
                 raise
         for robot, sa_id in list(self._late):
-            # One that is refused, or goes wrong otherwise, is forgotten: the others have their turn.
+            # One that is refused, or fails otherwise, is dropped: the others have their turn.
             what = f"a late acknowledgement of robot {robot!r}"
             refused = contextlib.suppress(DataRefusedError, FencedError)
             with log_and_continue(log, what, except_for=StoreError), refused:
@@ -263,7 +264,7 @@ class CommandService(CommandReader):
             await self._save_driven(driven)
 
     async def _save_driven(self, driven: Mapping[str, float]) -> None:
-        """Store metres driven by command; of robots that are another gateway's nothing."""
+        """Store metres driven by command, except for robots of another gateway."""
         by_robot: dict[str, dict[str, float]] = {}
         for command, metres in driven.items():
             if (robot := self.robot_of(command)) is not None:
@@ -276,13 +277,13 @@ class CommandService(CommandReader):
                     await self._held.run([robot], persistence.write_driven, theirs)
         self._open.note_progress(driven)
 
-    # --- what has to be done to its end, with the robots' locks held --------------------------------------
+    # --- work that must not be cancelled, with the robots' locks held --------------------------------------
 
     async def _issue(self, orders: list[CommandOrder], also: persistence.Also | None) -> list[CommandReport]:
         robots = {order.robot for order in orders}
         async with self._turns.of(() if all(order.is_emergency for order in orders) else robots):
-            # What takes long first: nothing may come between the checks and the transaction. And before the
-            # robots are held: while a long path is looked at for one, an emergency stop is stored for all.
+            # Slow checks first: nothing may come between the checks and the transaction. And before the
+            # robots are held: while a long path of one is checked, an emergency stop is stored for all.
             found = await self.drafting.prepare(orders)
             try:
                 async with self._held.of(robots):
@@ -300,7 +301,7 @@ class CommandService(CommandReader):
             await self._store_unstored([robot])
 
     async def _store_unstored(self, robots: Iterable[str]) -> None:
-        """Store the Aborts of robots that the database did not take; one that it refuses is forgotten."""
+        """Store the kept Aborts of robots; one that the database refuses is dropped."""
         for order in self._unstored.of(robots):
             with log_and_continue(log, f"storing Abort {order.command}", except_for=StoreError):
                 try:
@@ -335,7 +336,7 @@ class CommandService(CommandReader):
                 self._events.publish(OutboxChanged(robot))
 
     async def _delivered(self, sa_ids: list[int]) -> None:
-        # By now some may be further on.
+        # By now some may have a later state.
         robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
         async with self._held.of(robots):
             queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
@@ -346,7 +347,7 @@ class CommandService(CommandReader):
         async with self._held.of([robot]):
             command = next((c for c in self._open.of(robot) if c.sa_id == ack.id), None)
             if command is None and ack.ok and ack.id is not None:
-                await self._note_late(robot, ack.id)
+                await self._record_late(robot, ack.id)
                 return None
             if command is not None:
                 command.acknowledgement_waits = False
@@ -357,8 +358,8 @@ class CommandService(CommandReader):
                 self._apply(step)
             return command.written_at if command is not None and command.is_on_its_way else None
 
-    async def _note_late(self, robot: str, sa_id: int) -> None:
-        """Note that the robot read a message whose command has ended; what cannot be stored now is kept."""
+    async def _record_late(self, robot: str, sa_id: int) -> None:
+        """Record that the robot read the message of an ended command; kept if it cannot be stored now."""
         try:
             report = await self._held.run([robot], persistence.write_late, robot, sa_id, self._clock.time())
         except DataRefusedError:
@@ -386,14 +387,14 @@ class CommandService(CommandReader):
             await self._done(command, deviation, pose)
 
     async def _done(self, command: ActiveCommand, deviation: float | None, pose: SendPos) -> None:
-        """Note that a robot has reached what it was told to, or (no ``deviation``) has given it up unseen."""
+        """Record that a robot has reached a command's end, or (no ``deviation``) has given it up unseen."""
         async with self._held.of([command.report.robot]):
             if self._open.get(command.report.command) is not command:
                 return
             now, abort = self._clock.time(), given_up_by(command, self._open.of(command.report.robot))
             if deviation is not None:
                 reason = None if abort is None else ABORTED_TOO_LATE
-                # An Abort has no place that it could be off.
+                # An Abort has no target to deviate from.
                 off = None if command.is_abort else deviation
                 stood = (pose.x, pose.y, pose.theta)
                 await self._save([command.step(CommandState.REACHED, now, GATEWAY, reason, off, stood)])
@@ -409,11 +410,11 @@ class CommandService(CommandReader):
         note_run: Callable[[Connection], bool],
     ) -> None:
         async with self._held.of([robot]):
-            anew = active_command.restart_commands(
+            restarted = active_command.restart_commands(
                 self._open.of(robot), reason, self._clock.time(), expire_after, self._robots.pose
             )
             for command in await self._held.run(
-                [robot], persistence.write_again, robot, welcome, *anew, note_run
+                [robot], persistence.write_again, robot, welcome, *restarted, note_run
             ):
                 self._apply(command)
             self._events.publish(OutboxChanged(robot))
@@ -467,7 +468,7 @@ class CommandService(CommandReader):
         self._events.publish(CommandChanged(command.report))
 
     async def read_again(self) -> None:
-        """Take over what the database holds, after a transaction that may have been done or not."""
+        """Apply the stored state, after a transaction with an unknown outcome."""
         found = await self._database.run(commands.still_open)
         stored = {s.report.command: s for s in found if self._fence.owns(s.report.robot)}
         here = {command.report.command: command for command in self._open}

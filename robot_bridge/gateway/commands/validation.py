@@ -1,4 +1,4 @@
-"""Validation of commands against rules, abilities and what the robots are doing."""
+"""Validation of commands against rules, abilities and the robots' present commands."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from . import active_command
 from .active_command import ActiveCommand, ActiveCommands, CommandOrder, create_command, recalled, superseded
 from .persistence import CommandInsert
 
-# --- What the commands with a step to come tell of the robots; nothing here changes any ---
+# --- Queries of the open commands; nothing here changes any ---
 
 
 class CommandReader:
-    """Answers from the open commands what robots are doing."""
+    """Answers queries from the open commands."""
 
     def __init__(self, open_commands: ActiveCommands) -> None:
         self._open = open_commands
 
     def count(self) -> Counter[CommandState]:
-        """Return how many open commands are in each state."""
+        """Return the number of open commands in each state."""
         return Counter(command.report.state for command in self._open)
 
     def busy_with(self, robot: str) -> str | None:
@@ -39,40 +39,40 @@ class CommandReader:
         return moving[-1] if moving else None
 
     def task(self, robot: str) -> tuple[SetPosEnd | SetPath, float] | None:
-        """Return what the robot is to drive, and how many metres of it (of a path) it has driven."""
+        """Return the robot's motion, and the metres of it (of a path) that it has driven."""
         for command in reversed(self._open.of(robot)):
             if isinstance(command.message, (SetPosEnd, SetPath)):
                 return command.message, command.driven or 0.0
         return None
 
     def line(self, robot: str) -> Polyline | None:
-        """Return the path that the robot has taken on as a line, None where it has none."""
+        """Return the path that the robot has acknowledged as a line, None where it has none."""
         moving = [c for c in self._open.of(robot) if c.is_motion]
         return moving[-1].line if moving else None
 
     def is_carrying_out(self, robot: str, command: str) -> bool:
-        """Tell whether the command is the robot's task, and nobody has asked for its end."""
+        """Return whether the command is the robot's task, and its end was not requested."""
         mine = self._open.of(robot)
         task = self._open.get(command)
         aborted = any(c.is_abort and task is not None and c.sa_id > task.sa_id for c in mine)
         return command == self.busy_with(robot) and not aborted
 
     def is_being_aborted(self, robot: str, command: str) -> bool:
-        """Tell whether an Abort is to end the command as soon as the robot says that it has taken that on.
+        """Return whether an Abort will end the command as soon as the robot acknowledges the Abort.
 
-        Not that of an emergency stop, after which nobody goes on before it is cleared.
+        Not that of an emergency stop, after which no robot continues before it is cleared.
         """
         task = self._open.get(command)
         aborts = [c for c in self._open.of(robot) if c.is_abort and task is not None and c.sa_id > task.sa_id]
         return bool(aborts) and not any(abort.is_emergency for abort in aborts)
 
     def carried_out(self, robot: str) -> ActiveCommand | None:
-        """Return the command that makes the robot drive, None also where somebody has asked for its end."""
+        """Return the command that makes the robot drive, None also where its end was requested."""
         id = self.busy_with(robot)
         return self._open.get(id) if id is not None and self.is_carrying_out(robot, id) else None
 
     def is_open(self, command: str) -> bool:
-        """Tell whether a command has a step to come."""
+        """Return whether a command is open."""
         return self._open.get(command) is not None
 
     def robot_of(self, command: str) -> str | None:
@@ -81,22 +81,22 @@ class CommandReader:
         return None if known is None else known.report.robot
 
     def awaits_abort(self, robot: str) -> bool:
-        """Tell whether an Abort that is no emergency stop's is on its way to the robot."""
+        """Return whether an Abort that is no emergency stop's is on its way to the robot."""
         return any(c.is_abort and not c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
     def awaits_any_abort(self, robot: str) -> bool:
-        """Tell whether an Abort is on its way to the robot, an emergency stop's or another."""
+        """Return whether an Abort is on its way to the robot, an emergency stop's or another."""
         return self.awaits_abort(robot) or self.awaits_stop(robot)
 
     def awaits_stop(self, robot: str) -> bool:
-        """Tell whether the Abort of an emergency stop is on its way to the robot."""
+        """Return whether the Abort of an emergency stop is on its way to the robot."""
         return any(c.is_emergency and c.is_on_its_way for c in self._open.of(robot))
 
     def drives_since(self, robot: str, at: float, doubted_from: float = math.inf) -> bool:
-        """Tell whether the robot has a motion from before ``at`` to carry out, and no stop's Abort after it.
+        """Return whether the robot has an open motion from before ``at``, and no stop's Abort after it.
 
-        One from after ``doubted_from`` may be from before that as well. The Abort of an earlier stop is open
-        still where nobody has seen the robot stand since.
+        A motion from after ``doubted_from`` may be from before ``at`` as well. The Abort of an earlier stop
+        is still open if the robot was not seen to stand since.
         """
         mine = self._open.of(robot)
         aborted = max((c.sa_id for c in mine if c.is_emergency), default=-1)
@@ -104,22 +104,22 @@ class CommandReader:
         return any(began <= at or began > doubted_from for began in motions)
 
     def undelivered(self) -> dict[int, str]:
-        """Return the robot of every message that waits in SA, by the message's id."""
+        """Return the robot of every message waiting in SA, by the message's id."""
         return {sa_id: command.report.robot for sa_id, command in self._open.queued.items()}
 
     def robots(self) -> set[str]:
-        """Return the robots that have a command with a step to come."""
+        """Return the robots that have an open command."""
         return {command.report.robot for command in self._open}
 
 
-# --- Orders made into what has to be stored of them, or why they are refused ---
+# --- Drafts of orders to be stored, or refused ---
 
 _NEEDED: dict[str, Ability] = {"SetPosEnd": "targets", "SetPath": "paths", "SetPosIni": "start"}
-"""What a robot has to be able to do for each message."""
+"""Required ability of the robot for each message."""
 
 
 class CommandRule(Protocol):
-    """What keeps some messages from being sent to any robot."""
+    """A rule against sending some messages to any robot."""
 
     def check(self, message: Command) -> None:
         """Raise RefusedError for a message that must not be sent now."""
@@ -127,14 +127,14 @@ class CommandRule(Protocol):
 
 @runtime_checkable
 class SlowCommandRule(CommandRule, Protocol):
-    """A rule that has to find out before what takes long."""
+    """A rule with a slow preparation."""
 
     async def prepare(self, message: Command) -> None:
-        """Find out what :meth:`check` needs to know about a message."""
+        """Prepare the data that :meth:`check` needs for a message."""
 
 
 class CommandRules:
-    """Whether a message may be sent to a robot now: by the rules that were added, and the site's keepouts."""
+    """Checks whether a message may be sent now: by the added rules, and the site's keepouts."""
 
     def __init__(self, site: ServedSite, robots: Robots) -> None:
         self._site = site
@@ -142,7 +142,7 @@ class CommandRules:
         self._rules: list[CommandRule] = []
 
     def add(self, rule: CommandRule) -> None:
-        """Hold every message against ``rule``, too."""
+        """Add a rule for all messages."""
         self._rules.append(rule)
 
     def check(self, message: Command) -> None:
@@ -151,28 +151,28 @@ class CommandRules:
             rule.check(message)
 
     async def prepare(self, message: Command) -> None:
-        """Find out what takes long about a message."""
+        """Do the slow preparation for a message."""
         for rule in self._rules:
             if isinstance(rule, SlowCommandRule):
                 await rule.prepare(message)
 
     async def check_keepouts(self, orders: Sequence[CommandOrder]) -> Sequence[RefusedError | None]:
-        """Return for each order why it must not be sent, None where it leads into no keepout."""
+        """Return for each order its refusal, None where it leads into no keepout."""
         straight_from = [self._robots.straight_from(order.robot, order.message) for order in orders]
         return await keepout_refusals(self._site, [order.message for order in orders], straight_from)
 
 
 class WaitingRobots(dict[str, HoldRow]):
-    """The robots that wait for another to pass, by name, as they are stored."""
+    """The robots that wait for another to pass, by name, as stored."""
 
     def waits_for(self, robot: str, task: str) -> str | None:
-        """Return whom a robot is to let pass before a task of its queue goes on, None for nobody."""
+        """Return the robot that must pass before a task of the queue continues, None without one."""
         row = self.get(robot)
         return None if row is None or row.task != task else row.other
 
 
 class CommandValidator(CommandReader):
-    """Holds orders against the rules and what their robots are doing, and says what they end."""
+    """Checks orders against the rules and the robots' commands, and finds the commands that they end."""
 
     def __init__(
         self, open_commands: ActiveCommands, robots: Robots, rules: CommandRules, waiting: WaitingRobots
@@ -183,14 +183,14 @@ class CommandValidator(CommandReader):
         self._waiting = waiting
 
     async def prepare(self, orders: Sequence[CommandOrder]) -> list[RefusedError | None]:
-        """Find out what takes long about orders; return why each must not be sent, None where it may be."""
+        """Do the slow checks of orders; return for each its refusal, None where it may be sent."""
         for order in orders:
             await self._rules.prepare(order.message)
         refusals = iter(await self._rules.check_keepouts([order for order in orders if order.fenced]))
         return [next(refusals) if order.fenced else None for order in orders]
 
     def draft(self, order: CommandOrder, refusal: RefusedError | None, now: float) -> CommandInsert:
-        """Return the draft of an order, refused by ``refusal`` or by what holds now."""
+        """Return the draft of an order, refused by ``refusal`` or by the present state."""
         try:
             self._rules.check(order.message)
             self._check_ability(order)
@@ -200,15 +200,15 @@ class CommandValidator(CommandReader):
         mine = self._open.of(order.robot)
         command = dataclasses.replace(create_command(order, now), handed=self._robots.pose(order.robot))
         ended, recalls = superseded(order, mine, now), recalled(order, mine, now)
-        # To wait for another ends with whatever else a robot is told.
+        # Any other message to a robot ends its waiting for another.
         return CommandInsert(order, command, ended, recalls, refusal, order.robot in self._waiting)
 
     async def consider_way(self, way: Command) -> None:
-        """Find out what takes long about a way that a robot will be sent."""
+        """Do the slow preparation for a path to be sent to a robot."""
         await self._rules.prepare(way)
 
     def check_way(self, robot: str, task: str, way: Command) -> None:
-        """Raise RefusedError where a robot must not be told the ``way`` to its ``task``, or has another."""
+        """Raise RefusedError where a robot must not be sent the ``way`` to its ``task``, or has another."""
         self._rules.check(way)
         if not self.is_carrying_out(robot, task):
             raise _ordered_otherwise(robot)
@@ -223,7 +223,7 @@ class CommandValidator(CommandReader):
             )
 
     def _check_ability(self, order: CommandOrder) -> None:
-        """Raise RefusedError for what the robot said in Ready that it cannot do."""
+        """Raise RefusedError for a message that the robot, as declared in Ready, cannot carry out."""
         name, message = order.robot, order.message
         if name not in self._robots or isinstance(message, Abort):
             return

@@ -343,7 +343,7 @@ class FollowedPlans:
         return self._context.registry.get(robot)
 
     def has_failed(self, robot: str) -> bool:
-        """Tell whether a task of a robot's queue has failed."""
+        """Return whether a task of a robot's queue has failed."""
         return any(task.state is TaskState.FAILED for task in self.queue(robot).tasks)
 
     def paused(self, plan: DrivenPlan) -> list[str]:

@@ -299,7 +299,7 @@ class PlanService:
             self._replanner.cancel(one.plan.name)
 
     def _is_settling(self) -> bool:
-        """Tell whether the gateway has only begun: robots that drive on are not heard of yet."""
+        """Return whether the gateway has only begun: robots that drive on are not heard of yet."""
         return self._context.clock.steady() < self._began + self._context.site.report.lost_after
 
     # --- small parts ----------------------------------------------------------------------------------

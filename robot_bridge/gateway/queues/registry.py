@@ -1,4 +1,4 @@
-"""Registry of the fleet's queues, each change stored before it is reported, and what works on them."""
+"""Registry of the fleet's queues, each change stored before it is reported, and the context of services."""
 
 from __future__ import annotations
 
@@ -35,21 +35,21 @@ from ..storage.repositories import queues
 from ..storage.repositories.queues import ChangedError
 from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 
-# --- The queues of the fleet as they are stored; each change is stored before it is told ---
+# --- The queues of the fleet as stored; each change is stored before it is reported ---
 
 T = TypeVar("T")
 TRIES, AGAIN_S = 5, 0.05
-"""how often what changes queues is begun, and seconds until it is begun again."""
+"""most attempts of a change of queues, and seconds between them."""
 RESTORED_AT_ONCE = 500
-"""robots whose tasks that ended are read in one transaction."""
+"""number of robots with their ended tasks read in one transaction."""
 
 
 class QueueMovedError(OutdatedError):
-    """A queue was changed between the look at it and the change; nothing is stored."""
+    """A queue was changed by others between its reading and the change; nothing is stored."""
 
 
 async def again_if_moved(work: Callable[[], Coroutine[Any, Any, T]]) -> T:
-    """Return what ``work`` returns, begun again where a queue moved meanwhile; raises as that does."""
+    """Return the result of ``work``, repeated where a queue moved meanwhile; raises as ``work`` does."""
     for _ in range(TRIES - 1):
         with contextlib.suppress(QueueMovedError):
             return await work()
@@ -58,11 +58,11 @@ async def again_if_moved(work: Callable[[], Coroutine[Any, Any, T]]) -> T:
 
 
 class QueueRegistry:
-    """Holds every queue as it is stored; whoever changes one holds its lock.
+    """Holds every queue as stored; its lock must be held to change it.
 
-    QueueChanged is published for each robot whose queue may have something to send. Queues whose robots other
-    gateways have are read when they are held, and change only if they are stored as they were read;
-    QueueEditedElsewhere is published then, for the gateway that works on them to read them again.
+    QueueChanged is published for each robot with a queue that may have something to send. Queues of robots of
+    other gateways are read when they are held, and change only if they are stored as they were read;
+    QueueEditedElsewhere is then published, for the gateway that runs them to read them again.
     """
 
     def __init__(
@@ -84,10 +84,10 @@ class QueueRegistry:
         self._doubtful: set[str] = set()
         self._elsewhere: dict[str, Queue] = {}
         self._versions: dict[str, str] = {}
-        """what changes with a queue elsewhere, from before that was read last."""
+        """version of each queue elsewhere, from before that was read last."""
 
     async def restore(self) -> None:
-        """Take up the queues that an earlier gateway left."""
+        """Load the queues that an earlier gateway left."""
         found = await self._database.run(queues.load)
         self._queues = {robot: queue for robot, queue in found.items() if self._fence.owns(robot)}
         names = list(self._queues)
@@ -98,14 +98,14 @@ class QueueRegistry:
             self._events.publish(QueueChanged(robot))
 
     def adopt(self, stored: Iterable[tuple[Queue, list[QueuedTask]]]) -> None:
-        """Take up queues of robots that another gateway had, each with its newest tasks that ended."""
+        """Add queues of robots that another gateway had, each with its newest ended tasks."""
         for queue, ended in stored:
             self._ended[queue.robot] = ended
             self._queues[queue.robot] = queue
             self._events.publish(QueueChanged(queue.robot))
 
     def drop(self, robots: Iterable[str]) -> None:
-        """Know nothing more of the queues of robots that another gateway has."""
+        """Remove the queues of robots that another gateway has."""
         for robot in robots:
             self._queues.pop(robot, None)
             self._ended.pop(robot, None)
@@ -114,9 +114,9 @@ class QueueRegistry:
             self._versions.pop(robot, None)
 
     def get(self, robot: str) -> Queue:
-        """Return a robot's queue as it was stored last; an empty one where there is none.
+        """Return a robot's queue as stored last; an empty one where there is none.
 
-        One of another gateway is as it was when it was held here, or looked at by :meth:`look_elsewhere`.
+        One of another gateway is as it was when last held here, or read by :meth:`look_elsewhere`.
         """
         known = self._elsewhere if self._is_elsewhere(robot) else self._queues
         return known.get(robot) or Queue(robot)
@@ -126,15 +126,15 @@ class QueueRegistry:
         return sorted(name for name in self._queues if name in self._robots)
 
     async def everywhere(self) -> list[Queue]:
-        """Return the queues of all robots, also of those that other gateways have; raises StoreError."""
+        """Return the queues of all robots, including those of other gateways; raises StoreError."""
         own = [self.get(robot) for robot in self.names() if not self._is_elsewhere(robot)]
         others = self._robots.commanded_elsewhere()
         return [*own, *(await self._database.read(queues.load, others)).values()] if others else own
 
     async def look_elsewhere(self, robots: Iterable[str]) -> None:
-        """Read the queues of those of some robots that other gateways have, where they have changed.
+        """Read the changed queues of those of ``robots`` that other gateways have.
 
-        :raises StoreError: when that cannot be done.
+        :raises StoreError: when this fails.
         """
         names = sorted(robot for robot in robots if self._is_elsewhere(robot))
         if not names:
@@ -150,7 +150,7 @@ class QueueRegistry:
             self._versions.update({robot: versions.get(robot, "") for robot in changed})
 
     def is_doubtful(self, robot: str) -> bool:
-        """Tell whether a robot's queue may be stored otherwise than it is known here."""
+        """Return whether the stored queue of a robot may differ from the one here."""
         return robot in self._doubtful
 
     def doubt(self, robot: str) -> None:
@@ -160,7 +160,7 @@ class QueueRegistry:
 
     @contextlib.asynccontextmanager
     async def holding(self, robots: Iterable[str]) -> AsyncIterator[None]:
-        """Hold the locks of some robots' queues, with these as they are stored."""
+        """Hold the locks of some robots' queues, with the queues as stored."""
         names = sorted(set(robots))
         async with contextlib.AsyncExitStack() as stack:
             for robot in names:
@@ -173,16 +173,16 @@ class QueueRegistry:
             yield
 
     async def save(self, before: Queue, after: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
-        """Store what has changed in a queue, and tell it; raises as :meth:`stored`."""
+        """Store the changes of a queue, and report it; raises as :meth:`stored`."""
         writing = self._database.run(self.fenced([before], queues.save), before, after, ended)
         await self.stored([after.robot], writing)
         return self.accept(after, ended)
 
     def fenced(self, before: Sequence[Queue], write: Callable[..., T]) -> Callable[..., T]:
-        """Return ``write``, refused where queues are not as they are taken for ``before`` it.
+        """Return ``write``, refused where the queues are not as in ``before``.
 
-        Those of this gateway it has to have still, those of others have to be stored task by task as they
-        were read.
+        This gateway must still have the robots of its own queues; those of others must be stored task by task
+        as they were read.
         """
         if self._fence is SOLE_FENCE:
             return write
@@ -193,7 +193,7 @@ class QueueRegistry:
     async def stored(self, robots: Sequence[str], writing: Awaitable[T]) -> T:
         """Await ``writing``; after a failure the queues are read again before they are used.
 
-        :raises QueueMovedError: when one of the queues is not as it was taken for; nothing is written then.
+        :raises QueueMovedError: when one of the queues is not as assumed; nothing is written then.
         """
         try:
             return await writing
@@ -207,11 +207,11 @@ class QueueRegistry:
             raise
 
     def outdated(self, robot: str, text: str) -> OutdatedError:
-        """Return the refusal of a change, with the queue as it is."""
+        """Return the refusal of a change, with the present queue."""
         return OutdatedError(text, self._newest(robot))
 
     def accept(self, queue: Queue, ended: Sequence[QueuedTask] = ()) -> QueueReport:
-        """Take over a queue that is stored, and tell operators of it, or the gateway that has its robot."""
+        """Apply a stored queue, and report it to operators, or notify the gateway that has its robot."""
         if self._is_elsewhere(queue.robot):
             self._elsewhere[queue.robot] = queue
             self._events.publish(QueueEditedElsewhere(queue.robot))
@@ -224,14 +224,14 @@ class QueueRegistry:
         return self.announce(queue.robot)
 
     def announce(self, robot: str) -> QueueReport:
-        """Tell operators of a robot's queue."""
+        """Report a robot's queue to operators."""
         report = queue_report(self.get(robot), self._robots.get(robot).state, self._ended.get(robot, ()))
         self._listeners.announce("queue", robot, to_json(report))
         self._events.publish(QueueReported(robot))
         return report
 
     def announce_placement(self, report: PlacementReport) -> None:
-        """Tell of a cone that was put down or collected."""
+        """Report a cone that was placed or collected."""
         self._events.publish(PlacementChanged(report))
 
     def _is_elsewhere(self, robot: str) -> bool:
@@ -246,7 +246,7 @@ class QueueRegistry:
 
     async def _read_again(self, robot: str) -> None:
         if self._is_elsewhere(robot):
-            # It is read whenever it is held.
+            # It is read every time it is held.
             self._doubtful.discard(robot)
             return
         found = await self._database.run(queues.load, [robot])
@@ -271,15 +271,15 @@ def _fenced(
     return write(connection, *arguments)
 
 
-# --- What everything works with that works on queues ---
+# --- Context of the services that work on queues ---
 
 
 @dataclass(frozen=True)
 class QueueContext:
-    """The queues in their ``registry``, and what they depend on: site, robots, commands, database, clock (s).
+    """The queues in their ``registry``, and their dependencies: site, robots, commands, database, clock (s).
 
-    ``planner`` finds the ways to tasks without a path; ``waiting`` robots let another pass first; ``fence``
-    tells which robots this gateway has.
+    ``planner`` plans the paths to tasks without one; ``waiting`` robots let another pass first; ``fence``
+    knows the robots of this gateway.
     """
 
     site: ServedSite

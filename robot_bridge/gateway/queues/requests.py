@@ -1,4 +1,4 @@
-"""Requests of operators on queues, and pauses of robots."""
+"""Operators' requests on queues, and pauses of robots."""
 
 from __future__ import annotations
 
@@ -33,13 +33,12 @@ from . import task_life
 from .registry import QueueContext, again_if_moved
 from .task_life import commands_of_task, pause_with_task, task_of_command, task_of_rest
 
-# --- A robot that is to stand and go on later, whatever it is doing and whoever ordered it ---
-# The protocol has no pause: the robot is told to abort, and what it was doing waits at the head of its
-# queue,
-# which is paused. Resumed, the queue sends it on from where it stands by then.
+# --- Pause of a robot: it stands and continues later, whatever it is doing and whoever ordered that ---
+# The protocol has no pause: the robot is sent an Abort, and its task waits at the head of its queue, which is
+# paused. Resumed, the queue sends the robot on from where it stands by then.
 
 _TRIES = 3
-"""So often it is looked what a robot does that is told otherwise in between."""
+"""Most attempts to pause a robot that gets another command in between."""
 
 
 class PauseService:
@@ -55,10 +54,10 @@ class PauseService:
 
     @handles(messages.PauseRobot)
     async def pause(self, request: messages.PauseRobot, operator: str) -> messages.QueueReport:
-        """Let a robot stand, and keep what it was doing; return its queue when that is stored.
+        """Make a robot stand, and keep its task; return its queue when this is stored.
 
-        Asked again it changes nothing. Raises RefusedError for a robot that is not known, MessageError for a
-        path that is too long to be kept, and StoreError.
+        A repeated request changes nothing. Raises RefusedError for an unknown robot, MessageError for a path
+        that is too long to be kept, and StoreError.
         """
         self._robots.check_known(request.robot)
         async with self._registry.holding([request.robot]):
@@ -66,7 +65,7 @@ class PauseService:
                 try:
                     return await self._pause(request, operator)
                 except RefusedError:
-                    # Something came in between: its task ended, or it was given another one.
+                    # Its task ended in between, or it was given another one.
                     continue
             return await self._pause(request, operator)
 
@@ -93,12 +92,12 @@ class PauseService:
         return self._registry.accept(after)
 
     def _kept(self, robot: str, doing: ActiveCommand | None) -> list[QueuedTask]:
-        """Return as tasks what the robot does beside its queue, and is to do after another has passed."""
+        """Return as tasks the robot's motion outside its queue, and its motion after another has passed."""
         kept, known, row = [], self._robots.get(robot), self._waiting.get(robot)
         if doing is not None:
             here = (known.pose.x, known.pose.y) if known.located and known.pose is not None else None
             kept.append(task_of_command(doing, self._site.settings.cones.offset, here))
-        # A target that is waited on the way to, or a task of the queue, is kept as a whole already.
+        # A target with a wait on the way to it, or a task of the queue, is kept as a whole already.
         if row is not None and row.task is None and not (doing and isinstance(doing.message, SetPosEnd)):
             rest, offset = SetPath(**row.rest), self._site.settings.cones.offset
             kept.append(task_of_rest(rest, offset, row.command, row.by, self._clock.time()))
@@ -110,21 +109,21 @@ def _task_by(queue: Queue, command: str) -> QueuedTask | None:
     return next((task for task in queue.tasks if task.command == command), None)
 
 
-# --- What operators change in queues: understood, checked against robots and site, and put into the book
+# --- Edits of queues by operators: decoded, checked against robots and site, and stored
 
 
 QueueChange = tuple[Queue, Queue, list[QueuedTask]]
-"""A queue before and after, and the tasks that ended with that."""
+"""A queue before and after, and the tasks that ended by the change."""
 
 
 @dataclass(frozen=True)
 class QueueEntries:
-    """``tasks`` in place of what the robots have not begun; None leaves a queue as it is.
+    """``tasks`` in place of those that the robots have not begun; None leaves a queue as it is.
 
-    A queue at another revision than in ``revisions``, or otherwise than it was ``seen``, is refused. Queues
-    of ``resumed`` robots go on, those of ``paused`` ones pause for ``reason`` at the time ``at`` (s). Robots
-    that are ``away`` are paused and lose the tasks ``withdrawn``, for ``reason``; one of them that is being
-    done is aborted. ``override`` as with SetQueue.
+    A queue at another revision than in ``revisions``, or different from ``seen``, is refused. Queues of
+    ``resumed`` robots continue, those of ``paused`` ones pause for ``reason`` at the time ``at`` (s). Robots
+    that are ``away`` are paused and lose the tasks ``withdrawn``, for ``reason``; one of these tasks that is
+    being done is aborted. ``override`` as in SetQueue.
     """
 
     tasks: Mapping[str, Sequence[messages.QueueTask] | None]
@@ -151,14 +150,14 @@ def _write_taking(
     elsewhere: Sequence[CommandOrder],
     connection: Connection,
 ) -> None:
-    """Write queues from which the tasks were taken whose commands ``aborts`` are of.
+    """Write queues that lost the tasks of the commands in ``aborts``.
 
-    Those of robots ``elsewhere`` are asked of their gateways.
+    Aborts of robots ``elsewhere`` are requested from their gateways.
     """
     stored = commands.find_all(connection, [abort.aborts for abort in aborts if abort.aborts is not None])
     for one in stored.values():
         if one.report.state is CommandState.REACHED:
-            # Its robot has done it, and its queue is about to say so.
+            # Its robot has done it, and its queue is about to be updated.
             raise queues.ChangedError(f"robot {one.report.robot!r} has come to its end; look at it again")
     write(connection)
     for abort in elsewhere:
@@ -172,10 +171,10 @@ def _removed(tasks: Sequence[QueuedTask], reason: str, operator: str, at: float)
 
 
 class QueueEditor:
-    """Takes what operators want of queues. Each method returns when what it changed is stored.
+    """Handles operators' requests on queues. Each method returns when its change is stored.
 
-    Those that change a queue raise OutdatedError when it is not as the operator saw it, RefusedError for what
-    cannot be done, MessageError for what cannot be understood, and StoreError when it cannot be stored.
+    Those that change a queue raise OutdatedError when it is not as the operator saw it, RefusedError for a
+    change that cannot be done, MessageError for an invalid one, and StoreError when it cannot be stored.
     """
 
     def __init__(self, context: QueueContext) -> None:
@@ -189,7 +188,7 @@ class QueueEditor:
 
     @handles(messages.SetQueue)
     async def set(self, request: messages.SetQueue, operator: str) -> messages.QueueReport:
-        """Replace what is not begun."""
+        """Replace the tasks that are not begun."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
@@ -198,7 +197,7 @@ class QueueEditor:
 
     @handles(messages.AddTasks)
     async def add(self, request: messages.AddTasks, operator: str) -> messages.QueueReport:
-        """Put tasks into a queue."""
+        """Insert tasks into a queue."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
         async with self._editing(request.robot, request.revision) as queue:
             known = await self._checked(request, queue)
@@ -216,7 +215,7 @@ class QueueEditor:
 
     @handles(messages.RemoveTask)
     async def remove(self, request: messages.RemoveTask, operator: str) -> messages.QueueReport:
-        """Take a task out of its queue."""
+        """Remove a task from its queue."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(
                 queue, task_queue.remove_task(queue, request.task), operator, request.reason
@@ -224,20 +223,20 @@ class QueueEditor:
 
     @handles(messages.MakeCurrent)
     async def make_current(self, request: messages.MakeCurrent, operator: str) -> messages.QueueReport:
-        """Let a task be done first."""
+        """Make a task the current one."""
         async with self._editing(request.robot, request.revision) as queue:
             return await self._edit(queue, task_queue.put_task_first(queue, request.task), operator)
 
     @handles(messages.PauseQueue)
     async def pause(self, request: messages.PauseQueue, operator: str) -> messages.QueueReport:
-        """Send a robot nothing more by itself."""
+        """Pause a queue: no further task is sent automatically."""
         reason = because(f"paused by {operator}", request.reason)
-        # An order beside the queue may come in between.
+        # An order outside the queue may come in between.
         return await again_if_moved(partial(self._pause, request.robot, reason, operator))
 
     @handles(messages.ResumeQueue)
     async def resume(self, request: messages.ResumeQueue, operator: str) -> messages.QueueReport:
-        """Let a queue go on; where its robot has not stopped yet as it was told to, as soon as it has."""
+        """Resume a queue; if its robot has not acknowledged an Abort yet, as soon as it has."""
         async with self._editing(request.robot, request.revision) as queue:
             after, current = task_queue.resume_queue(queue, operator, self._clock.time()), queue.current
             if current is not None and self._is_being_aborted(queue.robot, current):
@@ -246,7 +245,7 @@ class QueueEditor:
 
     @handles(messages.TakeOver)
     async def take_over(self, request: messages.TakeOver, operator: str) -> messages.Queues:
-        """Let other robots do what waits in one robot's queue, all of it or nothing."""
+        """Give the waiting tasks of one robot's queue to other robots, all of them or none."""
         return await again_if_moved(partial(self._take_over, request, operator))
 
     async def _take_over(self, request: messages.TakeOver, operator: str) -> messages.Queues:
@@ -272,9 +271,9 @@ class QueueEditor:
             return messages.Queues([self._registry.accept(after[name]) for name in names])
 
     async def enter(self, entries: QueueEntries, operator: str, also: Also) -> list[messages.QueueReport]:
-        """Give several robots their tasks in one transaction, in which ``also`` is written; see there.
+        """Enter the tasks of several robots in one transaction, with the writes ``also``.
 
-        Their robots may be at any gateways. Raises OutdatedError where a queue is not as it was seen.
+        The robots may be at any gateways. Raises OutdatedError where a queue is not as it was seen.
         """
         return await again_if_moved(partial(self._enter, entries, operator, also))
 
@@ -301,9 +300,9 @@ class QueueEditor:
     async def _stored(
         self, before: Sequence[Queue], write: Also, taken: Sequence[tuple[str, QueuedTask]], operator: str
     ) -> None:
-        """Write queues, and have robots abort the current tasks that were ``taken`` from them.
+        """Write queues, and abort the current tasks that were ``taken`` from their robots.
 
-        The Abort of a robot of another gateway is asked of that one in the same transaction.
+        The Abort of a robot of another gateway is requested from that one in the same transaction.
         """
         orders = [
             CommandOrder(
@@ -357,7 +356,7 @@ class QueueEditor:
         return before, after, _removed(gone, reason, operator, now)
 
     async def end(self, robot: str, operator: str, reason: str) -> None:
-        """End every task of a robot's queue, begun or not: nobody is left to do it."""
+        """End every task of a robot's queue, begun or not: the robot was removed."""
         async with self._registry.holding([robot]):
             queue = self._registry.get(robot)
             if robot in self._robots and queue.tasks:
@@ -365,13 +364,13 @@ class QueueEditor:
 
     @handles(messages.GetQueue)
     async def read(self, request: messages.GetQueue) -> messages.Queues:
-        """Return queues as they are."""
+        """Return the present queues."""
         if request.robot is not None:
             self._robots.check_known(request.robot)
         names = [request.robot] if request.robot is not None else self._registry.names()
         asked = {name: self._registry.get(name) for name in names}
         if request.robot is None and (others := self._robots.commanded_elsewhere()):
-            # What other gateways of the fleet have stored.
+            # Queues stored by other gateways of the fleet.
             asked |= await self._database.read(queues.load, others)
         found = []
         for name, queue in asked.items():
@@ -383,12 +382,12 @@ class QueueEditor:
 
     @handles(GetPlacements)
     async def placed_cones(self, request: GetPlacements) -> Placements:
-        """Return cones that were put down, newest first."""
+        """Return placed cones, newest first."""
         return Placements(await self._database.read(records.newest_placed_cones, request))
 
     @handles(CollectLayout)
     async def collecting(self, request: CollectLayout) -> CollectingTasks:
-        """Return a task for each cone that stands and is in no queue yet."""
+        """Return a task for each placed cone that is in no queue yet."""
         found = await self._database.read(records.standing, request.layout)
         queued = {task.task.placement for queue in await self._registry.everywhere() for task in queue.tasks}
         turns = self._site.settings.cones.offset != (0.0, 0.0)
@@ -440,11 +439,11 @@ class QueueEditor:
     async def _checked(
         self, request: messages.SetQueue | messages.AddTasks, queue: Queue, leaving: Collection[str] = ()
     ) -> dict[str, task_queue.Whereabouts]:
-        """Return which of the tasks were given before; raises RefusedError for one that cannot be driven.
+        """Return the tasks that were submitted before; raises RefusedError for one that cannot be driven.
 
-        Cones that tasks ``leaving`` their queues collect are free.
+        Cones to be collected by tasks that are ``leaving`` their queues are free.
 
-        What stands in the robot's ``queue`` as it is asked for may lead into a keepout: that was overridden.
+        A task that is unchanged in the robot's ``queue`` may lead into a keepout: that was overridden.
         """
         tasks = request.tasks
         driven = {task.task: self._driven(task) for task in tasks}
@@ -472,14 +471,14 @@ class QueueEditor:
         return await self._database.read(queues.whereabouts, [task.task for task in tasks])
 
     def _driven(self, task: messages.QueueTask) -> list[SetPath | SetPosEnd]:
-        """Return what drives a task; raises RefusedError where that cannot be."""
+        """Return the commands that drive a task; raises RefusedError where it cannot be driven."""
         driven = commands_of_task(task, self._site.settings.cones.offset)
         check_places(self._site, [(task.x, task.y), *(task.path or ())])
         return driven
 
 
 def _collecting(cone: PlacementReport, turns: bool) -> messages.QueueTask:
-    """Return the task that collects a cone; one that stands off its robot is taken from the same side."""
+    """Return the task that collects a cone; one placed off its robot is approached from the same side."""
     return messages.QueueTask(
         task=str(uuid.uuid4()),
         x=cone.x,

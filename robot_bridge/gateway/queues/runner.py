@@ -1,4 +1,4 @@
-"""Runner of queues: sends task after task, and settles how each ended."""
+"""Runner of queues: sends task after task, and records the outcome of each."""
 
 from __future__ import annotations
 
@@ -30,11 +30,11 @@ from . import task_life
 from .registry import QueueContext, QueueRegistry
 from .task_life import Path, SettledTask, commands_of_task, cone_place, path_to_task_end, remaining_task_path
 
-# --- What comes of a task whose command has ended: written down with where its cone stands ---
+# --- Outcome of a task after the end of its command: stored with the position of its cone ---
 
 
 class QueueOutcomes:
-    """Settles the tasks whose commands have ended."""
+    """Settles tasks after the ends of their commands."""
 
     def __init__(self, context: QueueContext) -> None:
         self._site = context.site
@@ -44,7 +44,7 @@ class QueueOutcomes:
         self._clock = context.clock
 
     async def settle(self, queue: Queue) -> None:
-        """Write down what came of the current task's command, if that has ended."""
+        """Store the outcome of the current task's command, if that has ended."""
         await self._settle_current(queue)
         await self._settle_given_back(self._registry.get(queue.robot))
 
@@ -66,7 +66,7 @@ class QueueOutcomes:
         await self._write(queue, outcome, found.report)
 
     async def _settle_given_back(self, queue: Queue) -> None:
-        """Write down that the task that comes next is done, if its robot came to its end all the same."""
+        """Store the next task as done, if its robot came to its end after the task was given back."""
         head = queue.head
         if head is None or head.is_current or head.command is None or not queue.running:
             return
@@ -101,12 +101,12 @@ class QueueOutcomes:
         try:
             return len(commands_of_task(current.task, self._site.settings.cones.offset))
         except RefusedError:
-            # The site's settings have changed since; what was sent was the last that there is.
+            # The site's settings have changed since; the sent command was the last one.
             return current.leg + 1
 
 
 def _placed(robot: str, task: QueuedTask, report: CommandReport, offset: tuple[float, float]) -> NewPlacement:
-    """Return the cone that a robot has put down by the command that ``report`` tells of."""
+    """Return the cone that a robot has placed by the command of ``report``."""
     requested = task.task
     assert report.stood is not None
     x, y = cone_place(report.stood, offset)
@@ -136,21 +136,21 @@ def write_outcome(
     placed: NewPlacement | None,
     collected: CollectedCone | None,
 ) -> PlacementReport | None:
-    """Write a task's end, and where its cone stands now."""
+    """Write a task's end, and the present position of its cone."""
     queues.save(connection, before, after, ended)
     if placed is not None:
         return records.add_placed_cones(connection, placed)
     return None if collected is None else records.collect(connection, collected)
 
 
-# --- What has to be done before a task: by whichever robot, and whenever that is given to one ---
+# --- Precedence: tasks that must be done before a task, by any robot, and whenever they are submitted ---
 
 _MOST_NAMED = 2
-"""Tasks that are named of those that are waited for; the others are counted."""
+"""Most preceding tasks that are named in a text; the others are counted."""
 
 
 class TaskPrecedence:
-    """Tells which tasks are still waited for; those that are done once are never asked for again."""
+    """Finds the preceding tasks that are not done; those once done are not queried again."""
 
     def __init__(self, registry: QueueRegistry, database: Database) -> None:
         self._registry = registry
@@ -158,10 +158,10 @@ class TaskPrecedence:
         self._done: set[str] = set()
 
     async def waits_for(self, robot: str, task: QueueTask) -> str | None:
-        """Return in words what ``task`` of ``robot`` waits for, None when all of that is done.
+        """Return in words the tasks that ``task`` of ``robot`` waits for, None when all of them are done.
 
-        What was taken out of its queue, or passed over, is not done: that nobody waits for it any more is for
-        people to say. Raises StoreError.
+        A task that was removed or skipped is not done: whether to wait for it is the operators' decision.
+        Raises StoreError.
         """
         unfinished = [id for id in task.after or () if id not in self._done]
         if not unfinished:
@@ -174,7 +174,7 @@ class TaskPrecedence:
         done = {id for id, found in known.items() if found.state is TaskState.DONE}
         left = [id for id in unfinished if id not in done]
         if not left:
-            # It is sent now, and asks no more.
+            # It is sent now, and needs them no more.
             self._done.difference_update(task.after or ())
             return None
         self._done |= done
@@ -210,20 +210,19 @@ def _gone(id: str, found: Whereabouts | None) -> str:
     return f"task {id}, which was {found.state.value} at {found.robot}: give this task anew without it"
 
 
-# --- Sends robots the tasks of their queues, one after the other ---
-# The work to do is seen from what is stored, never from what was heard: so a gateway that was killed
-# goes
-# on where it stopped, and a task that was sent is known as sent. A task and the command that drives it are
-# written in one transaction.
+# --- Sending the tasks of queues to their robots, one after the other ---
+# The work to do is derived from the stored state, never from received messages: so a gateway that was killed
+# continues where it stopped, and a task that was sent is known as sent. A task and the command that drives it
+# are written in one transaction.
 
 log = logging.getLogger(__name__)
 
 LOOK_INTERVAL = 1.0
-"""seconds after which every queue with something to do is looked at, whether anything was heard or not."""
+"""seconds after which every queue with something to do is checked, with or without new messages."""
 
 
 class QueueRunner:
-    """Keeps the robots' queues going."""
+    """Runs the robots' queues."""
 
     def __init__(self, context: QueueContext) -> None:
         self._site = context.site
@@ -240,11 +239,11 @@ class QueueRunner:
         self._sending: set[str] = set()
         self._last_states: dict[str, RobotState] = {}
         self._returned: set[str] = set()
-        """robots that are back after nobody had heard them for long."""
+        """robots that are back after a long silence."""
         self._waiting = context.waiting
 
     async def run(self) -> None:
-        """Keep them going until cancelled."""
+        """Run the queues until cancelled."""
         while True:
             try:
                 async with asyncio.timeout(LOOK_INTERVAL):
@@ -254,12 +253,12 @@ class QueueRunner:
             await self.advance()
 
     def schedule(self, robot: str) -> None:
-        """Look at a robot's queue soon."""
+        """Schedule a check of a robot's queue."""
         self._due.add(robot)
         self._event.set()
 
     def note_step(self, report: CommandReport) -> None:
-        """Note what became of a command; called with each step of every one."""
+        """Process a step of a command; called with each step of every command."""
         queue = self._registry.get(report.robot)
         head = queue.head
         if head is None:
@@ -272,7 +271,7 @@ class QueueRunner:
             self._registry.doubt(report.robot)
 
     def look_at_all(self) -> None:
-        """Look at every queue that has something to do; tell of robots that are lost, or back."""
+        """Schedule every queue with something to do; report queues of robots with changed liveness."""
         for robot in self._registry.names():
             queue = self._registry.get(robot)
             if self._registry.is_doubtful(robot):
@@ -288,19 +287,19 @@ class QueueRunner:
                 self.schedule(robot)
 
     async def advance(self) -> None:
-        """Do what is due now: settle what has ended, send what comes next."""
+        """Process the scheduled queues: settle ended tasks, send the next ones."""
         self._event.clear()
         due, self._due = self._due, set()
-        # A robot that was removed has a queue still, should it come back.
+        # A robot that was removed still has a queue, in case it comes back.
         await asyncio.gather(*(self._advance(robot) for robot in sorted(due) if robot in self._robots))
 
     async def redirect(
         self, robot: str, path: SetPath, operator: str, reason: str | None = None
     ) -> CommandReport | None:
-        """Send the robot to the end of its present task by another path; its queue goes on.
+        """Send the robot to the end of its present task by another path; its queue continues.
 
-        Return the command that does it, None when the robot is not doing a task of its queue. Raises
-        MessageError for a path that ends elsewhere, RefusedError and StoreError.
+        Return the new command, None when the robot is not doing a task of its queue. Raises MessageError for
+        a path that ends elsewhere, RefusedError and StoreError.
         """
         async with self._registry.holding([robot]):
             queue, current = self._registry.get(robot), self._current(robot)
@@ -312,11 +311,11 @@ class QueueRunner:
             return await self._send(queue, after, message, operator, reason, current.command)
 
     async def stop_over(self, robot: str, first: Path, rest: Path, other: str, by: str, also: AlsoOf) -> str:
-        """Send the robot along ``first`` only, as a task of its own; the task that it does waits behind that.
+        """Send the robot along ``first`` only, as a task of its own; its present task waits after that.
 
-        It is begun again along ``rest`` as soon as it need not wait any more. ``also`` is written in the same
-        transaction. Return the id of the command. Raises MessageError for a ``rest`` that ends elsewhere,
-        RefusedError for a robot that does no task of its queue any more, and StoreError.
+        The latter is begun again along ``rest`` as soon as the robot need not wait any more. ``also`` is
+        written in the same transaction. Return the id of the command. Raises MessageError for a ``rest`` that
+        ends elsewhere, RefusedError for a robot that no longer does a task of its queue, and StoreError.
         """
         async with self._registry.holding([robot]):
             queue = self._registry.get(robot)
@@ -330,12 +329,12 @@ class QueueRunner:
             return report.command
 
     def current(self, robot: str) -> QueueTask | None:
-        """Return the task of its queue that the robot does, None where it does none of it."""
+        """Return the task of its queue that the robot is doing, None if it is doing none."""
         current = self._current(robot)
         return None if current is None else current.task
 
     def to_the_end(self, task: QueueTask, left: Path) -> Path:
-        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+        """Return the rest, ``left``, of the path that was sent for a task, extended to the task's place."""
         return path_to_task_end(task, self._site.settings.cones.offset, left)
 
     def _current(self, robot: str) -> QueuedTask | None:
@@ -351,17 +350,17 @@ class QueueRunner:
             async with self._registry.holding([robot]):
                 await self._settling.settle(self._registry.get(robot))
                 await self._hold_back(self._registry.get(robot))
-                await self._go_on(self._registry.get(robot))
+                await self._send_next(self._registry.get(robot))
         except OutdatedError:
             self.schedule(robot)
         except StoreError as error:
             log.error("queue of %s: %s; it is looked at again", robot, error)
         except Exception:
-            # The queues of all other robots go on.
+            # The queues of all other robots continue.
             log_unforeseen(log, f"queue of {robot}; it is looked at again")
 
     def note_return(self, robot: str, away: float) -> None:
-        """Note that a robot is heard again that was lost or offline for ``away`` seconds."""
+        """Record that a robot that was lost or offline for ``away`` seconds is received again."""
         queue = self._registry.get(robot)
         if away > self._longest_silence and queue.running and queue.tasks:
             self._returned.add(robot)
@@ -372,9 +371,9 @@ class QueueRunner:
         return self._site.settings.commands.expire_after_s
 
     async def _hold_back(self, queue: Queue) -> None:
-        """Pause the queue of a robot that was not heard for long, so that it does not set off by surprise.
+        """Pause the queue of a robot after a long silence, so that it does not start by surprise.
 
-        Whether it was away itself, its link or the gateway: nobody saw what became of its surroundings.
+        Whether the robot, its link or the gateway was away: its surroundings may have changed unseen.
         """
         robot = self._robots.get(queue.robot)
         is_away = robot.state in AWAY and self._clock.time() - robot.received_at > self._longest_silence
@@ -389,10 +388,10 @@ class QueueRunner:
     def _is_beside(self, queue: Queue, report: CommandReport) -> bool:
         return queue.running and report.op != SetPosIni.__name__ and report.command not in self._sending
 
-    # --- what comes next ------------------------------------------------------------------------------
+    # --- the next task --------------------------------------------------------------------------------
 
-    async def _go_on(self, queue: Queue) -> None:
-        """Send what comes next, or pause, saying why it cannot be sent."""
+    async def _send_next(self, queue: Queue) -> None:
+        """Send the next command of the queue, or pause with the reason why it cannot be sent."""
         head = queue.head
         if head is None or not queue.running or (head.is_current and head.command is not None):
             return
@@ -416,7 +415,7 @@ class QueueRunner:
             )
 
     async def _why_not_yet(self, robot: str, head: QueuedTask) -> str | None:
-        """Return why what comes next is not sent yet, None when it may be; raises StoreError."""
+        """Return why the next command is not sent yet, None when it may be; raises StoreError."""
         if self._is_stopping(robot, head):
             return task_life.STOPS_FIRST
         other = self._waiting.waits_for(robot, head.id)
@@ -425,16 +424,16 @@ class QueueRunner:
         known = self._robots.get(robot)
         finds_way = self._planner.has_roads and not known.asks_path
         if not known.located and (head.task.path is not None or finds_way):
-            # Where it is now its path begins.
+            # Its path begins at its present position.
             return "waits for the robot to say where it is"
-        # What was begun is not given up because of what another robot does.
+        # A task that was begun is not given up because of another robot.
         return None if head.is_current else await self._precedence.waits_for(robot, head.task)
 
     def _is_stopping(self, robot: str, head: QueuedTask) -> bool:
-        """Tell whether the robot is to stop first: it was resumed before it has said that it did.
+        """Return whether the robot must stop first: it was resumed before it acknowledged an Abort.
 
-        By then it may be done with its task, and what it is sent meanwhile would be ended by that Abort if it
-        came to read that last.
+        By then it may have done its task, and a command sent meanwhile would be ended by that Abort if the
+        robot read the Abort last.
         """
         was_begun = not head.is_current and head.command is not None and self._commands.is_open(head.command)
         return was_begun or self._commands.awaits_abort(robot)
@@ -451,12 +450,12 @@ class QueueRunner:
         return remaining_task_path(message, (pose.x, pose.y), driven, join=join)
 
     async def _with_way(self, robot: str, head: QueuedTask, target: SetPosEnd) -> SetPath | SetPosEnd:
-        """Return what sends a robot to a target without a path: along the roads from where it is now.
+        """Return the command to a target without a path: along the roads from the robot's present position.
 
-        It is the bare target for a robot that asks for its path, at the end of a task's path, and where no
+        It is the bare target for a robot that requests its path, at the end of a task's path, and where no
         roads are near. A robot that does not take cones with a path drives straight to them.
 
-        :raises RefusedError: when no way leads there, or the straight one leads through a keepout.
+        :raises RefusedError: when no path leads there, or the straight one leads through a keepout.
         """
         start = self._robots.straight_from(robot, target)
         if start is None or head.leg > 0:

@@ -1,4 +1,4 @@
-"""Life of a task: its states, and the commands that it is sent as."""
+"""States of a task, and the commands that it is sent as."""
 
 from __future__ import annotations
 
@@ -17,18 +17,18 @@ from ...core.messages.robots import SetPath, SetPosEnd
 from ..commands.active_command import ActiveCommand, because
 from ..model.task_queue import Queue, QueuedTask, return_task
 
-# --- What becomes of a task: it is sent, and its command is reached, refused, or ended by somebody ---
+# --- States of a task: it is sent, and its command is reached, refused, or ended by an operator ---
 
 GATEWAY = "gateway"
 STOPS_FIRST = "goes on as soon as the robot has acknowledged that it is to stop"
-"""Why a task is not sent that was resumed before its robot had stopped."""
+"""Reason why a task that was resumed before its robot had stopped is not sent yet."""
 Path = list[tuple[float, float]]
 """(x, y) in metres in the site frame."""
 
 
 @dataclass(frozen=True)
 class SettledTask:
-    """A queue after its current task's command has ended, and the task if that has ended with it."""
+    """A queue after the end of its current task's command, and the task if it has ended, too."""
 
     queue: Queue
     ended: QueuedTask | None = None
@@ -47,11 +47,11 @@ def abort_id(task: QueuedTask) -> str:
 def mark_sent(queue: Queue, at: float) -> Queue:
     """Return the queue with its head as the current task, with the command to send."""
     head = queue.tasks[0]
-    anew = not head.is_current
+    is_new_attempt = not head.is_current
     head = dataclasses.replace(
         head,
         state=TaskState.CURRENT,
-        attempts=head.attempts + anew,
+        attempts=head.attempts + is_new_attempt,
         began_at=head.began_at or at,
         reason=None,
     )
@@ -59,10 +59,10 @@ def mark_sent(queue: Queue, at: float) -> Queue:
 
 
 def settle_task(queue: Queue, report: CommandReport, legs: int, *, skips: bool) -> SettledTask:
-    """Return what comes of the end of the current task's command, one of ``legs``.
+    """Return the outcome of the end of the current task's command, one of ``legs``.
 
-    With ``skips`` a task that a robot refuses or gives up is passed over, else the queue pauses. It goes on
-    where somebody has resumed it since the command ended.
+    With ``skips`` a task that a robot refuses or gives up is skipped, else the queue pauses. It continues
+    if an operator has resumed it since the command ended.
     """
     head, step = queue.tasks[0], report.steps[-1]
     if report.state is CommandState.REACHED:
@@ -77,7 +77,7 @@ def settle_task(queue: Queue, report: CommandReport, legs: int, *, skips: bool) 
         )
     why = because(f"its command is {report.state.value}", step.reason)
     given = queue.with_head(return_task(head, why))
-    # Resumed in the same moment it was after that: what pauses it then has done so by now.
+    # Resumed at the same time counts as after: a pause by the command would have been stored by now.
     resumed_since = queue.at is not None and queue.at >= step.at
     return SettledTask(given if resumed_since else given.paused(f"task {head.id}: {why}", step.by, step.at))
 
@@ -85,8 +85,8 @@ def settle_task(queue: Queue, report: CommandReport, legs: int, *, skips: bool) 
 def done_after_all(queue: Queue, legs: int) -> Queue | None:
     """Return the queue with its head as the current task again, if its last command was the last of ``legs``.
 
-    A task may be given back just when its robot comes to its end: then it is not to be done once more. One
-    that was made of a command has not got the id of that from here.
+    A task may be given back just when its robot comes to its end: then it must not be done again. A task that
+    was made of a command does not have a command id from here.
     """
     head = queue.tasks[0]
     last = dataclasses.replace(head, state=TaskState.CURRENT, leg=legs - 1)
@@ -94,7 +94,7 @@ def done_after_all(queue: Queue, legs: int) -> Queue | None:
 
 
 def mark_failed(queue: Queue, reason: str, at: float, *, skips: bool) -> SettledTask:
-    """Return what comes of a failure of the task at the head of a queue."""
+    """Return the outcome of a failure of the task at the head of a queue."""
     head = queue.tasks[0]
     if skips:
         return SettledTask(queue.with_tasks(queue.tasks[1:]), end_task(head, TaskState.SKIPPED, at, reason))
@@ -103,13 +103,13 @@ def mark_failed(queue: Queue, reason: str, at: float, *, skips: bool) -> Settled
 
 
 def pause_before_head(queue: Queue, reason: str, at: float) -> Queue:
-    """Return the queue paused before its head is sent, for a ``reason`` that the task keeps, too."""
+    """Return the queue paused before its head is sent; the task keeps the ``reason``, too."""
     head = dataclasses.replace(queue.tasks[0], reason=reason)
     return queue.with_head(head).paused(reason, GATEWAY, at)
 
 
 def mark_waiting(queue: Queue, reason: str) -> Queue:
-    """Return the queue with the ``reason`` why its head is not sent yet; it goes on by itself."""
+    """Return the queue with the ``reason`` why its head is not sent yet; it continues by itself."""
     return queue.with_head(dataclasses.replace(queue.tasks[0], reason=reason))
 
 
@@ -120,19 +120,19 @@ def end_task(
     reason: str | None = None,
     deviation: float | None = None,
 ) -> QueuedTask:
-    """Return a task at its end."""
+    """Return a task as ended."""
     return dataclasses.replace(task, state=state, ended_at=at, reason=reason, deviation=deviation)
 
 
 def with_deviation(task: QueuedTask, deviation: float) -> QueuedTask:
-    """Return a task with how many metres its cone is off."""
+    """Return a task with the deviation of its cone in metres."""
     return dataclasses.replace(task, deviation=deviation)
 
 
 def split_at_stop(queue: Queue, first: Path, rest: Path, label: str, by: str, at: float) -> Queue:
-    """Return the queue whose current task's path is driven in two parts, the first as a task of its own.
+    """Return the queue with the current task's path split in two, the first part as a task of its own.
 
-    The task itself waits behind that, to be begun again along ``rest``.
+    The task itself waits after that, to be begun again along ``rest``.
     """
     x, y = first[-1]
     stop = QueuedTask(QueueTask(str(uuid.uuid4()), x, y, path=first, label=label), by, at)
@@ -142,20 +142,20 @@ def split_at_stop(queue: Queue, first: Path, rest: Path, label: str, by: str, at
 
 
 def redirect_task(queue: Queue, path: Path) -> Queue:
-    """Return the queue whose current task is driven again, along another path to the same place."""
+    """Return the queue with the current task to be driven again, along another path to the same place."""
     head = queue.tasks[0]
     task = dataclasses.replace(head.task, path=path)
     head = dataclasses.replace(head, task=task, leg=0, attempts=head.attempts + 1)
     return queue.with_head(dataclasses.replace(head, command=command_id(head)))
 
 
-# --- Taking over: what waits in one robot's queue goes into others', none of it lost and none twice ---
+# --- Takeover: the waiting tasks of one queue are moved to others, none lost and none duplicated ---
 
 
 def transfer_tasks(queues: Mapping[str, Queue], request: TakeOver, by: str, at: float) -> dict[str, Queue]:
-    """Return the queues as they are after ``request``; all that it names are in ``queues``.
+    """Return the queues after ``request``; all that it names are in ``queues``.
 
-    :raises RefusedError: when a task would be lost, or be there twice; MessageError for a path.
+    :raises RefusedError: when a task would be lost or duplicated; MessageError for a path.
     """
     giver = queues[request.robot]
     taken = transferred_current_task(giver, request) is not None
@@ -173,7 +173,7 @@ def transfer_tasks(queues: Mapping[str, Queue], request: TakeOver, by: str, at: 
 
 
 def transferred_current_task(giver: Queue, request: TakeOver) -> QueuedTask | None:
-    """Return the task that the giving robot is doing, if another one is to do it."""
+    """Return the current task of the giving robot, if it is to be transferred."""
     current = giver.current
     shared = (shared_task.task for share in request.shares for shared_task in share.tasks)
     return current if current is not None and current.id in shared else None
@@ -215,17 +215,17 @@ def _adopted(task: QueuedTask, path: list[tuple[float, float]] | None, *, moves:
     return dataclasses.replace(task, task=spec, leg=0, command=None)
 
 
-# --- The commands that a task is driven by: its path first, then what is done at its end ---
+# --- The commands of a task: its path first, then the action at its end ---
 # A path carries no cone (paper 1, table III: SetPath), so a cone's task with a path takes two commands.
 
 Offset = tuple[float, float]
-"""Metres ahead of a robot and to its left where the cone that it puts down stands."""
+"""Position of a placed cone relative to its robot: metres ahead and to the left."""
 Place = tuple[float, float]
 
 CORRIDOR = 2.0
-"""metres that a robot may stand off a path that it is sent along."""
+"""metres that a robot may be off a path that it is sent along."""
 _LEAST = 0.05
-"""metres of path that are worth a command."""
+"""least metres of path that are worth a command."""
 _BRING = "drive it there, or give the task another path"
 
 
@@ -243,7 +243,7 @@ def commands_of_task(task: QueueTask, offset: Offset) -> list[SetPath | SetPosEn
 
 
 def standing_place(task: QueueTask, offset: Offset) -> Place:
-    """Return where the robot stands when the cone stands at the task's place; raises RefusedError."""
+    """Return the robot's position for a cone at the task's place; raises RefusedError."""
     if offset == (0.0, 0.0):
         return task.x, task.y
     if task.theta is None:
@@ -256,18 +256,18 @@ def standing_place(task: QueueTask, offset: Offset) -> Place:
 
 
 def cone_place(stood: tuple[float, float, float], offset: Offset) -> Place:
-    """Return where the cone stands of a robot that stands at x, y, theta."""
+    """Return the position of the cone of a robot that stands at x, y, theta."""
     x, y, theta = stood
     ahead, left = _turned(offset, theta)
     return x + ahead, y + left
 
 
 def remaining_task_path(path: SetPath, here: Place, driven: float, *, join: bool) -> SetPath:
-    """Return what a robot that stands ``here`` has to drive of ``path``, of which it has driven some metres.
+    """Return the rest of ``path`` for a robot that stands ``here`` and has ``driven`` some metres of it.
 
-    With ``join`` it may go on from where it is beside it, else it has to stand at the beginning.
+    With ``join`` it may continue from its position beside the path, else it must stand at the beginning.
 
-    :raises RefusedError: when the robot is too far off; how it gets there is for people to say.
+    :raises RefusedError: when the robot is too far off; an operator must decide how it gets there.
     """
     away = math.dist(here, path.points[0])
     if away <= CORRIDOR and driven <= CORRIDOR:
@@ -281,7 +281,7 @@ def remaining_task_path(path: SetPath, here: Place, driven: float, *, join: bool
     if not near.any():
         away = min([math.dist(here, line.at(driven)), *off[ahead]])
         raise RefusedError(f"the robot stands {away:.1f} m off what is left of the path; {_BRING}")
-    # Where a path passes a place twice the sooner one counts: nothing of it is left out.
+    # Where a path passes a place twice the earlier station counts: nothing of it is left out.
     near &= station <= station[near].min() + 2 * CORRIDOR
     joint = float(station[near][off[near].argmin()])
     rest = [p for p, at in zip(path.points, line.stations, strict=True) if at > joint + _LEAST]
@@ -289,15 +289,15 @@ def remaining_task_path(path: SetPath, here: Place, driven: float, *, join: bool
 
 
 def path_to_task_end(task: QueueTask, offset: Offset, left: list[Place]) -> list[Place]:
-    """Return what is ``left`` of the path that a robot was sent along for ``task``, up to the task's place.
+    """Return the rest, ``left``, of the path that was sent for ``task``, extended to the task's place.
 
-    A cone's path was sent without its last metres.
+    The path of a cone's task was sent without its last metres.
     """
     short_by = 0.0 if task.kind is TaskKind.DRIVE else math.hypot(*offset)
     if short_by == 0:
         return left
     if task.path is None:
-        # It was found by the gateway, to where the robot stands for the cone.
+        # It was planned by the gateway, up to the robot's position for the cone.
         return [*left, (task.x, task.y)]
     line = Polyline(task.path)
     tail = [point for point, at in zip(task.path, line.stations, strict=True) if at > line.length - short_by]
@@ -305,7 +305,7 @@ def path_to_task_end(task: QueueTask, offset: Offset, left: list[Place]) -> list
 
 
 def _approach(task: QueueTask, short_by: float) -> list[Place] | None:
-    """Return the path of a cone's task without its last metres, where the cone stands; None if none."""
+    """Return the path of a cone's task without its last metres, up to the cone; None if none."""
     if task.path is None:
         return None
     if short_by == 0:
@@ -324,13 +324,13 @@ def _turned(offset: Offset, theta: float) -> Place:
     return ahead * cos - left * sin, ahead * sin + left * cos
 
 
-# --- What an operator ordered beside a robot's queue, kept as the first task of that: it can be gone on with
+# --- Commands outside a robot's queue, kept as its first task, so that they can be continued
 
 
 def task_of_command(command: ActiveCommand, offset: Offset, here: Place | None) -> QueuedTask:
-    """Return the task that the robot does with an open ``command`` that is of no queue.
+    """Return the task that corresponds to an open ``command`` outside the queue.
 
-    ``offset`` is where on this site a cone stands from its robot, ``here`` where the robot is, if that is
+    ``offset`` is the position of cones relative to robots on this site, ``here`` the robot's position, if
     known.
     """
     message, report = command.message, command.report
@@ -352,12 +352,12 @@ def task_of_command(command: ActiveCommand, offset: Offset, here: Place | None) 
 
 
 def task_of_rest(rest: SetPath, offset: Offset, command: str, by: str, at: float) -> QueuedTask:
-    """Return the task of a robot that was to be sent along ``rest`` from where ``command`` leads it."""
+    """Return the task of a robot that was to be sent along ``rest`` from the end of ``command``."""
     return QueuedTask(_along(_id("rest", command), rest, offset), by, at)
 
 
 def pause_with_task(queue: Queue, kept: Sequence[QueuedTask], reason: str, by: str, at: float) -> Queue:
-    """Return the queue paused, with what is ``kept`` in front of what else is to be done."""
+    """Return the queue paused, with the ``kept`` tasks in front of the others."""
     tasks = (*kept, *(return_task(task) for task in queue.tasks)) if kept else queue.tasks
     return dataclasses.replace(
         queue.with_tasks(tasks, edited=True), state=QueueState.PAUSED, reason=reason, by=by, at=at
@@ -365,7 +365,7 @@ def pause_with_task(queue: Queue, kept: Sequence[QueuedTask], reason: str, by: s
 
 
 def _id(what: str, command: str) -> str:
-    """Return the id of the task that is made of a command: the same whenever that is asked."""
+    """Return the id of the task that is made of a command: always the same."""
     return str(uuid.uuid5(uuid.NAMESPACE_OID, f"{command} {what}"))
 
 
@@ -377,7 +377,7 @@ def _to_target(id: str, target: SetPosEnd, offset: Offset) -> QueueTask:
 
 
 def _along(id: str, path: SetPath, offset: Offset) -> QueueTask:
-    """Return the task of a path; where a cone of it stands off its robot, the path leads up to the cone."""
+    """Return the task of a path; for a cone placed off its robot, the path leads up to the cone."""
     x, y = path.points[-1]
     kind = _kind(path)
     if kind is TaskKind.DRIVE or offset == (0.0, 0.0) or path.theta is None:
@@ -387,14 +387,14 @@ def _along(id: str, path: SetPath, offset: Offset) -> QueueTask:
 
 
 def _kind(end: SetPath | SetPosEnd) -> TaskKind:
-    """Return what a robot does at the end of what it was sent."""
+    """Return the action of a robot at the end of its command."""
     if end.cone:
         return TaskKind.PLACE
     return TaskKind.COLLECT if end.collect else TaskKind.DRIVE
 
 
 def _with_way_to_it(path: SetPath, here: Place | None) -> SetPath:
-    """Return a path with the straight way to its beginning, for a robot that has not come to any of it."""
+    """Return a path with a straight line to its beginning, for a robot that has not reached any of it."""
     if here is None or Polyline(path.points).feet(*here)[1].min() <= CORRIDOR:
         return path
     return dataclasses.replace(path, points=[here, *path.points])

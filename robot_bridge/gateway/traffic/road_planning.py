@@ -276,7 +276,7 @@ def refuse_road_errors() -> Iterator[None]:
 
 
 def _is_beside(site: Site, start: Point, goal: Point, clearance: float) -> bool:
-    """Tell whether a robot at ``start`` is so near to ``goal`` that roads would only lead it round.
+    """Return whether a robot at ``start`` is so near to ``goal`` that roads would only lead it round.
 
     As at the end of the path of a cone's task: cones stand around it, and the path kept off them. Neither a
     keepout nor, within ``clearance`` metres, an obstacle of the site is in between.

@@ -103,7 +103,7 @@ class RobotPaths:
         self._elsewhere: dict[str, TaskElsewhere] = {}
 
     def is_placed(self, robot: str) -> bool:
-        """Tell whether it is known where a robot is now, so that its way can be changed from there."""
+        """Return whether it is known where a robot is now, so that its way can be changed from there."""
         return self._robots.is_placed(robot)
 
     def note_reported(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:

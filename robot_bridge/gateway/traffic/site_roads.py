@@ -147,7 +147,7 @@ class SiteRoads:
         return RoadStretch(edges.line(found.edge), int(edges.level[found.edge]))
 
     def is_near(self, x: float, y: float) -> bool:
-        """Tell whether (x, y) is near any road, whether that may be used or not."""
+        """Return whether (x, y) is near any road, whether that may be used or not."""
         return self.router is not None and self.router.nearest.nearest(x, y, REACH) is not None
 
     def set_closures(self, closures: Mapping[str, RoadStretch]) -> dict[str, int]:

@@ -382,7 +382,7 @@ class YieldManager:
         self._rows.pop(row.robot, None)
 
     def _goes_on(self, row: HoldRow, task: str | None, seen: TrafficSnapshot) -> bool:
-        """Tell whether the robot still does what it was told to, or stands where it was to wait."""
+        """Return whether the robot still does what it was told to, or stands where it was to wait."""
         if task is not None:
             return task == row.command
         place, _ = seen.places[row.robot]
@@ -399,7 +399,7 @@ class YieldManager:
 
 
 def _is_free(row: HoldRow, seen: TrafficSnapshot) -> bool:
-    """Tell whether the robot meets nobody on the rest of its way if it goes on now."""
+    """Return whether the robot meets nobody on the rest of its way if it goes on now."""
     movements = seen._replace(holds={**seen.holds, row.robot: row._replace(until=seen.now)}).movements()
     mine = movements.pop(row.robot)
     return not conflicts_with(mine, movements.values(), seen.settings.margin_m, seen.now)

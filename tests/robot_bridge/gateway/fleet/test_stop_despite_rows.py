@@ -585,14 +585,14 @@ async def test_a_robot_that_fails_with_its_request_keeps_nobody_from_an_answer(d
 async def test_an_acknowledgement_that_came_too_late_and_goes_wrong_is_forgotten(driven, monkeypatch):
     book = driven.fleet._commands
     book._late = {("r1", 4711), ("r2", 4712)}
-    late = book._note_late
+    late = book._record_late
 
     async def refuse(robot, sa_id):
         if robot == "r1":
             raise DataRefusedError("refused")
         await late(robot, sa_id)
 
-    monkeypatch.setattr(book, "_note_late", refuse)
+    monkeypatch.setattr(book, "_record_late", refuse)
     await book.save_progress()
     assert book._late == set()
 
@@ -605,7 +605,7 @@ async def test_an_acknowledgement_that_came_too_late_waits_for_a_database_that_i
     async def fail_to_store(_robot, _sa_id):
         raise StoreError("away")
 
-    monkeypatch.setattr(book, "_note_late", fail_to_store)
+    monkeypatch.setattr(book, "_record_late", fail_to_store)
     with pytest.raises(StoreError, match="away"):
         await book.save_progress()
     assert book._late == {("r1", 4711)}
