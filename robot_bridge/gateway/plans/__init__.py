@@ -1,1 +1,1 @@
-"""Cone plans: submitted by operators, driven through the robots' queues, planned again for what is left."""
+"""Cone plans: submitted by operators, driven through the robots' queues, replanned for the rest."""

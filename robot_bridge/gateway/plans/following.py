@@ -1,7 +1,7 @@
-"""Plans that are followed: what queues, robots, roads and the database say of each; changes are stored first.
+"""Followed plans: the state of each by queues, robots, roads and the database; changes are stored first.
 
-What became of a plan's tasks is seen from the queues and from what is stored, never from what was heard: a
-gateway that was killed, or another one, goes on with every plan where it stopped.
+The outcome of a plan's tasks is derived from the queues and the stored state, never from received messages:
+a gateway that was killed, or another one, continues every plan where it stopped.
 """
 
 from __future__ import annotations
@@ -36,17 +36,17 @@ from ..traffic.closures import ClosureService
 from ..traffic.road_planning import RoadPlanner
 from .model import ENDS, DrivenPlan, FollowedPlan, PlanTerms, progress_from, ways_along_closed_roads
 
-# --- Plans in the database: each written whole when it changes, with the stops that are tasks of queues ---
+# --- Plans in the database: each is written whole when it changes, with the stops in queues ---
 
 _ENDED = [state.value for state in ENDS]
 
 
 class PlanMovedError(RefusedError):
-    """A plan is not stored as it was taken for: another gateway has changed it. Nothing is written."""
+    """A stored plan is not as assumed: another gateway has changed it. Nothing is written."""
 
 
 def open_revisions(connection: Connection) -> dict[str, int]:
-    """Return at which revision each plan is that is driven, the oldest plan first."""
+    """Return the revision of each plan that is driven, the oldest plan first."""
     c = plans.c
     query = select(c.name, c.revision).where(c.state.not_in(_ENDED)).order_by(c.submitted_at)
     return dict(connection.execute(query).all())
@@ -74,8 +74,8 @@ def add_plan(
 ) -> None:
     """Write a new plan with its stops.
 
-    :raises PlanMovedError: when others are driven by now than those ``beside`` it, or it is stored already:
-        nothing may be written then.
+    :raises PlanMovedError: when other plans are driven by now than those in ``beside``, or it is stored
+        already: nothing may be written then.
     """
     if not open_revisions(connection).keys() <= {*beside}:
         raise PlanMovedError("another plan was submitted meanwhile; look at the plans again")
@@ -89,9 +89,9 @@ def save_plan(
     gone: Sequence[str] = (),
     place: int = 0,
 ) -> None:
-    """Write a plan, its ``new`` stops from ``place`` on, and delete those of the tasks that are ``gone``.
+    """Write a plan, its ``new`` stops from ``place`` on, and delete the stops of the tasks ``gone``.
 
-    :raises PlanMovedError: when what is stored is not the revision before: nothing may be written then.
+    :raises PlanMovedError: when the stored revision is not the one before: nothing may be written then.
     """
     found = connection.scalar(select(plans.c.revision).where(plans.c.name == plan.name).with_for_update())
     if found != (plan.revision - 1 or None):
@@ -183,7 +183,7 @@ def _stop(row: Any) -> SentStop:
     return SentStop(row["robot"], row["number"], stop, row["task"])
 
 
-# --- The plans that are driven, followed ---
+# --- Followed plans ---
 
 log = logging.getLogger(__name__)
 
@@ -191,10 +191,10 @@ MOST_PLACED = 5000
 
 
 class FollowedPlans:
-    """The plans that robots drive, by name; whoever changes one holds :attr:`lock`.
+    """The plans that robots drive, by name; :attr:`lock` must be held to change one.
 
-    Other gateways may change them, too: :meth:`refresh` learns of that, and what is stored of one that was
-    changed since is refused with PlanMovedError. PlanChanged is published for what is stored here.
+    Other gateways may change them, too: :meth:`refresh` reads that, and a change of a plan that was changed
+    there since is refused with PlanMovedError. PlanChanged is published for changes stored here.
     """
 
     def __init__(
@@ -208,7 +208,7 @@ class FollowedPlans:
         self._events = events
         self._plans: dict[str, FollowedPlan] = {}
         self._revisions: dict[str, int] = {}
-        """the revision of each plan that is driven as it was read or stored last."""
+        """revision of each driven plan as last read or stored."""
 
     def __len__(self) -> int:
         return len(self._plans)
@@ -225,7 +225,7 @@ class FollowedPlans:
         return sorted(self._plans.values(), key=lambda one: one.plan.submitted_at)
 
     async def refresh(self) -> None:
-        """Take in what an earlier gateway, or others, submitted, changed and ended; raises StoreError."""
+        """Apply what an earlier gateway, or others, submitted, changed and ended; raises StoreError."""
         stored = await self._context.database.read(open_revisions)
         for name in [*stored, *(self._plans.keys() - stored.keys())]:
             if self._revisions.get(name) != stored.get(name):
@@ -244,8 +244,8 @@ class FollowedPlans:
             return
         one = await self.add(plan, await self._context.database.read(load_stops, name))
         if before is not None:
-            is_anew = plan.state is PlanState.REPLANNING is not before.plan.state
-            one.seen_to = one.problem if is_anew else before.seen_to
+            is_new = plan.state is PlanState.REPLANNING is not before.plan.state
+            one.seen_to = one.problem if is_new else before.seen_to
         self.announce(one)
 
     async def add(self, plan: DrivenPlan, stops: Iterable[SentStop]) -> FollowedPlan:
@@ -271,7 +271,7 @@ class FollowedPlans:
         return one
 
     def outdated(self, name: str, text: str) -> OutdatedError:
-        """Return the refusal of a change, with the plan as it is."""
+        """Return the refusal of a change, with the present plan."""
         return OutdatedError(text, to_json(self.get(name).report()))
 
     async def find(self, name: str) -> FollowedPlan | None:
@@ -289,13 +289,13 @@ class FollowedPlans:
     async def change(
         self, one: FollowedPlan, state: PlanState, by: str, reason: str | None, **more: Any
     ) -> PlanReport:
-        """Store a plan in another state, and tell it; raises StoreError."""
+        """Store a plan in another state, and report it; raises StoreError."""
         after = one.plan.changed(state, by, self._context.clock.time(), reason, **more)
         await self._context.database.run(save_plan, after)
         return self.accept(one, after)
 
     def accept(self, one: FollowedPlan, after: DrivenPlan) -> PlanReport:
-        """Take over a plan that is stored as ``after``, and tell it."""
+        """Apply the stored plan ``after``, and report it."""
         one.plan = after
         if after.state in ENDS:
             self._plans.pop(after.name, None)
@@ -306,22 +306,22 @@ class FollowedPlans:
         return self.announce(one)
 
     def announce(self, one: FollowedPlan) -> PlanReport:
-        """Tell operators of a plan."""
+        """Report a plan to operators."""
         report = one.report()
         self._listeners.announce("plan", one.plan.name, to_json(report))
         return report
 
-    # --- what queues, robots and roads say ------------------------------------------------------------
+    # --- state of queues, robots and roads ------------------------------------------------------------
 
     async def follow(self, one: FollowedPlan) -> bool:
-        """Take in how the plan's queues, robots and roads are; false when nothing has changed."""
+        """Update the plan from its queues, robots and roads; return false when nothing has changed."""
         await self._context.registry.look_elsewhere(one.plan.staying)
         closed = None if self.planner is None else self.planner.closed
         present = [robot for robot in one.plan.staying if robot in self._context.robots]
         seen = [(robot, self.queue(robot), self._context.robots.get(robot).state) for robot in present]
         if one.seen is not None and _is_same(one.seen, (one.plan, closed, seen)):
             return False
-        await self._take_in(one, {robot: queue for robot, queue, _ in seen})
+        await self._update_progress(one, {robot: queue for robot, queue, _ in seen})
         reports = {robot: queue_report(queue, state) for robot, queue, state in seen}
         behind = {id(stop) for stop in committed_stops(one.progress)}
         ways = await self.closed_ways(one.plan.document)
@@ -331,7 +331,7 @@ class FollowedPlans:
         return True
 
     async def closed_ways(self, document: ConePlan) -> tuple[ClosedWay, ...]:
-        """Return the ways of a plan that lead along roads that are closed now."""
+        """Return the ways of a plan along roads that are closed now."""
         closed = None if self.planner is None else self.planner.closed
         if closed is None or not closed.closures:
             return ()
@@ -347,7 +347,7 @@ class FollowedPlans:
         return any(task.state is TaskState.FAILED for task in self.queue(robot).tasks)
 
     def paused(self, plan: DrivenPlan) -> list[str]:
-        """Return the robots of a plan that are heard, and have tasks in a queue that is paused."""
+        """Return the robots of a plan that are connected, and have tasks in a paused queue."""
         robots = self._context.robots
         here = [robot for robot in plan.staying if robot in robots and robots.get(robot).state not in AWAY]
         return [
@@ -357,7 +357,7 @@ class FollowedPlans:
         ]
 
     def still_held(self, plan: DrivenPlan) -> list[str]:
-        """Return the robots that are held for a plan, and by nobody else since."""
+        """Return the robots that are held for a plan, with no other pause since."""
         return [
             robot
             for robot, at in plan.held.items()
@@ -366,8 +366,8 @@ class FollowedPlans:
             and self.queue(robot).at == at
         ]
 
-    async def _take_in(self, one: FollowedPlan, found: dict[str, Queue]) -> None:
-        """Bring the progress up to what queues and the database hold."""
+    async def _update_progress(self, one: FollowedPlan, found: dict[str, Queue]) -> None:
+        """Update the progress from queues and the database."""
         progress = one.progress
         for robot, queue in found.items():
             progress.take_queue(queue_report(queue, self._context.robots.get(robot).state))
@@ -387,15 +387,15 @@ class FollowedPlans:
             progress.take_placement(report)
 
     async def _recalled(self, plan: DrivenPlan) -> FollowedPlan:
-        """Return a plan that ended, with what became of it."""
+        """Return an ended plan with its outcome."""
         stops = await self._context.database.read(load_stops, plan.name)
         one = FollowedPlan(plan, progress_from(plan, stops))
-        await self._take_in(one, {})
+        await self._update_progress(one, {})
         return one
 
 
 def unknown_plan(name: str) -> RefusedError:
-    """Return the refusal of what is asked of a plan that there is not."""
+    """Return the refusal of a request on a plan that does not exist."""
     return RefusedError(f"no plan {name!r} is driven; see get_plans")
 
 

@@ -1,4 +1,4 @@
-"""A cone plan as the gateway drives it: its state, tasks, problems and report; no I/O."""
+"""Cone plan as driven by the gateway: its state, tasks, problems and report; no I/O."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from ..traffic.site_roads import ClosedRoads
 
 ENDS = (PlanState.FINISHED, PlanState.CLEARED)
 LONGEST_PAUSE_REASON = 200
-"""characters of the reason that a queue is paused for."""
+"""most characters of the reason of a queue's pause."""
 
 
 @dataclass(frozen=True)
 class PlanTerms:
-    """What a plan was submitted with beside its document: what is known of its cones, and how to plan again.
+    """Terms of a plan, submitted with its document: data on its cones, and parameters of replanning.
 
     Distances are metres, ``stand`` (x, y) in the site frame.
     """
@@ -61,12 +61,12 @@ class PlanTerms:
 
     @property
     def off_standing_m(self) -> float:
-        """How far to keep from a robot that stands: half of what two keep that drive, for only one errs."""
+        """Distance to keep from a standing robot: half of that between driving ones, as only one errs."""
         return max(self.clearance_m, self.apart_m / 2)
 
 
 def plan_in(request: SubmitPlan) -> ConePlan:
-    """Return the plan of a request; raises RefusedError for what is none, or cannot be driven."""
+    """Return the plan of a request; raises RefusedError for an invalid one, or one that cannot be driven."""
     try:
         plan = plan_of_document(request.document)
     except PlanFileError as error:
@@ -75,7 +75,7 @@ def plan_in(request: SubmitPlan) -> ConePlan:
         raise RefusedError(f"submit_plan: a plan holds {MOST_CONES} cones and as many stops at most")
     if plan.crs:
         raise RefusedError(f"submit_plan: the plan is in {plan.crs}; give it in metres of the site frame")
-    # A desk leads ways round cones and standing robots, and counts them without these few decimetres.
+    # A desk routes around cones and standing robots, and reckons without these few decimetres.
     faults = check_plan(plan, led_round=True)
     if faults:
         more = f" and {len(faults) - 1} more" if len(faults) > 1 else ""
@@ -89,11 +89,10 @@ def plan_in(request: SubmitPlan) -> ConePlan:
 
 @dataclass(frozen=True)
 class DrivenPlan:
-    """A plan as it is stored. ``held`` robots wait for a plan of what is left, paused since that time (s).
+    """A plan as stored. ``held`` robots wait for a plan of the rest, paused since the given times (s).
 
-    That one is made so that cones that failed are tried by somebody again, if ``try_again``. By a
-    ``proposal`` robots come too near to one another ``meetings`` times, and ``closed`` ways of it lead along
-    closed roads.
+    With ``try_again`` that plan includes another attempt at failed cones. In a ``proposal`` robots come too
+    near to one another ``meetings`` times, and ``closed`` of its ways lead along closed roads.
     """
 
     name: str
@@ -135,7 +134,7 @@ class DrivenPlan:
 
 
 def progress_from(plan: DrivenPlan, stops: Iterable[SentStop]) -> PlanProgress:
-    """Return the progress of a plan of which ``stops`` are in queues, as if nothing had come of them."""
+    """Return the initial progress of a plan with ``stops`` in queues, before any outcome."""
     progress = PlanProgress(plan.name, plan.terms.cones, plan.submitted_at)
     progress.sent(stops)
     return progress
@@ -152,7 +151,7 @@ def stops_of(document: ConePlan, tasks: Mapping[str, Sequence[QueueTask]]) -> li
 
 
 def superseded(progress: PlanProgress, away: Iterable[str]) -> list[str]:
-    """Return the tasks whose place a plan of what is left takes: not those that are done or being done."""
+    """Return the tasks that a plan of the rest replaces: not those done or being done."""
     kept, gone = (TaskState.DONE, TaskState.CURRENT), set(away)
     return [
         task
@@ -166,7 +165,7 @@ def superseded(progress: PlanProgress, away: Iterable[str]) -> list[str]:
 def check_proposal(plan: DrivenPlan, progress: PlanProgress) -> ConePlan:
     """Return the proposed plan.
 
-    :raises RefusedError: where there is none, it counts on what is given up, or it would have a cone done
+    :raises RefusedError: where there is none, it relies on tasks that were given up, or it would do a cone
         twice.
     """
     if plan.proposal is None or plan.state is not PlanState.PROPOSED:
@@ -185,7 +184,7 @@ def check_proposal(plan: DrivenPlan, progress: PlanProgress) -> ConePlan:
 
 
 def problem_in_words(problem: PlanProblem) -> str:
-    """Return why a plan does not go on, for queues and logs."""
+    """Return why a plan does not continue, for queues and logs."""
     away = [f"{robot} is lost or offline" for robot in problem.away]
     failed = [f"cone {cone} failed{f': {why}' if why else ''}" for cone, why in problem.failed]
     closed = [f"the way of {one.robot} to {one.stop} leads along a closed road" for one in problem.closed]
@@ -248,16 +247,16 @@ def _problem_reports(problem: PlanProblem) -> list[PlanProblemReport]:
 
 @dataclass
 class FollowedPlan:
-    """A plan that is driven, and what is known of it."""
+    """A driven plan with its progress and problems."""
 
     plan: DrivenPlan
     progress: PlanProgress
     problem: PlanProblem = field(default_factory=PlanProblem)
     seen_to: PlanProblem = field(default_factory=PlanProblem)
-    """the problem that a new plan was made for, or was tried to be."""
+    """the problem for which a new plan was made, or tried."""
     seen: Any = None
     ended: set[str] = field(default_factory=set)
-    """the tasks that are known to be at their ends, from the database."""
+    """the tasks that have ended according to the database."""
 
     def report(self, *, documents: bool = False) -> PlanReport:
         """Return the report for operators, with the plan itself and its proposal if ``documents``."""
@@ -267,7 +266,7 @@ class FollowedPlan:
 def ways_along_closed_roads(
     plan: ConePlan, roads: ClosedRoads, closures: Mapping[str, ClosureReport]
 ) -> tuple[ClosedWay, ...]:
-    """Return the ways of ``plan`` that the gateway would not send; for a worker thread."""
+    """Return the ways of ``plan`` along closed roads, which would not be sent; for a worker thread."""
     found = []
     for one in plan.robots:
         for stop in () if one.lost else one.stops:

@@ -1,4 +1,4 @@
-"""What is left of a plan, planned again: its robots held, the new plan proposed, entered when confirmed."""
+"""Replanning the rest of a plan: its robots are held, the new plan is proposed, entered when confirmed."""
 
 from __future__ import annotations
 
@@ -41,16 +41,16 @@ from .following import FollowedPlans, save_plan
 
 log = logging.getLogger(__name__)
 
-# --- The plan of what is left in the making, in a worker thread ---
+# --- Computing the plan of the rest, in a worker thread ---
 
 Place = tuple[float, float]
 PATIENCE = 5.0
-"""times the seconds asked for that planning may take in all: ways and the search are timed apart."""
+"""factor on the requested seconds for planning in all: ways and the search are timed separately."""
 
 
 @dataclass(frozen=True)
 class ReplanGround:
-    """What plans are made on: ``placed`` cones, robots that are ``standing`` by name, roads; metres."""
+    """Data for planning: ``placed`` cones, ``standing`` robots by name, roads; metres."""
 
     terms: model.PlanTerms
     placed: list[Place]
@@ -59,7 +59,7 @@ class ReplanGround:
 
 
 class Replanning:
-    """One plan of what is left in the making; :meth:`run` is for a worker thread."""
+    """Computation of one plan of the rest; :meth:`run` is for a worker thread."""
 
     def __init__(self, plan: ConePlan, ground: ReplanGround, situation: PlanSituation) -> None:
         self._plan, self._ground, self._situation = plan, ground, situation
@@ -67,7 +67,7 @@ class Replanning:
         self._until = 0.0
 
     def cancel(self) -> None:
-        """Have :meth:`run` end soon."""
+        """Make :meth:`run` end soon."""
         self._cancelled.set()
 
     def run(self) -> ConePlan:
@@ -91,18 +91,18 @@ class Replanning:
         robots = _places(list(self._ground.standing.values()))
         room = np.repeat([terms.clearance_m, terms.off_standing_m], [len(cones), len(robots)])
         clear = ClearTravel(travel, job.places, np.concatenate([cones, robots]), room)
-        return CancellableTravel(clear, self._goes_on)
+        return CancellableTravel(clear, self._may_continue)
 
-    def _goes_on(self) -> bool:
+    def _may_continue(self) -> bool:
         return not self._cancelled.is_set() and time.monotonic() < self._until
 
     def _check(self) -> None:
-        if not self._goes_on():
+        if not self._may_continue():
             raise AssignmentCancelledError("The plan of what is left took too long, or was given up.")
 
 
 def count_meetings(plan: ConePlan, ground: ReplanGround) -> int:
-    """Return how often robots come too near to one another by ``plan``; for a worker thread."""
+    """Return how often robots come too near to one another in ``plan``; for a worker thread."""
     return len(meetings(plan, ground.terms.apart_m, ground.standing, ground.terms.off_standing_m))
 
 
@@ -110,26 +110,26 @@ def _places(places: Sequence[Place]) -> Floats:
     return np.array(places, dtype=np.float64).reshape(-1, 2)
 
 
-# --- Its robots held, the plan proposed, and confirmed ---
+# --- Holding the robots, proposing the plan, and confirming it ---
 
 
 class Stops(Protocol):
-    """What knows whether an emergency stop is in force."""
+    """State of emergency stops."""
 
     @property
     def in_force(self) -> bool:
-        """Whether it is."""
+        """Whether an emergency stop is in force."""
 
 
 class _Making(NamedTuple):
-    """What is being planned of what is left of a plan, as that was at ``revision``."""
+    """Computation in progress for the rest of a plan, as of ``revision``."""
 
     planning: Replanning
     revision: int
 
 
 class _Proposal(NamedTuple):
-    """A plan of what is left, where its robots come too near to one another, and its ways on closed roads."""
+    """A plan of the rest, the number of near encounters of its robots, and of its ways on closed roads."""
 
     document: ConePlan
     meetings: int
@@ -137,7 +137,7 @@ class _Proposal(NamedTuple):
 
 
 class Replanner:
-    """Plans what is left of plans; who calls :meth:`hold` or :meth:`confirm` holds the lock of ``plans``."""
+    """Replans the rest of plans; callers of :meth:`hold` and :meth:`confirm` hold the lock of ``plans``."""
 
     def __init__(
         self, context: QueueContext, editor: QueueEditor, plans: FollowedPlans, stops: Stops
@@ -150,9 +150,9 @@ class Replanner:
         self._tasks = BackgroundTasks()
 
     async def hold(self, one: model.FollowedPlan, operator: str, *, try_again: bool) -> PlanReport:
-        """Hold the robots of a plan, to have what is left planned by the gateway that leads.
+        """Hold the robots of a plan, so that the leading gateway plans the rest.
 
-        :raises RefusedError: when that is under way, or no robot is left; StoreError.
+        :raises RefusedError: when this is in progress already, or no robot is left; StoreError.
         """
         for _ in range(TRIES - 1):
             with contextlib.suppress(OutdatedError):
@@ -195,7 +195,7 @@ class Replanner:
         return self._plans.announce(one)
 
     def begin(self, one: model.FollowedPlan) -> None:
-        """Begin to plan what is left of a plan that is stored as being planned again, unless it has begun."""
+        """Begin to plan the rest of a plan that is stored as REPLANNING, unless already begun."""
         plan, robots = one.plan, self._context.robots
         if plan.name in self._making:
             if self._making[plan.name].revision == plan.revision:
@@ -218,12 +218,12 @@ class Replanner:
         self._tasks.start(self._make(plan.name, making, ground))
 
     def cancel(self, plan: str) -> None:
-        """Let nothing come of what is being planned of what is left of a plan, and have that end soon."""
+        """Cancel the planning of the rest of a plan; its result is dropped."""
         if (making := self._making.pop(plan, None)) is not None:
             making.planning.cancel()
 
     async def confirm(self, one: model.FollowedPlan, operator: str, override: str | None) -> PlanReport:
-        """Enter the tasks of the proposed plan in place of what is left.
+        """Enter the tasks of the proposed plan in place of the remaining ones.
 
         :raises RefusedError: where there is no proposal, or its tasks cannot be entered; StoreError.
         """
@@ -251,7 +251,7 @@ class Replanner:
         away = [robot for robot in away if robot in self._context.robots]
         entries = QueueEntries(
             tasks,
-            # What a robot has begun or done since is not given to another one.
+            # A task that a robot has begun or done since is not given to another one.
             seen={robot: self._plans.queue(robot) for robot in (*tasks, *away)},
             resumed=self._plans.still_held(plan),
             away=away,
@@ -270,8 +270,8 @@ class Replanner:
         return self._plans.announce(one)
 
     async def finish(self) -> None:
-        """Wait for what is being planned, after it was cancelled: the gateway ends."""
-        # It stays stored as being planned again: the next gateway begins that again.
+        """Cancel all planning and wait for its end: the gateway ends."""
+        # The plans stay stored as REPLANNING: the next gateway begins again.
         for plan in list(self._making):
             self.cancel(plan)
         await self._tasks.wait()
@@ -284,7 +284,7 @@ class Replanner:
         except (AssignmentError, RoadsError, RefusedError) as error:
             await self._made(plan, making, None, str(error))
         except Exception:
-            # Else the robots would stay held, and nobody would hear why.
+            # Else the robots would stay held without a reported reason.
             log_unforeseen(log, f"plan of what is left of {plan}")
             await self._made(plan, making, None, "it could not be planned; see the gateway's log")
         else:
@@ -306,12 +306,12 @@ class Replanner:
                     return
                 await self._propose(one, proposal)
         except (RefusedError, StoreError) as error:
-            # It is stored as being planned again, and is by whoever leads; or somebody has ended that.
+            # It is stored as REPLANNING: the leading gateway plans again, unless an operator ended that.
             self._making.pop(plan, None)
             log.error("plan %s: %s", plan, error)
 
     async def _propose(self, one: model.FollowedPlan, proposal: _Proposal) -> None:
-        """Store a proposal, and confirm it where that was chosen and nothing speaks against it."""
+        """Store a proposal, and confirm it where that was chosen and it has no faults."""
         await self._plans.change(
             one,
             PlanState.PROPOSED,

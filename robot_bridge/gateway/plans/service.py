@@ -1,4 +1,4 @@
-"""Service of cone plans: submitted, watched, paused and resumed, cleared, and what is asked of their rest."""
+"""Service of cone plans: submitted, followed, paused and resumed, cleared, and replanned."""
 
 from __future__ import annotations
 
@@ -39,28 +39,28 @@ from .replanning import Replanner, Stops
 log = logging.getLogger(__name__)
 
 MOST_PLANS = 50
-"""plans that are driven at the same time."""
+"""most plans that are driven at the same time."""
 
 
 class Leadership(Protocol):
-    """What knows whether this gateway does what is to be done once per database."""
+    """Leadership: whether this gateway does the work that must be done once per database."""
 
     @property
     def leads(self) -> bool:
-        """Whether it does."""
+        """Whether this gateway leads."""
 
 
 class SoleLeadership:
-    """That of a gateway that has its database alone."""
+    """Leadership of the only gateway on a database."""
 
     leads = True
 
 
 class PlanService:
-    """The plans that robots drive. Each method returns when what it changed is stored.
+    """The plans that robots drive. Each method returns when its change is stored.
 
-    Operators may ask any gateway of the fleet. What plans do by themselves the one does that leads; whatever
-    it leaves when it dies another one finds stored, and goes on.
+    Operators may send requests to any gateway of the fleet. The leading one does the automatic steps of
+    plans; when it dies another one continues from the stored state.
     """
 
     def __init__(
@@ -82,7 +82,7 @@ class PlanService:
         self._began = context.clock.steady()
 
     async def restore(self) -> None:
-        """Go on with the plans that an earlier gateway left."""
+        """Continue the plans that an earlier gateway left."""
         async with self._plans.lock:
             await self._plans.refresh()
             for one in self._plans.all():
@@ -90,15 +90,15 @@ class PlanService:
 
     @handles(SubmitPlan)
     async def submit(self, request: SubmitPlan, operator: str) -> PlanReport:
-        """Enter all tasks of a plan, and follow it; the same again changes nothing.
+        """Enter all tasks of a plan, and follow it; a repetition changes nothing.
 
-        :raises MessageError: for a document that is no plan; RefusedError and OutdatedError for what cannot
-            be entered, and StoreError. Nothing is entered then.
+        :raises MessageError: for a document that is no plan; RefusedError and OutdatedError for tasks that
+            cannot be entered, and StoreError. Nothing is entered then.
         """
         document = await asyncio.to_thread(plan_in, request)
         async with self._plans.lock:
             for _ in range(TRIES - 1):
-                # Another gateway may have entered a plan since that was looked at.
+                # Another gateway may have entered a plan since they were read.
                 with contextlib.suppress(PlanMovedError):
                     return await self._enter(request, document, operator)
             return await self._enter(request, document, operator)
@@ -126,7 +126,7 @@ class PlanService:
         try:
             await self._editor.enter(entries, operator, also)
         except (OutdatedError, StoreError):
-            # Asked at two gateways at once, one of them has entered it.
+            # Of two simultaneous requests at two gateways, one has entered it.
             await self._plans.refresh()
             if request.plan not in self._plans:
                 raise
@@ -135,7 +135,7 @@ class PlanService:
 
     @handles(GetPlans)
     async def read(self, request: GetPlans) -> Plans:
-        """Return plans as they are; raises RefusedError for one that is not known."""
+        """Return the present plans; raises RefusedError for an unknown one."""
         async with self._plans.lock:
             await self._plans.refresh()
         if request.plan is not None:
@@ -144,13 +144,13 @@ class PlanService:
                 raise unknown_plan(request.plan)
             return Plans([one.report(documents=request.documents)])
         ended = await self._plans.newest_ended(request.ended)
-        # What is driven is read last, so that no newer report of it can be on its way before this answer.
+        # Driven plans are read last, so that no newer report of one can be sent before this answer.
         followed = [*self._plans.all(), *(one for one in ended if one.plan.name not in self._plans)]
         return Plans([one.report(documents=request.documents) for one in followed])
 
     @handles(PausePlan)
     async def pause(self, request: PausePlan, operator: str) -> PlanReport:
-        """Send the robots of a plan nothing more; first that, then it is stored that the plan is paused."""
+        """Pause the robots' queues first, then store the plan as paused."""
         if request.plan not in self._plans:
             async with self._plans.lock:
                 await self._plans.refresh()
@@ -162,17 +162,17 @@ class PlanService:
                 try:
                     await self._editor.pause(PauseQueue(robot, why[:LONGEST_PAUSE_REASON]), operator)
                 except BridgeError as error:
-                    # The others are to stand all the same.
+                    # The others must stand all the same.
                     failed.append(error)
         if failed:
             raise failed[0]
-        # To hold is never refused, whatever another gateway has made of the plan meanwhile.
+        # A pause is never refused, whatever another gateway has changed in the plan meanwhile.
         for _ in range(TRIES - 1):
             with contextlib.suppress(OutdatedError):
-                return await self._note_pause(request, operator)
-        return await self._note_pause(request, operator)
+                return await self._record_pause(request, operator)
+        return await self._record_pause(request, operator)
 
-    async def _note_pause(self, request: PausePlan, operator: str) -> PlanReport:
+    async def _record_pause(self, request: PausePlan, operator: str) -> PlanReport:
         async with self._changing(request.plan) as one:
             self._replanner.cancel(request.plan)
             return await self._plans.change(
@@ -181,7 +181,7 @@ class PlanService:
 
     @handles(ResumePlan)
     async def resume(self, request: ResumePlan, operator: str) -> PlanReport:
-        """Let the robots go on that are paused."""
+        """Resume the paused robots."""
         async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             if one.plan.state not in (PlanState.PAUSED, PlanState.DRIVEN):
@@ -193,11 +193,11 @@ class PlanService:
                 raise RefusedError(
                     f"no queue of plan {request.plan!r} is paused, or a plan of what is left is needed"
                 )
-            return await self._let_go_on(one, robots, operator)
+            return await self._resume(one, robots, operator)
 
     @handles(Replan)
     async def replan(self, request: Replan, operator: str) -> PlanReport:
-        """Hold the robots and begin to plan what is left."""
+        """Hold the robots and begin to plan the rest."""
         async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             report = await self._replanner.hold(one, operator, try_again=request.try_again)
@@ -206,14 +206,14 @@ class PlanService:
 
     @handles(ConfirmReplan)
     async def confirm(self, request: ConfirmReplan, operator: str) -> PlanReport:
-        """Enter the tasks of the proposed plan in place of what is left."""
+        """Enter the tasks of the proposed plan in place of the remaining ones."""
         async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             return await self._replanner.confirm(one, operator, request.override)
 
     @handles(DiscardReplan)
     async def discard(self, request: DiscardReplan, operator: str) -> PlanReport:
-        """Give up the plan of what is left; robots held for it go on."""
+        """Discard the plan of the rest; robots held for it continue."""
         async with self._changing(request.plan, request.revision) as one:
             self._check_no_emergency()
             if one.plan.state not in (PlanState.REPLANNING, PlanState.PROPOSED):
@@ -221,11 +221,11 @@ class PlanService:
                     f"plan {request.plan!r} has no plan of what is left; there is nothing to discard"
                 )
             self._replanner.cancel(request.plan)
-            return await self._let_go_on(one, self._plans.still_held(one.plan), operator)
+            return await self._resume(one, self._plans.still_held(one.plan), operator)
 
     @handles(ClearPlan)
     async def clear(self, request: ClearPlan, operator: str) -> PlanReport:
-        """Follow a plan no more; its tasks stay in the queues."""
+        """Stop following a plan; its tasks stay in the queues."""
         async with self._plans.lock:
             await self._plans.refresh()
             if request.plan not in self._plans and (known := await self._plans.find(request.plan)):
@@ -237,7 +237,7 @@ class PlanService:
 
     @property
     def goes_on(self) -> bool:
-        """Whether there are plans: they go on by what their robots do."""
+        """Whether there are plans: they progress with their robots."""
         return bool(self._plans.all())
 
     async def follow(self) -> None:
@@ -245,19 +245,19 @@ class PlanService:
         async with self._plans.lock:
             await self._plans.refresh()
         for one in self._plans.all():
-            # What nobody foresaw of one plan must not keep the others from being followed.
+            # An unforeseen error in one plan must not prevent following the others.
             with log_and_continue(log, f"plan {one.plan.name}", except_for=StoreError):
                 async with self._plans.lock:
                     if one.plan.name in self._plans:
-                        await self._look(self._plans.get(one.plan.name))
+                        await self._check(self._plans.get(one.plan.name))
 
     async def finish(self) -> None:
-        """End what is being planned: the gateway ends."""
+        """Cancel all planning: the gateway ends."""
         await self._replanner.finish()
 
     # --- following ------------------------------------------------------------------------------------
 
-    async def _look(self, one: FollowedPlan) -> None:
+    async def _check(self, one: FollowedPlan) -> None:
         if not self._leadership.leads:
             self._replanner.cancel(one.plan.name)
             if await self._plans.follow(one):
@@ -269,7 +269,7 @@ class PlanService:
     async def _carry_on(self, one: FollowedPlan) -> None:
         self._keep_planning(one)
         if self._stops.in_force and (one.plan.by_itself or one.plan.state is PlanState.DRIVEN):
-            # Nothing goes on by itself after an emergency stop: somebody has to resume.
+            # Nothing continues by itself after an emergency stop: an operator must resume.
             state = PlanState.PAUSED if one.plan.state is PlanState.DRIVEN else one.plan.state
             await self._plans.change(one, state, GATEWAY, "an emergency stop", by_itself=False)
         plan = one.plan
@@ -286,27 +286,27 @@ class PlanService:
                 await self._replanner.hold(one, GATEWAY, try_again=False)
                 self._keep_planning(one)
             except (OutdatedError, PlanMovedError):
-                # Its queues move all the time, or another gateway was first: it is looked at again.
+                # Its queues change all the time, or another gateway was first: it is checked again.
                 one.seen_to = before
             except RefusedError as error:
                 await self._plans.change(one, PlanState.DRIVEN, GATEWAY, str(error))
 
     def _keep_planning(self, one: FollowedPlan) -> None:
-        """Have what is left of a plan planned while it is stored as being planned, and only then."""
+        """Plan the rest of a plan while it is stored as REPLANNING, and only then."""
         if self._leadership.leads and one.plan.state is PlanState.REPLANNING:
             self._replanner.begin(one)
         else:
             self._replanner.cancel(one.plan.name)
 
     def _is_settling(self) -> bool:
-        """Return whether the gateway has only begun: robots that drive on are not heard of yet."""
+        """Return whether the gateway has just begun: robots that drive on may not have reported yet."""
         return self._context.clock.steady() < self._began + self._context.site.report.lost_after
 
     # --- small parts ----------------------------------------------------------------------------------
 
     @contextlib.asynccontextmanager
     async def _changing(self, name: str, revision: int | None = None) -> AsyncIterator[FollowedPlan]:
-        """Hold a plan as it is stored, at a ``revision`` if one is given.
+        """Hold the lock with a plan as stored, at a ``revision`` if one is given.
 
         :raises OutdatedError: where it is at another one, or is changed at another gateway meanwhile;
             RefusedError where it is not driven, and StoreError.
@@ -321,7 +321,7 @@ class PlanService:
                 await self._plans.refresh()
                 raise self._plans.outdated(name, str(error)) from None
 
-    async def _let_go_on(self, one: FollowedPlan, robots: Sequence[str], operator: str) -> PlanReport:
+    async def _resume(self, one: FollowedPlan, robots: Sequence[str], operator: str) -> PlanReport:
         now = self._context.clock.time()
         after = one.plan.changed(PlanState.DRIVEN, operator, now, None, proposal=None, held={})
         entries = QueueEntries(dict.fromkeys(robots), resumed=robots)

@@ -502,14 +502,14 @@ async def test_a_server_keeps_it_as_well(server_drive):
 async def test_what_nobody_foresaw_of_one_plan_keeps_no_other_from_being_followed(drive, monkeypatch, caplog):
     await drive.submit(plan_of(["r1"], ["c1"]), "first")
     await drive.submit(plan_of(["r2"], ["c2"]), "second")
-    follow = drive.plans._look
+    follow = drive.plans._check
 
     async def fails_of_the_first(one):
         if one.plan.name == "first":
             raise ZeroDivisionError
         await follow(one)
 
-    monkeypatch.setattr(drive.plans, "_look", fails_of_the_first)
+    monkeypatch.setattr(drive.plans, "_check", fails_of_the_first)
     await drive.go(times=3)
     assert (await drive.seen("second")).state is PlanState.FINISHED
     assert (await drive.seen("first")).state is PlanState.DRIVEN and "plan first" in caplog.text
