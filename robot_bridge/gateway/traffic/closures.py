@@ -1,4 +1,4 @@
-"""Closures of roads, and detours of robots round them."""
+"""Closures of roads, and detours of robots around them."""
 
 from __future__ import annotations
 
@@ -36,16 +36,16 @@ from .road_planning import RoadPlanner
 from .robot_paths import DrivenTask, RobotPath, RobotPaths
 from .site_roads import ClosedRoads, RoadStretch
 
-# --- Another way for robots whose road was closed; where there is none they stop, or operators are told
+# --- Detours for robots on a closed road; without one they stop, or operators are notified
 
 log = logging.getLogger(__name__)
 
 
 class DetourQueues(Protocol):
-    """The robots' queues, as far as another way concerns them."""
+    """The robots' queues, as far as detours need them."""
 
     async def redirect(self, robot: str, path: SetPath, operator: str, reason: str) -> CommandReport | None:
-        """Send a task of a queue by another path; None where the robot's task is none of a queue."""
+        """Send a task of a queue by another path; None where the robot's task is not of a queue."""
 
     async def stop_over(
         self, robot: str, first: list[Point], rest: list[Point], other: str, by: str, also: AlsoOf
@@ -53,17 +53,17 @@ class DetourQueues(Protocol):
         """Send the robot along ``first``, and along ``rest`` for its task once ``other`` has passed."""
 
     def current(self, robot: str) -> QueueTask | None:
-        """Return the task of its queue that the robot does, None where it does none of it."""
+        """Return the task of its queue that the robot is doing, None if it is doing none."""
 
     def to_the_end(self, task: QueueTask, left: list[Point]) -> list[Point]:
-        """Return what is ``left`` of the path that was sent for a task, up to the task's place."""
+        """Return the rest, ``left``, of the path that was sent for a task, extended to the task's place."""
 
     def schedule(self, robot: str) -> None:
-        """Look soon whether a robot's queue has something to send."""
+        """Schedule a check of a robot's queue."""
 
 
 class Detours:
-    """Finds and sends other ways; the site's settings say whether a robot without another way stops."""
+    """Plans and sends detours; by the site's settings a robot without a detour stops or drives on."""
 
     def __init__(
         self,
@@ -83,11 +83,11 @@ class Detours:
         self._later: set[str] = set()
 
     def restore(self) -> None:
-        """Have all robots led round later: nobody knows which of them an earlier gateway has come to."""
+        """Mark all robots for a later detour: it is unknown which of them an earlier gateway has sent one."""
         self._later = set(self._ways.names())
 
     def placed(self) -> set[str]:
-        """Return the robots that were to be led round later and can be now; each of them once."""
+        """Return the robots marked for a later detour that can be sent one now; each of them once."""
         placed = {robot for robot in self._later if self._ways.is_placed(robot)}
         self._later -= placed
         return placed
@@ -95,10 +95,10 @@ class Detours:
     async def around(
         self, closure: str, reason: str | None, operator: str, only: Collection[str] | None = None
     ) -> list[messages.ReplannedRobot]:
-        """Send every robot, or ``only`` some, whose way leads along the road of ``closure`` another way.
+        """Send a detour to every robot, or ``only`` some, with a path along the road of ``closure``.
 
-        The road is closed by now. A robot of which it is not known where it is now is led round later, as
-        :meth:`placed` tells: another way from where it was would lead it back.
+        The road is closed already. A robot with an unknown present position is sent one later, as returned by
+        :meth:`placed`: a detour from its past position would lead it back.
         """
         if self._roads is None:
             return []
@@ -110,11 +110,11 @@ class Detours:
         return sorted(found, key=lambda robot: robot.robot)
 
     def queued(self, way: RobotPath) -> QueueTask | None:
-        """Return the task of the robot's queue whose path this way is, None where it is no such path."""
+        """Return the task of the robot's queue that has this path, None where it is not of the queue."""
         return self.queues.current(way.robot) if isinstance(way.task, SetPath) else None
 
     def goal(self, way: RobotPath) -> Point:
-        """Return where the robot's task ends."""
+        """Return the end of the robot's task."""
         task = self.queued(way)
         return way.points[-1] if task is None else (task.x, task.y)
 
@@ -123,13 +123,13 @@ class Detours:
     ) -> str:
         """Send a robot along ``path``; return the id of the command that it then carries out.
 
-        A target stays the task that it is: the robot is told the way to it as if it had asked. ``also`` is
-        written in the same transaction. Raises RefusedError, as when the robot was told otherwise in the
-        meantime or is to stop, and StoreError.
+        A target stays the robot's task: the robot is sent the path to it as if it had requested that.
+        ``also`` is written in the same transaction. Raises RefusedError, as when the robot was sent another
+        command meanwhile or must stop, and StoreError.
         """
         if isinstance(way.task, SetPosEnd) and way.command != NOTHING:
             more = None if also is None else also(way.command)
-            await self._commands.lead(way.robot, way.command, path, partial(_tell, way.robot, path, more))
+            await self._commands.lead(way.robot, way.command, path, partial(_write, way.robot, path, more))
             self._ways.note_reported(way.robot, way.task, path)
             return way.command
         done = await self.queues.redirect(way.robot, path, operator, reason)
@@ -139,7 +139,7 @@ class Detours:
         return done.command
 
     async def stop(self, robot: str, reason: str, operator: str) -> str:
-        """Tell a robot to give up its task; return the id of the command."""
+        """Send a robot an Abort of its task; return the id of the command."""
         report = await self._orders.abort(AbortTask(str(uuid.uuid4()), robot, reason=reason), operator)
         return report.command
 
@@ -148,7 +148,7 @@ class Detours:
         for way in (one.way() for one in underway):
             points = way.points
             if not way.known:
-                # It may have its own idea; the shortest way along the roads is the likeliest.
+                # It plans its own path; the shortest one along the roads is the likeliest.
                 planned = roads.path_with_open(closure, points[0], points[-1])
                 points = points if planned is None else list(planned.points)
             if roads.closed.along(points, [closure]) or roads.closed.at(points[-1]) == closure:
@@ -182,7 +182,7 @@ class Detours:
             planned = self._roads.path(way.points[0], self.goal(way))
         except RefusedError as error:
             return None, str(error)
-        # Straight over the fields is no other way.
+        # A straight line off the roads is no detour.
         return (None, planned.note) if planned.note else (list(planned.points), "")
 
     async def _without_way(self, way: RobotPath, why: str, operator: str) -> messages.ReplannedRobot:
@@ -193,24 +193,24 @@ class Detours:
         return messages.ReplannedRobot(way.robot, "stopped", f"{way.robot} was stopped: {why}", command)
 
 
-def _tell(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:
+def _write(robot: str, path: SetPath, more: Also | None, connection: Connection) -> None:
     requests.add_answers(connection, [(robot, path)])
     if more is not None:
         more(connection)
 
 
-# --- Roads that operators closed: stored, kept closed for every way that is found, opened again in time
+# --- Roads closed by operators: stored, closed to all path planning, opened again in time
 
 GATEWAY = "gateway"
 MOST_CONSIDERED = 16
-"""paths that are remembered until they are sent."""
+"""most checked paths that are kept until they are sent."""
 
 
 class ClosureService:
-    """Every closure that is in force. ``roads`` is None where the gateway plans without roads.
+    """The closures in force. ``roads`` is None where the gateway plans without roads.
 
-    Every operator hears of it through ``listeners``; a closure is stored before that, and in force before
-    any robot is sent another way.
+    Every operator is notified through ``listeners``; a closure is stored before that, and in force before
+    any robot is sent a detour.
     """
 
     def __init__(
@@ -233,16 +233,16 @@ class ClosureService:
         self._considered: deque[tuple[SetPath, ClosedRoads, str | None]] = deque(maxlen=MOST_CONSIDERED)
         self._lock = asyncio.Lock()
         self._doubtful = False
-        """whether a closure may be stored, or ended, without being known here."""
+        """whether a closure may have been stored, or ended, without being known here."""
 
     async def restore(self) -> None:
-        """Close what an earlier gateway left closed."""
+        """Close the roads that an earlier gateway left closed."""
         self._rows = {row.id: row for row in await self._database.run(closures.in_force)}
         self._detours.restore()
         await self._enforce()
 
     async def site_changed(self) -> None:
-        """Find the closed roads on the network of the new publication."""
+        """Match the closures to the network of the new publication."""
         if self._roads is None:
             return
         async with self._lock:
@@ -263,12 +263,12 @@ class ClosureService:
 
     @handles(messages.CloseRoad)
     async def close(self, request: messages.CloseRoad, operator: str) -> messages.RoadClosed:
-        """Close a road and send the robots that it concerns another way; the same again changes nothing.
+        """Close a road and send the affected robots a detour; a repetition changes nothing.
 
-        :raises RefusedError: when no road is there; StoreError when it cannot be stored, and is not closed.
+        :raises RefusedError: when there is no road; StoreError when it cannot be stored, and is not closed.
         """
         roads = self._need_roads()
-        async with self._looked_up():
+        async with self._reloaded():
             known = await self._database.run(closures.find, request.closure)
             if known is not None:
                 return messages.RoadClosed(self._reported(known))
@@ -289,19 +289,19 @@ class ClosureService:
 
     @property
     def goes_on(self) -> bool:
-        """Whether it has to be looked up what is stored."""
+        """Whether the stored closures must be read again."""
         return self._doubtful
 
     async def follow(self) -> None:
-        """Take in what other gateways of the fleet closed and opened; raises StoreError."""
+        """Apply the closures and openings by other gateways of the fleet; raises StoreError."""
         stored = await self._database.read(closures.in_force)
         if self._doubtful or {row.id for row in stored} != self._rows.keys():
             self._doubtful = True
-            async with self._looked_up():
+            async with self._reloaded():
                 return
 
     async def catch_up(self) -> None:
-        """Lead those robots round that could not be led when their road was closed, as Detours tells."""
+        """Send detours to the robots that could not be sent one when their road was closed."""
         placed = self._detours.placed()
         if not placed:
             return
@@ -310,11 +310,11 @@ class ClosureService:
 
     @handles(messages.OpenRoad)
     async def open(self, request: messages.OpenRoad, operator: str) -> messages.ClosureReport:
-        """Open a road; the same again changes nothing.
+        """Open a road; a repetition changes nothing.
 
         :raises RefusedError: when it was never closed; StoreError when it cannot be stored, and stays closed.
         """
-        async with self._looked_up():
+        async with self._reloaded():
             known = await self._database.run(closures.find, request.closure)
             if known is None:
                 raise RefusedError(f"no road was closed as {request.closure!r}; see get_closures")
@@ -323,14 +323,14 @@ class ClosureService:
             return await self._open(known, operator)
 
     async def expire(self) -> None:
-        """Open the roads that were closed until now."""
+        """Open the roads with an expired closure."""
         now = self._clock.time()
-        async with self._looked_up():
+        async with self._reloaded():
             for row in [row for row in self._rows.values() if row.until is not None and row.until <= now]:
                 await self._open(row, GATEWAY)
 
     async def prepare(self, message: Command) -> None:
-        """Find out in a thread what :meth:`check` asks about a path: for a long one that takes a while."""
+        """Check a path in a thread, for :meth:`check`: a long one takes a while."""
         if self._roads is not None and self._rows and isinstance(message, SetPath):
             closed = self._roads.closed
             found = await asyncio.to_thread(_on_the_way, closed, message)
@@ -359,8 +359,8 @@ class ClosureService:
         return _on_the_way(closed, path)
 
     @contextlib.asynccontextmanager
-    async def _looked_up(self) -> AsyncIterator[None]:
-        """Hold the lock, with the closures as they are stored; raises StoreError."""
+    async def _reloaded(self) -> AsyncIterator[None]:
+        """Hold the lock, with the closures as stored; raises StoreError."""
         async with self._lock:
             if self._doubtful:
                 stored = {row.id: row for row in await self._database.run(closures.in_force)}
@@ -373,7 +373,7 @@ class ClosureService:
             yield
 
     async def _put(self, rows: Sequence[ClosureRow]) -> None:
-        """Keep roads closed whose closures are stored, and tell of all that are."""
+        """Enforce stored closures, and notify operators of all closures."""
         self._rows.update({row.id: row for row in rows})
         await self._enforce()
         self._announce()
@@ -435,7 +435,7 @@ class ClosureService:
 
 
 def _on_the_way(closed: ClosedRoads, path: SetPath) -> str | None:
-    """Return the closure whose road ``path`` leads along, or ends on."""
+    """Return the closure of a road that ``path`` leads along, or ends on."""
     along = closed.along(path.points)
     return along[0] if along else closed.at(path.points[-1])
 

@@ -1,4 +1,4 @@
-"""Conflicts: when and where two robots come nearer than their sizes and a margin allow."""
+"""Conflicts: times and places where two robots come nearer than their sizes and a margin allow."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-# --- A robot's way in space and time ---
+# --- Movement of a robot in space and time ---
 
 Floats = NDArray[np.float64]
 
@@ -21,7 +21,7 @@ class Movement:
     """``robot`` is at ``points[k]``, (n, 2) metres in the site frame, at ``times[k]``, (n,) seconds.
 
     Before the first time it stands at the first point, after the last time at the last. Between two it drives
-    at one speed. ``times`` do not fall. ``radius`` is metres: of a circle that the robot is within.
+    at constant speed. ``times`` do not decrease. ``radius``, in metres, is that of a circle around the robot.
     """
 
     robot: str
@@ -31,20 +31,20 @@ class Movement:
 
     @cached_property
     def stands(self) -> bool:
-        """Whether it goes nowhere."""
+        """Whether it does not move."""
         return not bool((np.abs(self.points - self.points[0]) > 1e-9).any())
 
     @property
     def ends(self) -> float:
-        """When it has come to its end."""
+        """Time at which it reaches its end."""
         return float(self.times[-1])
 
     def at(self, times: Any) -> Floats:
-        """Return where it is at ``times``, (m,) seconds, as (m, 2)."""
+        """Return its positions at ``times``, (m,) seconds, as (m, 2)."""
         return np.column_stack([np.interp(times, self.times, self.points[:, k]) for k in (0, 1)])
 
     def times_around(self, begins: float, ends: float) -> Floats:
-        """Return its times in a span, with the last before it and the first after it where there are any."""
+        """Return its times in a span, with the last before and the first after it, if any."""
         first = np.searchsorted(self.times, begins, side="right") - 1
         last = np.searchsorted(self.times, ends, side="left") + 1
         return self.times[max(first, 0) : last]
@@ -54,7 +54,7 @@ class Movement:
         return float(np.interp(time, self.times, self._stations))
 
     def time_at(self, station: float) -> float:
-        """Return when it comes to ``station`` metres along its way."""
+        """Return the time at which it reaches ``station`` metres along its path."""
         return float(np.interp(station, self._stations, self.times))
 
     @cached_property
@@ -62,7 +62,7 @@ class Movement:
         return _stations(self.points)
 
     def waiting(self, station: float, seconds: float) -> Movement:
-        """Return the movement that stands ``seconds`` at ``station`` metres along its way."""
+        """Return the movement with a stop of ``seconds`` at ``station`` metres along its path."""
         along = self._stations
         station = float(np.clip(station, 0.0, along[-1]))
         at = float(np.interp(station, along, self.times))
@@ -78,7 +78,7 @@ class Movement:
 
 
 def standing_movement(robot: str, place: tuple[float, float], now: float, radius: float) -> Movement:
-    """Return the movement of a robot that stands where it is."""
+    """Return the movement of a standing robot."""
     return Movement(robot, np.array([place], dtype=np.float64), np.array([now]), radius)
 
 
@@ -92,21 +92,21 @@ def _stations(points: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
 
 
-# --- Who comes near whom at all: boxes of where each is in one stretch of time after the other ---
-# It spares looking closely at robots that pass the same places at other times, as nearly all of them do.
+# --- Selection of pairs that may come near at all: bounding boxes of each in consecutive time windows ---
+# It saves the exact check of robots that pass the same places at other times, as nearly all do.
 
 Ints = NDArray[np.int64]
 
 _WINDOW = 5.0
-"""seconds of a stretch: about as long as two robots take to pass one another."""
+"""seconds of a window: about as long as two robots take to pass one another."""
 _MOST_WINDOWS = 256
-"""Stretches at most: where some drive for hours, each is longer."""
+"""Most windows: where some robots drive for hours, each window is longer."""
 _SLACK = 1e-6
-"""Metres by which boxes are larger than they need be, for the rounding of what made them."""
+"""Metres added to boxes for rounding errors."""
 
 
 class NearPair(NamedTuple):
-    """Two movements, by their numbers, that may be near one another between two times and at no other."""
+    """Two movements, by index, that may be near one another only between two times."""
 
     one: int
     two: int
@@ -115,7 +115,7 @@ class NearPair(NamedTuple):
 
 
 class TimeWindows:
-    """Time from ``now`` on in stretches, the last of them without an end."""
+    """Time from ``now`` on in windows, the last of them without an end."""
 
     def __init__(self, movements: Sequence[Movement], now: float) -> None:
         span = max((movement.ends for movement in movements), default=now) - now
@@ -123,13 +123,13 @@ class TimeWindows:
         self._begins = now + max(span, 0.0) * np.arange(count) / count
 
     def boxes(self, movement: Movement, more: float) -> Floats:
-        """Return where the movement is in each stretch as x_min, y_min, x_max, y_max, (n, 4), with ``more``
-        metres round it."""
+        """Return the bounding box of the movement in each window as x_min, y_min, x_max, y_max, (n, 4), with
+        ``more`` metres around it."""
         times, points = movement.times, movement.points
         at = movement.at(self._begins)
         low = np.minimum(at, np.concatenate([at[1:], points[-1:]]))
         high = np.maximum(at, np.concatenate([at[1:], points[-1:]]))
-        # The points in between belong to the stretch that they are reached in.
+        # The points in between belong to the window in which they are reached.
         of = np.searchsorted(self._begins, times, side="right") - 1
         inner = of >= 0
         if inner.any():
@@ -139,7 +139,7 @@ class TimeWindows:
         return np.hstack([low - more - _SLACK, high + more + _SLACK])
 
     def span(self, first: int, last: int) -> tuple[float, float]:
-        """Return when stretch ``first`` begins and stretch ``last`` ends."""
+        """Return the begin of window ``first`` and the end of window ``last``."""
         ends = self._begins[last + 1] if last + 1 < len(self._begins) else math.inf
         return float(self._begins[first]), float(ends)
 
@@ -153,7 +153,7 @@ def near_pairs(movements: Sequence[Movement], margin: float, now: float) -> list
     found = [(*_touching(at), window) for window, at in enumerate(boxes)]
     one, two = (np.concatenate([pairs[k] for pairs in found]) for k in (0, 1))
     window = np.repeat(np.arange(len(found)), [len(pairs[0]) for pairs in found])
-    # The windows rise, so that a pair's first is where it comes first, and its last where it comes last.
+    # The windows ascend, so that a pair's first window is its first entry, and its last the last.
     key = one * len(movements) + two
     _, first = np.unique(key, return_index=True)
     last = len(key) - 1 - np.unique(key[::-1], return_index=True)[1]
@@ -166,7 +166,7 @@ def _touching(boxes: Floats) -> tuple[Ints, Ints]:
     """Return the pairs of ``boxes``, (n, 4), that touch, the lower number first."""
     order = np.argsort(boxes[:, 0], kind="stable")
     left = boxes[order, 0]
-    # Those that begin, from the left, before a box ends, and are not to the left of it themselves.
+    # Boxes that begin, from the left, before this one ends, and not before it begins.
     count = np.searchsorted(left, boxes[order, 2], side="right") - np.arange(len(order)) - 1
     one = np.repeat(np.arange(len(order)), count)
     two = np.arange(len(one)) - np.repeat(np.cumsum(count) - count, count) + one + 1
@@ -176,27 +176,27 @@ def _touching(boxes: Floats) -> tuple[Ints, Ints]:
     return np.minimum(one, two), np.maximum(one, two)
 
 
-# --- Conflicts: when and where two robots come nearer to one another than their sizes and a margin allow
-# Exact for robots that drive their ways as planned: between two points of time both drive straight at one
-# speed, so that the distance between them squared is a parabola.
+# --- Conflicts: times and places where two robots come nearer than their sizes and a margin allow
+# Exact for robots that drive as planned: between two consecutive times both drive straight at constant speed,
+# so that the squared distance between them is a parabola.
 
 Span = tuple[float, float]
-"""When a conflict begins and ends (inf: never), s."""
+"""Begin and end of a conflict (inf: never), s."""
 HEAD_ON, CROSSING, FOLLOWING, STANDING = "head-on", "crossing", "following", "standing"
 
 _ALIKE = math.cos(math.radians(45.0))
-"""Directions nearer to one another than this are alike, or opposite."""
+"""Cosine beyond which two directions count as alike, or opposite."""
 _ROOM = 1e-6
-"""Metres by which a distance may be short without being too short: robots may touch their margin."""
+"""Tolerance in metres of a distance: robots may touch their margin."""
 
 
 @dataclass(frozen=True)
 class Conflict:
     """``robot`` and ``other`` are too near to one another from ``begins`` to ``ends`` (inf: for good), s.
 
-    They are nearest at ``nearest_at`` with ``metres`` between their middles, about ``place``. ``stations``
-    are the metres that each has driven at ``begins``. ``kind`` says how they meet; in one that is STANDING
-    ``other`` does not move.
+    They are nearest at ``nearest_at`` with ``metres`` between their centres, about ``place``. ``stations``
+    are the metres that each has driven at ``begins``. ``kind`` is how they meet; with STANDING ``other``
+    does not move.
     """
 
     robot: str
@@ -211,9 +211,9 @@ class Conflict:
 
 
 def find_conflicts(movements: Sequence[Movement], margin: float, now: float) -> list[Conflict]:
-    """Return every conflict from ``now`` on, soonest first; ``margin`` is metres between two robots.
+    """Return all conflicts from ``now`` on, soonest first; ``margin`` is metres between two robots.
 
-    Two robots that stand are none, however near they are.
+    Two standing robots have none, however near they are.
     """
     found: list[Conflict] = []
     for near in near_pairs(movements, margin, now):
@@ -235,7 +235,7 @@ def conflicts_of(one: Movement, two: Movement, margin: float, now: float) -> lis
 
 
 class OtherMovements:
-    """The movements of ``others``, that one movement after the other is held against from ``now`` on."""
+    """The movements of ``others``, with which single movements are compared from ``now`` on."""
 
     def __init__(self, others: Sequence[Movement], margin: float, now: float) -> None:
         self._others = others
@@ -246,7 +246,7 @@ class OtherMovements:
 
     @property
     def ends(self) -> float:
-        """When everybody has come to their end, -inf where nobody is around."""
+        """Time at which all others have reached their ends, -inf without others."""
         return max((other.ends for other in self._others), default=-math.inf)
 
     def conflicts(self, movement: Movement) -> list[Conflict]:
@@ -257,14 +257,14 @@ class OtherMovements:
         return sorted(found, key=lambda one: one.begins)
 
     def spans(self, movement: Movement) -> list[Span]:
-        """Return when ``movement`` is too near to each of the others: of its conflicts the times alone."""
+        """Return only the times of the conflicts of ``movement`` with the others."""
         found: list[Span] = []
         for other, begins, ends in self._near(movement):
             found += _spans_between(movement, other, self._margin, self._now, begins, ends)
         return found
 
     def _near(self, movement: Movement) -> Iterator[tuple[Movement, float, float]]:
-        """Yield whom ``movement`` may come near to, and between which two times."""
+        """Yield the others that ``movement`` may come near to, each with the span of time."""
         box, boxes = self._windows.boxes(movement, movement.radius), self._boxes
         meet = (boxes[:, :, :2] <= box[:, 2:]) & (boxes[:, :, 2:] >= box[:, :2])
         touch: NDArray[np.bool_] = np.all(meet, axis=2)
@@ -285,7 +285,7 @@ def _conflicts_between(
 def _spans_between(
     one: Movement, two: Movement, margin: float, now: float, begins: float, ends: float
 ) -> list[Span]:
-    """Return the times of the conflicts from ``now`` on, each from when to when, the first first."""
+    """Return the spans of the conflicts from ``now`` on, in order."""
     if one.stands and two.stands:
         return []
     limit = one.radius + two.radius + margin - _ROOM
@@ -294,12 +294,12 @@ def _spans_between(
 
 
 def _times(one: Movement, two: Movement, now: float, begins: float, ends: float) -> Floats:
-    """Return the times, (n,) seconds, between which both drive straight, so that they cover the span."""
+    """Return the times, (n,) seconds, that cover the span, with straight movements in between."""
     low, high = now, math.inf
     parts = [np.array([now])]
     for movement in (one, two):
         part = movement.times_around(begins, ends)
-        # Where one of them is not known of any more, what the other does says nothing.
+        # Outside the known times of one, the other's movement is irrelevant.
         low = max(low, part[0]) if part[0] <= begins else low
         high = min(high, part[-1]) if part[-1] >= ends else high
         parts.append(part)
@@ -309,15 +309,15 @@ def _times(one: Movement, two: Movement, now: float, begins: float, ends: float)
 
 
 def _spans(times: Floats, apart: Floats, limit: float) -> list[Span]:
-    """Return when the way from one to the other, ``apart`` (n, 2) at ``times``, is shorter than ``limit``."""
+    """Return the spans in which the offset ``apart``, (n, 2) at ``times``, is shorter than ``limit``."""
     begin, step = apart[:-1], apart[1:] - apart[:-1]
     a = (step * step).sum(axis=1)
     b = (begin * step).sum(axis=1)
     c = (begin * begin).sum(axis=1) - limit * limit
-    # Where the distance does not change it is too short all the time or never.
+    # A constant distance is too short all the time or never.
     still, square = a < 1e-18, b * b - a * c
     spans: list[Span] = []
-    # Hardly ever are there any, so that these are calculated one by one.
+    # There are rarely any, so these are computed one by one.
     for k in np.flatnonzero(np.where(still, c < 0, square > 0)).tolist():
         low, high = 0.0, 1.0
         if not still[k]:
@@ -362,7 +362,7 @@ def _conflict(one: Movement, two: Movement, begins: float, ends: float) -> Confl
 
 
 def _nearest(times: Floats, apart: Floats) -> float:
-    """Return when the distance is least."""
+    """Return the time of the least distance."""
     step = np.diff(apart, axis=0)
     square = np.maximum((step * step).sum(axis=1), 1e-18)
     share = np.clip(-(apart[:-1] * step).sum(axis=1) / square, 0.0, 1.0)
@@ -378,14 +378,14 @@ def _kind(one: Movement, two: Movement, begins: float, nearest_at: float) -> str
     if headings[1] is None:
         return STANDING
     if headings[0] is None:
-        # It has come to its end, or not set out yet, and the other comes upon it.
+        # It has reached its end, or not started yet, and the other one approaches it.
         return CROSSING
     alike = float(headings[0] @ headings[1])
     return FOLLOWING if alike > _ALIKE else HEAD_ON if alike < -_ALIKE else CROSSING
 
 
 def _heading(movement: Movement, begins: float, until: float) -> NDArray[np.float64] | None:
-    """Return the unit vector of where it goes at ``begins``, or else goes before ``until``."""
+    """Return the unit vector of its direction at ``begins``, or else at ``until``."""
     if movement.stands:
         return None
     for time in (begins, until):

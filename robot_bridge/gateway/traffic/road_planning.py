@@ -28,9 +28,9 @@ from .site_roads import ClosedRoads, RoadStretch, SiteRoads
 
 
 class RouteOptions(NamedTuple):
-    """Requirements of a way beside open roads: :class:`.Restrictions`, and paths whose roads it avoids.
+    """Requirements of a route besides open roads: :class:`.Restrictions`, and paths with roads to avoid.
 
-    ``speed`` is the robot's in m/s; where it is less than the site's setting, that counts.
+    ``speed`` is the robot's in m/s; the site's setting counts where it is greater.
     """
 
     restrictions: Restrictions = Restrictions()
@@ -40,27 +40,27 @@ class RouteOptions(NamedTuple):
 
 ANY = Restrictions()
 BESIDE_M = 3.0
-"""Metres to a place that are driven straight: a robot stands off the end of a path by 2 m at most."""
+"""Metres to a goal that are driven straight: a robot is off the end of a path by 2 m at most."""
 
 
 class NoOpenRouteError(RefusedError):
-    """There are roads, and no way that may be used leads along them."""
+    """There are roads, but no permitted route along them."""
 
 
 class PublishedSite(Protocol):
-    """What serves a site, in time others."""
+    """Source of the served site, which may change."""
 
     @property
     def site(self) -> Site:
-        """The site as it was published last."""
+        """The site as published last."""
 
 
 class RoadPlanner:
     """Finds the shortest way along the centrelines of the site that is ``served``, around its keepouts.
 
-    The network is built here, and again when the site is another. Roads that operators closed stay closed on
-    it, and those narrower than robots are never used. Safe to use from several threads; what is closed is
-    told without waiting for any other.
+    The network is built here, and again when the site changes. Roads closed by operators stay closed on it,
+    and those narrower than robots are never used. Safe to use from several threads; :attr:`closed` is read
+    without waiting for another thread.
     """
 
     def __init__(self, served: PublishedSite, driving: Driving | None = None) -> None:
@@ -80,11 +80,11 @@ class RoadPlanner:
 
     @property
     def engine_report(self) -> EngineReport | None:
-        """How ways are found now, None where the site has no roads."""
+        """The engine in use, None where the site has no roads."""
         return self._roads.engine_report
 
     def close(self) -> None:
-        """End the process that finds ways; ways go on being found, more slowly."""
+        """End the process that finds ways; ways are still found, more slowly."""
         with self._building:
             self._roads.close()
 
@@ -92,7 +92,7 @@ class RoadPlanner:
         """Return the path, a straight line with a note where the site has no roads near both places.
 
         :raises RefusedError: when roads are near and no way leads along them, a place is on a closed one, or
-            what is not along roads leads through a keepout.
+            a straight part leads through a keepout.
         """
         try:
             with self._in_use() as roads:
@@ -104,7 +104,7 @@ class RoadPlanner:
         return planned
 
     def path_with_open(self, closure: str, start: Point, goal: Point) -> PlannedPath | None:
-        """Return the path that there would be if the road of ``closure`` were open; None without a way."""
+        """Return the path as if the road of ``closure`` were open; None without a way."""
         with self._in_use() as roads, roads.opened(closure):
             try:
                 found = self._found(roads, start, goal)
@@ -113,7 +113,7 @@ class RoadPlanner:
         return self._planned(found, start, goal)
 
     def route(self, start: Point, goal: Point, options: RouteOptions | None = None) -> RouteReport:
-        """Return the way as operators are shown it.
+        """Return the route as a report for operators.
 
         :raises RefusedError: as :meth:`path`; and at once while a new publication's roads are being read.
         """
@@ -129,7 +129,7 @@ class RoadPlanner:
         if isinstance(found, str):
             why = f" and not along roads: {found}" if found else "; the site has no roads"
             return _straight(start, goal, speed, f"the way is a straight line{why}")
-        # Long ways take long to make dense, and need nobody to wait for the roads meanwhile.
+        # Long routes take long to make dense; other threads need not wait for the roads meanwhile.
         return self._reported(found, start, goal, speed)
 
     def stretch(self, place: Point, reach: float) -> RoadStretch:
@@ -141,7 +141,7 @@ class RoadPlanner:
             return roads.stretch(place, reach)
 
     def set_closures(self, closures: Mapping[str, RoadStretch]) -> dict[str, int]:
-        """Close the stretches of ``closures`` and no others; return how many edges each of them closes."""
+        """Close the stretches of ``closures`` and no others; return the number of edges that each closes."""
         with self._in_use() as roads:
             self._closures = dict(closures)
             counts = roads.set_closures(self._closures)
@@ -150,31 +150,31 @@ class RoadPlanner:
 
     @property
     def closed(self) -> ClosedRoads:
-        """What is closed now; another one whenever that changes."""
+        """The roads closed now; a new object after every change."""
         return self._closed
 
     def router_of_its_own(self) -> Router | None:
-        """Return a router on the roads as they are open now, for one thread alone; None without roads.
+        """Return a router on the roads that are open now, for a single thread; None without roads.
 
-        What asks it for seconds keeps nobody else from the roads. Raises RefusedError.
+        Queries of it for seconds block no other thread. Raises RefusedError.
         """
         with self._in_use() as roads:
             return None if roads.router is None else roads.router.copy()
 
     def renew(self) -> dict[str, int]:
-        """Take over the roads of a new publication; return how many edges each closure closes there."""
-        self._take_over(patient=True)
+        """Adopt the roads of a new publication; return the number of edges that each closure closes there."""
+        self._adopt_publication(patient=True)
         with self._using:
             return self._roads.edge_counts()
 
     @contextmanager
     def _in_use(self, *, patient: bool = True) -> Iterator[SiteRoads]:
-        self._take_over(patient=patient)
+        self._adopt_publication(patient=patient)
         with self._using, refuse_road_errors():
             yield self._roads
 
-    def _take_over(self, *, patient: bool) -> None:
-        """Build the roads of a new publication beside those in use, which go on being used meanwhile."""
+    def _adopt_publication(self, *, patient: bool) -> None:
+        """Build the roads of a new publication, while the former ones stay in use."""
         if self._roads.site is self._served.site:
             return
         if not self._building.acquire(blocking=patient):
@@ -199,7 +199,7 @@ class RoadPlanner:
         options: Restrictions = ANY,
         avoid: Collection[int] = (),
     ) -> Route | str:
-        """Return the way along the roads, or why there are none to go along, empty for a site without any."""
+        """Return the way along the roads, or the reason why there is none, empty for a site without roads."""
         if roads.router is None:
             return ""
         roads.check_open(start, goal)
@@ -225,7 +225,7 @@ class RoadPlanner:
     def _reported(self, route: Route, start: Point, goal: Point, speed: float) -> RouteReport:
         dense = self._dense(route, start, goal)
         driven = float(np.hypot(*np.diff(dense.points, axis=0).T).sum())
-        # To its first road and from its last one no road limits a robot's speed.
+        # Before the first road and after the last one no road limits a robot's speed.
         seconds = route.seconds_at(speed) + max(0.0, driven - route.metres) / speed
         metres: dict[str, float] = {}
         for surface, length in zip(route.surfaces, route.lengths.tolist(), strict=True):
@@ -253,14 +253,14 @@ class RoadPlanner:
 
 
 def check_roads(site: Site) -> None:
-    """Raise RefusedError when no ways can be found on the roads of ``site``."""
+    """Raise RefusedError when the roads of ``site`` cannot be used for routing."""
     with refuse_road_errors():
         SiteRoads.of(site)
 
 
 @contextmanager
 def refuse_road_errors() -> Iterator[None]:
-    """Raise RefusedError for what is wrong with roads, or with what finds ways on them."""
+    """Raise RefusedError for errors in roads, or in the routing on them."""
     try:
         yield
     except RoadsError as error:
@@ -276,10 +276,10 @@ def refuse_road_errors() -> Iterator[None]:
 
 
 def _is_beside(site: Site, start: Point, goal: Point, clearance: float) -> bool:
-    """Return whether a robot at ``start`` is so near to ``goal`` that roads would only lead it round.
+    """Return whether a robot at ``start`` is so near to ``goal`` that roads would only be a detour.
 
-    As at the end of the path of a cone's task: cones stand around it, and the path kept off them. Neither a
-    keepout nor, within ``clearance`` metres, an obstacle of the site is in between.
+    This is so at the end of the path of a cone's task: cones stand around it, and the path kept clear of
+    them. Neither a keepout nor, within ``clearance`` metres, an obstacle of the site is in between.
     """
     if math.dist(start, goal) > BESIDE_M or site.keepout_between([start, goal]) is not None:
         return False
@@ -306,15 +306,15 @@ def _rounded(points: Floats, start: Point, goal: Point) -> list[Point]:
     return [start, *map(tuple, points[1:-1].round(3).tolist()), goal]
 
 
-# --- The way that an operator wants to see ---
+# --- Route requested by an operator ---
 
 
 async def route_for_operator(
     roads: RoadPlanner | None, robots: Robots, ways: RobotPaths, request: GetRoute
 ) -> RouteReport:
-    """Return the way along the roads that an operator wants to see.
+    """Return the route along the roads that an operator requests.
 
-    :raises RefusedError: when there is none, or it is not known where it is to begin.
+    :raises RefusedError: when there is none, or its start is unknown.
     """
     if roads is None:
         raise RefusedError("this gateway plans without roads; publish a site with road centrelines")

@@ -1,4 +1,4 @@
-"""Paths that robots are on, and the snapshot of all their movements."""
+"""Present paths of robots, and the snapshot of all their movements."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ from ..model.robots import Robots
 from ..storage.repositories.closures import HoldRow
 from .conflicts import Conflict, Movement, driving_movement, standing_movement
 
-# --- The ways that robots are on now, as far as the gateway knows them ---
+# --- Present paths of robots, as far as the gateway knows them ---
 
 
 class RobotPath(NamedTuple):
-    """What is left of a robot's task: ``points`` from where it is to its goal.
+    """The rest of a robot's task: ``points`` from its position to its goal.
 
-    ``known`` is false where the robot has a target and finds the way itself: the points are a straight line.
-    ``command`` is the task's, NOTHING where the robot only stands where it is to go on from.
+    ``known`` is false where the robot has a target and plans its path itself: the points are a straight line.
+    ``command`` is the task's, NOTHING where the robot only stands and waits to continue from there.
     """
 
     robot: str
@@ -40,20 +40,20 @@ class RobotPath(NamedTuple):
 
 @dataclass(frozen=True)
 class ReportedPath:
-    """The way to a target that a robot was told."""
+    """The path to a target that was sent to a robot."""
 
     path: SetPath
 
     @cached_property
     def line(self) -> Polyline:
-        """The way as a line, made once: of kilometres that takes longer than all that is asked of it."""
+        """The path as a line, made once: for kilometres that takes longer than all its queries."""
         return Polyline(self.path.points)
 
 
 class DrivenTask(NamedTuple):
-    """A robot's task, where it is, the metres it has driven of a path, and the way that it was told last.
+    """A robot's task, its position, the metres it has driven of a path, and the path that it was sent last.
 
-    ``line`` is the task's path once the robot has taken that on.
+    ``line`` is the task's path once the robot has acknowledged it.
     """
 
     robot: str
@@ -66,27 +66,27 @@ class DrivenTask(NamedTuple):
 
     @property
     def known(self) -> bool:
-        """Whether the gateway knows the way; else the robot finds it itself."""
+        """Whether the gateway knows the path; else the robot plans it itself."""
         return isinstance(self.task, SetPath) or self.reported is not None
 
     def way(self) -> RobotPath:
-        """Return what is left; takes as long as the path has points, and may be called in any thread."""
+        """Return the rest; takes time in proportion to the path's points, and may be called in any thread."""
         points = [(x, y) for x, y in self.points().tolist()]
         return RobotPath(self.robot, self.command, self.task, points, self.known)
 
     def points(self) -> Floats:
-        """Return the points of what is left, (n, 2), as quickly as can be."""
+        """Return the points of the rest, (n, 2), in the fastest form."""
         if isinstance(self.task, SetPath):
             return remaining_line(self.line or Polyline(self.task.points), self.place, self.driven)
         if self.reported is not None:
-            # Nothing counts the metres of it that are driven, so that the robot is looked for on all of it.
+            # The driven metres of it are not counted, so the robot is searched for on all of it.
             station, off = self.reported.line.feet(*self.place)
             return remaining_line(self.reported.line, self.place, float(station[int(off.argmin())]))
         return np.array([self.place, (self.task.x, self.task.y)])
 
 
 class TaskElsewhere(NamedTuple):
-    """What a robot of another gateway is doing: to ``end``, along a ``way`` where it was told one."""
+    """Task of a robot of another gateway: to ``end``, along a ``way`` where it was sent one."""
 
     command: str
     end: SetPosEnd
@@ -94,7 +94,7 @@ class TaskElsewhere(NamedTuple):
 
 
 class RobotPaths:
-    """Remembers what GetPath was answered with, and knows what was commanded."""
+    """Keeps the answers to GetPath, and combines them with the robots' commands."""
 
     def __init__(self, robots: Robots, commands: CommandService) -> None:
         self._robots = robots
@@ -103,16 +103,16 @@ class RobotPaths:
         self._elsewhere: dict[str, TaskElsewhere] = {}
 
     def is_placed(self, robot: str) -> bool:
-        """Return whether it is known where a robot is now, so that its way can be changed from there."""
+        """Return whether a robot's present position is known, so that its path can be changed from there."""
         return self._robots.is_placed(robot)
 
     def note_reported(self, robot: str, task: SetPosEnd | SetPath, way: SetPath) -> None:
-        """Note the way to ``task`` that a robot was told."""
+        """Record the path to ``task`` that was sent to a robot."""
         if isinstance(task, SetPosEnd):
             self._reported[robot] = task, ReportedPath(way)
 
     def note_elsewhere(self, report: CommandReport) -> None:
-        """Note how far a command of a robot is that another gateway has."""
+        """Record the state of a command of a robot of another gateway."""
         known = self._elsewhere.get(report.robot)
         if not report.state.is_open:
             if known is not None and known.command == report.command:
@@ -128,7 +128,7 @@ class RobotPaths:
             self._elsewhere[report.robot] = TaskElsewhere(report.command, end, ReportedPath(message))
 
     def of(self, robot: str) -> DrivenTask | None:
-        """Return what a robot is doing, None for one that has no task or has not said where it is."""
+        """Return the task of a robot, None without a task or a reported position."""
         if self._robots.gateway_of(robot) is not None:
             return self._of_elsewhere(robot)
         given, command = self._commands.task(robot), self._commands.busy_with(robot)
@@ -146,12 +146,12 @@ class RobotPaths:
         return self._robots.names()
 
     def own(self) -> list[DrivenTask]:
-        """Return what the robots of this gateway are doing that have a task."""
+        """Return the tasks of the robots of this gateway."""
         underway = (self.of(robot) for robot in self._commands.robots())
         return sorted((one for one in underway if one is not None), key=lambda one: one.robot)
 
     def all(self) -> list[DrivenTask]:
-        """Return what all robots are doing that have a task, also those that other gateways have."""
+        """Return the tasks of all robots, including those of other gateways."""
         elsewhere = (self.of(robot) for robot in self._elsewhere if self._robots.gateway_of(robot))
         found = [*self.own(), *(one for one in elsewhere if one is not None)]
         return sorted(found, key=lambda one: one.robot)
@@ -163,11 +163,11 @@ class RobotPaths:
         return DrivenTask(robot, task.command, task.end, (pose.x, pose.y), 0.0, task.way)
 
 
-# --- All robots at one moment, as movements: what conflicts are looked for in; no I/O ---
+# --- Movements of all robots at one moment, for the detection of conflicts; no I/O ---
 
 
 class TrafficSnapshot(NamedTuple):
-    """All that movements are made of: ``places`` says where each robot is and how fast it drives.
+    """Data for movements: ``places`` has the position and the speed of each robot.
 
     Those in ``placed`` are there now; the others were there, and may have driven on unseen.
     """
@@ -181,11 +181,11 @@ class TrafficSnapshot(NamedTuple):
 
     @property
     def on_the_way(self) -> set[str]:
-        """The robots that have a task or wait on the way of one: the others move as they please."""
+        """The robots that have a task or wait during one: the motion of others is unknown."""
         return {one.robot for one in self.underway} | set(self.holds)
 
     def movements(self) -> dict[str, Movement]:
-        """Return how every robot moves that has said where it is, if all goes on as it is planned."""
+        """Return the planned movement of every robot that has reported its position."""
         ways = {one.robot: one.points() for one in self.underway}
         return {name: self._movement(name, ways.get(name)) for name in self.places}
 
@@ -206,7 +206,7 @@ class TrafficSnapshot(NamedTuple):
 
 
 def split_path(points: list[Point], station: float) -> tuple[list[Point], list[Point]]:
-    """Return a way up to ``station`` metres along it, and the rest of it."""
+    """Return a path up to ``station`` metres along it, and the rest of it."""
     line = np.asarray(points, dtype=np.float64)
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
     x, y = (round(float(np.interp(station, along, line[:, k])), 3) for k in (0, 1))
@@ -216,7 +216,7 @@ def split_path(points: list[Point], station: float) -> tuple[list[Point], list[P
 
 
 def conflict_report(conflict: Conflict, clearance: float) -> ConflictReport:
-    """Return a conflict as operators are told it; ``clearance`` is metres between two robots' middles."""
+    """Return the report of a conflict; ``clearance`` is the metres between the centres of two robots."""
     return ConflictReport(
         robot=conflict.robot,
         other=conflict.other,
@@ -232,6 +232,6 @@ def conflict_report(conflict: Conflict, clearance: float) -> ConflictReport:
 
 
 def hold_report(row: HoldRow) -> HoldReport:
-    """Return a robot that waits as operators are told it."""
+    """Return the report of a robot that waits."""
     x, y = SetPath(**row.rest).points[0]
     return HoldReport(row.robot, row.other, x, y, round(row.until, 1), row.by, row.command)

@@ -31,15 +31,15 @@ from ...core.roads.network import Floats, Ints
 log = logging.getLogger(__name__)
 
 LEAST_ARCS = 4000
-"""Arcs of a graph from which a process is started: SciPy finds a way on fewer in about 1 ms."""
+"""Number of arcs of a graph from which a process is started: on fewer SciPy finds a way in about 1 ms."""
 ANSWER_WITHIN_S = 5.0
-"""Seconds after which a process that owes a way, or neither reads nor writes, is killed as stuck."""
+"""Seconds after which a process that does not answer, or neither reads nor writes, is killed as stuck."""
 LAID_WITHIN_S = 60.0
-"""Seconds that it may take to lay one set of costs over the graph."""
+"""Seconds that it may take to apply one set of costs to the graph."""
 READY_WITHIN_S = 600.0
 """Seconds that it may take to order a graph. Nothing waits for that."""
 BUSY_S = 0.05
-"""Seconds that a question waits for the process to have done with another one, before it is answered here."""
+"""Seconds that a query waits for another one in the process, before it is answered here."""
 FIRST_WAIT_S, LONGEST_WAIT_S = 1.0, 300.0
 """Seconds until a process that ended is started again; twice as long each time that it ends soon."""
 _SOON_S = 60.0
@@ -49,7 +49,7 @@ _NO_WAY = b"-"
 
 @dataclass(frozen=True)
 class EngineReport:
-    """What finds ways now, whether that is the fastest engine here, and how often its process was started."""
+    """The engine in use, whether it is the fastest here, and the number of starts of its process."""
 
     engine: str
     ok: bool = True
@@ -60,7 +60,7 @@ class EngineReport:
 
 
 class ProcessEngines:
-    """Makes engines on ``graph``: RoutingKit's in a process, and behind each one that runs in this process.
+    """Makes engines on ``graph``: RoutingKit's in a process, each backed by one in this process.
 
     The latter finds ways on small graphs, where RoutingKit is not installed, until the process has the costs,
     while it is busy, and whenever it has ended. Safe to use from several threads. ``_lock`` guards costs and
@@ -96,19 +96,19 @@ class ProcessEngines:
 
     @property
     def report(self) -> EngineReport:
-        """How ways are found now."""
+        """The engine in use."""
         ready = self._ready_child() is not None
         name = ContractionEngines.name if ready else self._local_name
         return EngineReport(name, ready or not self._enabled, self._starts)
 
     @property
     def process_id(self) -> int | None:
-        """The id of the process that is ready to find ways, None where none is."""
+        """The id of the process that is ready to find ways, None without one."""
         child = self._ready_child()
         return None if child is None else child.process.pid
 
     def close(self) -> None:
-        """End the process. Engines go on finding ways, in this process."""
+        """End the process. Engines then find ways in this process."""
         self._closed.set()
         with self._lock:
             self._enabled = False
@@ -118,7 +118,7 @@ class ProcessEngines:
     def way(self, engine: ProcessEngine, starts: Ends, goals: Ends) -> list[int] | None:
         """Return the arcs of the cheapest way, as the process finds it.
 
-        :raises LookupError: when there is no process that can say it now.
+        :raises LookupError: when no process can answer now.
         """
         child = self._ready_child()
         if child is None or not child.lock.acquire(timeout=BUSY_S):
@@ -154,7 +154,7 @@ class ProcessEngines:
             return engine.local.way(starts, goals)
 
     def set_costs(self, engine: ProcessEngine, arcs: Ints, costs: Floats) -> None:
-        """Set the costs of ``arcs`` of ``engine``; they are passed on with the next question for a way."""
+        """Set the costs of ``arcs`` of ``engine``; they are sent with the next query for a way."""
         with self._lock:
             engine.costs[arcs] = costs
             engine.changed.update(arcs.tolist())
@@ -179,7 +179,7 @@ class ProcessEngines:
         return ends and bool((tail[1:] == head[:-1]).all())
 
     def _keep(self) -> None:
-        """Start the process, and again whenever it has ended, until all is closed."""
+        """Start the process, and again every time it has ended, until closed."""
         wait = 0.0
         while not self._closed.is_set():
             began = time.monotonic()
@@ -206,7 +206,7 @@ class ProcessEngines:
         return f"{self.report.engine} finds ways"
 
     def _run(self) -> str:
-        """Run one process to its end, and return what became of it; raises ImportError without RoutingKit."""
+        """Run one process to its end, and return the outcome; raises ImportError without RoutingKit."""
         child = _Child()
         try:
             with self._lock:
@@ -225,8 +225,8 @@ class ProcessEngines:
         return f"({child.process.pid}) ended with status {status}{because}"
 
     def _prepare(self, child: _Child) -> None:
-        """Have the graph ordered and the costs laid over it; nothing waits for that."""
-        child.hear(READY_WITHIN_S)  # it has started, so that it reads what it is sent
+        """Make the process order the graph and apply the costs; nothing waits for that."""
+        child.receive(READY_WITHIN_S)  # it has started, so that it reads what it is sent
         missing = child.ask((self._graph.nodes, self._graph.tail, self._graph.head), READY_WITHIN_S)
         if missing:
             raise ImportError(missing.decode(errors="replace"))
@@ -251,9 +251,9 @@ class ProcessEngines:
 
 
 class _Child:
-    """The process, and the gateway's end of its pipe: one question at a time, by whoever holds ``lock``.
+    """The process, and the gateway's end of its pipe: one query at a time, by the holder of ``lock``.
 
-    Whatever goes wrong with it kills it, is kept in ``fault`` and raised as _GoneError.
+    Any error with it kills it, is kept in ``fault`` and raised as _GoneError.
 
     :raises OSError: when the process cannot be started.
     """
@@ -263,7 +263,7 @@ class _Child:
         self.ready = self.failed = False
         self.fault = ""
         self.unsent: dict[int, set[int]] = {}
-        """Of each engine whose costs it has, the arcs whose costs have changed since."""
+        """For each engine with costs in the process, the arcs with costs changed since."""
         self._connection, theirs = Pipe()
         with contextlib.closing(theirs):
             try:
@@ -281,7 +281,7 @@ class _Child:
     def send(self, message: Any) -> None:
         """Send a message that has no answer."""
         if self.failed:
-            # What it still says may answer an earlier question.
+            # Its next output may answer an earlier query.
             raise _GoneError(self.fault)
         try:
             self._connection.send(message)
@@ -289,12 +289,12 @@ class _Child:
             raise self.fail(f"did not read a message ({error})") from error
 
     def ask(self, message: Any, within: float) -> bytes:
-        """Return the answer to a message, which has to begin within so many seconds."""
+        """Return the answer to a message, which must begin within ``within`` seconds."""
         self.send(message)
-        return self.hear(within)
+        return self.receive(within)
 
-    def hear(self, within: float) -> bytes:
-        """Return what it says next."""
+    def receive(self, within: float) -> bytes:
+        """Return its next message."""
         try:
             if self._connection.poll(within):
                 return self._connection.recv_bytes(_LARGEST_ANSWER)
@@ -311,7 +311,7 @@ class _Child:
         return _GoneError(fault)
 
     def end(self) -> int:
-        """End the process and return its status, when nobody waits for it any more."""
+        """End the process and return its status, once no caller waits for it."""
         self.failed = True
         self.process.kill()
         status = self.process.wait()
@@ -321,7 +321,7 @@ class _Child:
 
 
 def _limit_waits(handle: int) -> None:
-    """Bound each wait of a socket for the other end to read on or write on: poll bounds but the first one."""
+    """Limit each wait of a socket for the other end to read or write: poll limits only the first one."""
     whole, part = divmod(ANSWER_WITHIN_S, 1)
     limit = struct.pack("ll", int(whole), int(part * 1e6))
     with socket.socket(fileno=handle) as pipe:
@@ -337,7 +337,7 @@ class _GoneError(LookupError):
 
 
 class ProcessEngine:
-    """Finds ways under one set of costs; ``name`` says what found the last one."""
+    """Finds ways under one set of costs; ``name`` is the engine that found the last one."""
 
     def __init__(self, made_by: ProcessEngines, number: int, local: Engine, costs: Floats) -> None:
         self.number = number
@@ -369,13 +369,13 @@ class ProcessEngine:
 
 
 def _program(handle: int) -> str:
-    # The path of the gateway: the child finds the same modules, however that was started.
+    # sys.path of the gateway: the child finds the same modules, however the gateway was started.
     return f"import sys; sys.path = {sys.path!r}; from {__name__} import serve; serve({handle})"
 
 
 def serve(handle: int) -> None:
     """Find ways for the gateway at the other end of the pipe ``handle``, until it closes that."""
-    # The gateway ends this process: a signal to all of its group comes before it has done with it.
+    # The gateway ends this process: a signal to the whole group would come while it is still in use.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.SIG_IGN)
     connection = Connection(handle)

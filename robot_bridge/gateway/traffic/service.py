@@ -1,4 +1,4 @@
-"""Traffic control: conflicts found, reported and resolved, with all parts of road traffic put together."""
+"""Traffic control: conflicts found, reported and resolved; assembly of all parts of road traffic."""
 
 from __future__ import annotations
 
@@ -30,20 +30,20 @@ from .road_planning import RoadPlanner, RouteOptions, route_for_operator
 from .robot_paths import RobotPath, RobotPaths, TrafficSnapshot, conflict_report, split_path
 from .yielding import REACH, YieldManager, yield_beside_path, yield_on_path
 
-# --- Robots in each other's way: found, told to operators, and resolved when one of them asks for it ---
+# --- Conflicts of robots: found, reported to operators, and resolved when an operator requests it ---
 
 SLOWEST = 0.3
-"""A robot at less than this share of the usual speed starts or ends, and will not go on so."""
+"""A robot below this share of the usual speed is starting or stopping, and will not keep that speed."""
 SHARE = 0.1
-"""The share of one processor that looking for conflicts may take."""
+"""The share of one processor that the search for conflicts may take."""
 SHORTEST = 0.5
-"""Metres of a way below which a robot cannot be sent on to wait: it would have to stop where it is."""
+"""Metres of a path below which a robot cannot be sent on to wait: it would have to stop at once."""
 
 
 class YieldPlan(NamedTuple):
-    """How a robot gets out of the way: it waits at ``station`` of its way, or drives ``points``.
+    """How a robot yields: it waits at ``station`` of its path, or drives ``points``.
 
-    ``later`` is the seconds that it arrives later than it would, ``until`` when its waiting ends.
+    ``later`` is its delay on arrival in seconds, ``until`` the end of its waiting.
     """
 
     way: RobotPath
@@ -54,7 +54,7 @@ class YieldPlan(NamedTuple):
 
 
 class TrafficControl:
-    """Looks for conflicts about once a second, and resolves one when an operator says who gives way."""
+    """Searches for conflicts about once a second, and resolves one when an operator chooses who yields."""
 
     def __init__(
         self,
@@ -81,13 +81,13 @@ class TrafficControl:
 
     @handles(messages.GetConflicts)
     async def conflicts(self) -> messages.Conflicts:
-        """Return the conflicts of all robots as they are on their ways now."""
+        """Return the conflicts of all robots on their present paths."""
         seen = self.situation()
         found = await asyncio.to_thread(_found, seen)
         return messages.Conflicts(seen.now, found, self._waiting.report())
 
     async def watch(self, *, listened_to: bool) -> None:
-        """Send on who has waited long enough; tell operators, if they are ``listened_to``, of conflicts."""
+        """Send on robots that have waited long enough; report conflicts to operators if ``listened_to``."""
         async with self._lock:
             await self._waiting.catch_up()
             if self._waiting:
@@ -106,12 +106,12 @@ class TrafficControl:
 
     @handles(messages.GetWaysOut)
     async def ways_out(self, request: messages.GetWaysOut) -> messages.WaysOut:
-        """Return what each of two robots in each other's way can do; nothing is done, nobody is told."""
+        """Return the options of each of two robots in conflict; nothing is done or sent."""
         return await asyncio.to_thread(self._ways_out, self.situation(), request, self._site.site)
 
     @handles(messages.ResolveConflict)
     async def resolve(self, request: messages.ResolveConflict, operator: str) -> messages.ConflictResolved:
-        """Let ``robot`` wait for ``other``, or send it another way.
+        """Make ``robot`` wait for ``other``, or send it another way.
 
         :raises RefusedError: when there is no such conflict, or it cannot be resolved so; nothing is changed.
         """
@@ -122,9 +122,9 @@ class TrafficControl:
             return await self._let_wait(request, plan, operator)
 
     def situation(self, names: Iterable[str] | None = None) -> TrafficSnapshot:
-        """Return what is known now of the robots called ``names``, without them of all that take commands.
+        """Return the snapshot of the robots ``names``, or of all that take commands.
 
-        Of what is only seen nobody knows the way: :mod:`...nearness` tells of that.
+        The paths of those that are only seen are unknown: :mod:`.fleet.nearness` is for these.
         """
         settings, places, placed = self._site.settings.routes, {}, set()
         everybody = [*self._robots.commanded(), *self._robots.commanded_elsewhere()]
@@ -158,7 +158,7 @@ class TrafficControl:
         return messages.WayOut(robot, "give way", True, text)
 
     def _plan(self, seen: TrafficSnapshot, request: messages.ResolveConflict) -> YieldPlan:
-        """Return how the robot is out of the way soonest; raises RefusedError where it cannot be."""
+        """Return the plan by which the robot yields with the least delay; raises RefusedError without one."""
         movements = seen.movements()
         for robot in (request.robot, request.other):
             if robot not in movements:
@@ -194,7 +194,7 @@ class TrafficControl:
     def _round(
         self, way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapshot
     ) -> YieldPlan | None:
-        """Return another way on which the robot meets nobody, None where there is none."""
+        """Return another path without conflicts, None where there is none."""
         if self._roads is None:
             return None
         mine, margin = movements[way.robot], seen.settings.margin_m
@@ -240,7 +240,7 @@ def _found(seen: TrafficSnapshot) -> list[Any]:
 
 
 def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> messages.WayOut:
-    """Return where a robot that stands goes so that it is in nobody's way, or why it cannot."""
+    """Return where a standing robot can go out of the way of all others, or why it cannot."""
     movements = seen.movements()
     why = ""
     if robot not in seen.placed:
@@ -264,7 +264,7 @@ def _aside(seen: TrafficSnapshot, site: Site, robot: str, other: str) -> message
 
 
 def _waiting(way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapshot) -> YieldPlan | None:
-    """Return where and how long the robot waits, None where that does not help or is where it is now."""
+    """Return the robot's wait on its path, None where this does not help or is at its present position."""
     mine = movements[way.robot]
     others = [movement for name, movement in movements.items() if name != way.robot]
     wait = yield_on_path(mine, others, seen.settings.margin_m, seen.now) if way.known else None
@@ -275,7 +275,7 @@ def _waiting(way: RobotPath, movements: dict[str, Movement], seen: TrafficSnapsh
 
 
 def _unresolved(request: messages.ResolveConflict, other_moves: bool) -> str:
-    """Return why a robot cannot give way, and what can be done: a robot that stands can only go aside."""
+    """Return why a robot cannot yield, and the remedies: a standing robot can only go aside."""
     how = {
         "waiting": "waiting does not resolve it, or it is too late for that",
         "route": "no other way on the roads meets nobody",
@@ -288,13 +288,13 @@ def _unresolved(request: messages.ResolveConflict, other_moves: bool) -> str:
     )
 
 
-# --- Roads and traffic at work, put together: ways found, roads kept closed, robots led round one another
+# --- Road traffic as a whole: path planning, closed roads, and robots yielding to one another
 
 
 class RoadTraffic:
-    """The ways that robots are on, the roads that are closed to them, and who waits for whom.
+    """The robots' paths, the closed roads, and the robots that wait for others.
 
-    ``planner`` is None where the gateway plans without roads. Every operator hears through ``listeners``.
+    ``planner`` is None where the gateway plans without roads. Operators are notified through ``listeners``.
     """
 
     def __init__(
@@ -331,19 +331,19 @@ class RoadTraffic:
         )
 
     async def restore(self) -> None:
-        """Go on with the closed roads and the waiting robots that an earlier gateway left."""
+        """Restore the closed roads and the waiting robots that an earlier gateway left."""
         await self.closures.restore()
         await self.waiting.restore()
 
     @handles(messages.GetRoute)
     async def route(self, request: messages.GetRoute) -> messages.RouteReport:
-        """Return the way along the roads that an operator wants to see; raises RefusedError without one."""
+        """Return the route along the roads that an operator requests; raises RefusedError without one."""
         request = await route_in_site_frame(self._site, request)
         return await route_for_operator(self.planner, self._robots, self.ways, request)
 
     @handles(messages.GetSurfaces)
     async def surfaces(self, request: messages.GetSurfaces) -> messages.Surfaces:
-        """Return which road surface is at each place; raises RefusedError for a CRS that leads nowhere."""
+        """Return the road surface at each place; raises RefusedError for a CRS without a transform."""
         try:
             found = await asyncio.to_thread(self._site.surfaces_at, request.points, request.crs)
         except RefusedError as error:
@@ -356,13 +356,13 @@ class RoadTraffic:
         )
 
     def note_step(self, command: CommandReport) -> None:
-        """Note a step of a command; called with each."""
+        """Process a step of a command; called with each step."""
         self.waiting.note_step(command)
 
     async def watch(self, *, listened_to: bool) -> None:
-        """Open roads that were closed until now; see to robots on closed ones, and in each other's way.
+        """Open roads with expired closures; handle robots on closed roads, and in conflict.
 
-        Conflicts are looked for only while operators are ``listened_to`` be told of them.
+        Conflicts are searched for only if ``listened_to``: while there are operators to be notified.
         """
         await self._steps.run(
             {

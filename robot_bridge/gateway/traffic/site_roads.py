@@ -21,7 +21,7 @@ from ...core.sites.geopackage import road_lines
 from ...core.sites.site import Site
 from .route_process import EngineReport, ProcessEngines
 
-# --- What is closed on a network at one moment; never changed, so that any thread may ask without waiting
+# --- Closed roads of a network at one moment; immutable, so that any thread may read them without waiting
 
 Place = tuple[float, float]
 """x, y in metres, site frame."""
@@ -29,7 +29,7 @@ Place = tuple[float, float]
 
 @dataclass(frozen=True)
 class ClosedRoads:
-    """``closures`` tells the edges that each closure closes, ``closed`` all that are closed, (n,).
+    """``closures`` has the edges that each closure closes, ``closed`` flags all closed edges, (n,).
 
     ``nearest`` is None where the site has no roads.
     """
@@ -39,7 +39,7 @@ class ClosedRoads:
     closed: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
 
     def along(self, path: Sequence[Place], among: Collection[str] | None = None) -> list[str]:
-        """Return the closures, of ``among`` or all, along whose road ``path`` leads."""
+        """Return the closures, of ``among`` or all, of roads that ``path`` leads along."""
         closures = {
             id: self.closures.get(id, frozenset()) for id in (self.closures if among is None else among)
         }
@@ -51,7 +51,7 @@ class ClosedRoads:
         return [id for id, edges in closures.items() if edges & found]
 
     def at(self, place: Place) -> str | None:
-        """Return the closure whose road ``place`` is on, if it is on no road that is open."""
+        """Return the closure of the road at ``place``, if no open road is there."""
         shut = frozenset().union(*self.closures.values())
         if self.nearest is None or not shut:
             return None
@@ -70,18 +70,18 @@ class ClosedRoads:
         return flags(len(self.nearest.network), np.array(sorted(edges), dtype=np.int64))
 
 
-# --- The roads of one publication: its network, what finds ways on it, and what is closed there ---
+# --- The roads of one publication: its network, its router, and its closures ---
 
 log = logging.getLogger(__name__)
 
 _APART_M = 2.0
-"""Metres between the places of an edge that are looked at."""
+"""Metres between the sampled places of an edge."""
 _MOST_PLACES = 50
-"""Places of one edge that are looked at."""
+"""Most sampled places of one edge."""
 
 
 class RoadStretch(NamedTuple):
-    """A piece of road, (n, 2) metres in the site frame, on its level."""
+    """A stretch of road, (n, 2) metres in the site frame, on its level."""
 
     line: Floats
     level: int
@@ -98,9 +98,9 @@ class SiteRoads:
 
     @classmethod
     def of(cls, site: Site, engines: Callable[[RouteGraph], EngineFactory] = safe_engines) -> SiteRoads:
-        """Build the network of ``site`` and close what leads through its keepouts.
+        """Build the network of ``site`` and close the edges through its keepouts.
 
-        ``engines`` find the ways: by default those of this process that cannot end it.
+        ``engines`` find the ways: by default those that cannot crash this process.
         """
         if not site.centrelines:
             return cls(site, None, np.zeros(0, bool))
@@ -121,7 +121,7 @@ class SiteRoads:
 
     @property
     def engine_report(self) -> EngineReport | None:
-        """How ways are found, None where there are no roads."""
+        """The engine in use, None where there are no roads."""
         if self.router is None:
             return None
         engines = self.router.engines
@@ -130,7 +130,7 @@ class SiteRoads:
         )
 
     def close(self) -> None:
-        """End what runs beside this process to find ways."""
+        """End the process that finds ways."""
         if self.router is not None and isinstance(self.router.engines, ProcessEngines):
             self.router.engines.close()
 
@@ -147,11 +147,11 @@ class SiteRoads:
         return RoadStretch(edges.line(found.edge), int(edges.level[found.edge]))
 
     def is_near(self, x: float, y: float) -> bool:
-        """Return whether (x, y) is near any road, whether that may be used or not."""
+        """Return whether (x, y) is near any road, usable or not."""
         return self.router is not None and self.router.nearest.nearest(x, y, REACH) is not None
 
     def set_closures(self, closures: Mapping[str, RoadStretch]) -> dict[str, int]:
-        """Close these stretches and no others; return how many edges each of them closes."""
+        """Close these stretches and no others; return the number of edges that each closes."""
         if self.router is None:
             self._closures = {id: set() for id in closures}
             return self.edge_counts()
@@ -166,12 +166,12 @@ class SiteRoads:
         return self.edge_counts()
 
     def edge_counts(self) -> dict[str, int]:
-        """Return how many edges each closure closes."""
+        """Return the number of edges that each closure closes."""
         return {id: len(edges) for id, edges in self._closures.items()}
 
     @contextmanager
     def opened(self, closure: str) -> Iterator[None]:
-        """Open the road of one closure for a while."""
+        """Open the road of one closure within the context."""
         edges = self._closures.get(closure, set())
         elsewhere = {edge for id, some in self._closures.items() if id != closure for edge in some}
         alone = edges - elsewhere
@@ -191,7 +191,7 @@ class SiteRoads:
         return found
 
     def closed_roads(self) -> ClosedRoads:
-        """Return what is closed now."""
+        """Return the closed roads now."""
         closures = {id: frozenset(edges) for id, edges in self._closures.items()}
         if self.router is None:
             return ClosedRoads(None, closures)
@@ -222,9 +222,9 @@ class SiteRoads:
 
 
 def _with_surfaces(network: Network, index: SurfaceIndex) -> Network:
-    """Return ``network`` with a surface for each edge that has none and lies on one by more than half.
+    """Return ``network`` with surfaces for edges that have none and lie on one by more than half.
 
-    Roads name their surface themselves where it is known; published ones often say it by their areas alone.
+    Roads have a surface attribute where it is known; published ones often have it only by their areas.
     """
     edges = network.edges
     unknown = np.flatnonzero(edges.surface == "")
@@ -238,7 +238,7 @@ def _with_surfaces(network: Network, index: SurfaceIndex) -> Network:
 
 
 def _places_along(line: Floats, metres: float) -> Floats:
-    """Return the middles of equal steps along ``line``, (k, 2)."""
+    """Return the midpoints of equal steps along ``line``, (k, 2)."""
     count = int(np.clip(np.ceil(metres / _APART_M), 1, _MOST_PLACES))
     stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
     at = (np.arange(count) + 0.5) * (stations[-1] / count)

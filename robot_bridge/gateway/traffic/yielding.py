@@ -1,4 +1,4 @@
-"""Yielding: where a robot waits for another, and when it goes on."""
+"""Yielding: where a robot waits for another, and when it continues."""
 
 from __future__ import annotations
 
@@ -35,26 +35,25 @@ from .closures import Detours
 from .conflicts import Movement, OtherMovements, Span, conflicts_with, driving_movement
 from .robot_paths import RobotPath, TrafficSnapshot, hold_report
 
-# --- Giving way: where and how long a robot waits so that others, who go on as they are, pass first ---
-# Prioritised planning (Erdmann and Lozano-Pérez, 1987): who comes first is planned first and then fixed,
-# and
-# who comes after is planned around it.
+# --- Yielding on the path: where and how long a robot waits so that others, as planned, pass first ---
+# Prioritised planning (Erdmann and Lozano-Pérez, 1987): the robot of higher priority is planned first and
+# then fixed, and the next one is planned around it.
 
 LONGEST_WAIT = 900.0
 """seconds."""
 _BACK = 2.0
-"""Metres between the places on its way at which a robot might wait."""
+"""Metres between the places on its path at which a robot might wait."""
 _PLACES = 12
-"""How many of them are tried at most, further apart on a long way."""
+"""Most places that are tried, further apart on a long path."""
 _STEP = 0.5
-"""Seconds by which a wait is made longer at least, as long as it is too short."""
+"""Least seconds by which a wait is extended, as long as it is too short."""
 _HALVINGS = 5
-"""How often the last step is halved to find the shortest wait."""
+"""Number of bisections of the last step to find the shortest wait."""
 
 
 @dataclass(frozen=True)
 class YieldWait:
-    """``movement`` waits ``seconds`` at ``station`` metres along its way and meets nobody."""
+    """``movement`` waits ``seconds`` at ``station`` metres along its path and has no conflict."""
 
     movement: Movement
     station: float
@@ -68,10 +67,10 @@ def yield_on_path(
     now: float,
     longest: float = LONGEST_WAIT,
 ) -> YieldWait | None:
-    """Return the wait that lets ``movement`` pass ``others`` as early as can be; None where none does.
+    """Return the wait that lets ``movement`` pass ``others`` as early as possible; None without one.
 
-    The robot drives as near to the conflict as it can wait there without being in anyone's way. Nothing has
-    to be waited for where there is no conflict.
+    The robot drives as near to the conflict as it can wait without being in the way of others. Without a
+    conflict the wait is 0 s.
     """
     around = OtherMovements(others, margin, now)
     found = around.conflicts(movement)
@@ -82,7 +81,7 @@ def yield_on_path(
     unless_waiting = [(one.begins, one.ends) for one in found]
     best: YieldWait | None = None
     for station in _places(met):
-        # Elsewhere it waits only where it is on its way again a second earlier.
+        # A further place counts only if the wait is shorter there by a second.
         below = math.inf if best is None else best.seconds - 1.0
         best = _wait_at(movement, station, around, unless_waiting, longest, below) or best
     return best
@@ -102,18 +101,18 @@ def _wait_at(
     longest: float,
     below: float,
 ) -> YieldWait | None:
-    """Return the wait at ``station`` metres, as short as can be within a tenth of a second or so.
+    """Return the shortest wait at ``station`` metres, within about a tenth of a second.
 
-    ``unless_waiting`` are the times of the conflicts where it does not wait. None where no wait below
-    ``below`` seconds helps.
+    ``unless_waiting`` are the spans of the conflicts without a wait. None where no wait below ``below``
+    seconds helps.
     """
     short, seconds, found = 0.0, 0.0, unless_waiting
     arrives = movement.time_at(station)
-    # Once everybody stands nothing changes any more.
+    # Once all others stand nothing changes any more.
     longest = min(longest, around.ends - arrives + 2 * _STEP)
     while found:
         if any(math.isinf(ends) or begins < arrives + seconds for begins, ends in found):
-            # Nobody moves out of the way by being waited for, and here the robot is itself in the way.
+            # The other never leaves, or the robot is itself in the way here: waiting does not help.
             return None
         short = seconds
         seconds += max(max(ends - begins for begins, ends in found) / 2, _STEP)
@@ -131,18 +130,18 @@ def _wait_at(
     return YieldWait(movement.waiting(station, seconds), station, seconds) if seconds < below else None
 
 
-# --- The nearest free place that a standing robot can go to, off the ways of all others; no I/O ---
+# --- Yielding aside: the nearest free place for a standing robot, off the paths of all others; no I/O ---
 
 REACH = 25.0
-"""Metres from where the robot stands within which a place is looked for."""
+"""Metres around the robot within which a place is searched."""
 STEP = 0.5
 """Metres between the circles on which places are tried."""
 DIRECTIONS = 32
 """Places on each circle."""
 MOST_TRIED = 400
-"""Places that are held against the others' movements, one after the other."""
+"""Most places that are checked against the others' movements."""
 SETS_OUT_AFTER = 3.0
-"""Seconds until the robot sets out: an operator looks at the way before sending it."""
+"""Seconds until the robot starts: an operator checks the way before sending it."""
 
 Bools = NDArray[np.bool_]
 
@@ -150,11 +149,11 @@ Bools = NDArray[np.bool_]
 def yield_beside_path(
     robot: Movement, others: Sequence[Movement], site: Site, speed: float, margin: float, now: float
 ) -> list[Point] | None:
-    """Return the straight way to the nearest place where ``robot``, which stands, is in nobody's way.
+    """Return the straight way to the nearest place where ``robot``, which stands, is out of all others' way.
 
     ``others`` move as planned; ``speed`` is metres a second, ``margin`` metres between two robots. The place
     lies on the site, on a road surface where the robot stands on one, and the robot's circle touches neither
-    a keepout nor an obstacle there, nor on the way but for those that it is at already. None where none is.
+    a keepout nor an obstacle there, nor on the way except those that it is at already. None without one.
     """
     start: Point = (float(robot.points[0, 0]), float(robot.points[0, 1]))
     places = _on_site(_around(start), site, robot.radius)
@@ -188,7 +187,7 @@ def _on_site(places: Floats, site: Site, radius: float) -> Floats:
 
 
 def _is_on_surface(places: Floats, start: Point, site: Site) -> Bools:
-    """Tell which places are on a road surface; all where the robot itself stands on none."""
+    """Return which places are on a road surface; all where the robot itself stands on none."""
     index = site.surface_index
     if index.at(*start) == NOWHERE:
         return np.ones(len(places), dtype=bool)
@@ -197,7 +196,7 @@ def _is_on_surface(places: Floats, start: Point, site: Site) -> Bools:
 
 
 def _is_clear(places: Floats, start: Point, areas: FencedAreas, radius: float) -> Bools:
-    """Tell which places, and the legs to them, are clear of areas; a robot may leave those that it is at."""
+    """Return which places, and the legs to them, are clear of areas; a robot may leave those it is at."""
     clear = np.ones(len(places), dtype=bool)
     clear[areas.near(places, radius)[0]] = False
     for metres in (radius, TOUCH_M):
@@ -208,7 +207,7 @@ def _is_clear(places: Floats, start: Point, areas: FencedAreas, radius: float) -
 
 
 def _is_off_ways(places: Floats, others: Sequence[Movement], clearance: float) -> Bools:
-    """Tell which places are off the ways of others, whenever they drive them, and of where they stand."""
+    """Return which places are off the paths of others, at any time, and off their final positions."""
     off = np.ones(len(places), dtype=bool)
     for other in others:
         low, high = other.points.min(axis=0) - REACH, other.points.max(axis=0) + REACH
@@ -218,11 +217,11 @@ def _is_off_ways(places: Floats, others: Sequence[Movement], clearance: float) -
 
 
 def _metres_to(line: Floats, places: Floats) -> Floats:
-    """Return how far each of ``places`` is from a line through points, or from its only point."""
+    """Return the distance of each of ``places`` from a line through points, or from its only point."""
     nearest: Floats = np.hypot(*(places - line[0]).T)
     begin, step = line[:-1], np.diff(line, axis=0)
     square = np.maximum((step * step).sum(axis=1), 1e-12)
-    # Leg by leg: all at once a long way would take as much memory as points times places.
+    # Leg by leg: all at once a long path would take memory in proportion to points times places.
     for origin, along, length in zip(begin, step, square, strict=True):
         share = np.clip(((places - origin) @ along) / length, 0.0, 1.0)
         foot = origin + share[:, None] * along
@@ -230,17 +229,17 @@ def _metres_to(line: Floats, places: Floats) -> Floats:
     return nearest
 
 
-# --- Robots that wait for others to pass: sent to where they wait, and on from there when the way is free
+# --- Robots that wait for others to pass: sent to their place of waiting, and on when the path is free
 
 log = logging.getLogger(__name__)
 
 ENDING = ("Abort", "SetPosEnd", "SetPath")
 NEAR = 1.0
-"""Metres within which a robot is where it is to wait."""
+"""Metres within which a robot is at its place of waiting."""
 
 
 class YieldManager:
-    """Every robot that waits. What it drives afterwards is stored, so that it is sent on after a restart."""
+    """The robots that wait. The rest of their paths is stored, so that they are sent on after a restart."""
 
     def __init__(
         self,
@@ -256,36 +255,36 @@ class YieldManager:
         self._detours = detours
         self._rows = waiting
         self._doubtful = False
-        """whether a robot may be stored as one that waits without being known here."""
+        """whether a robot may be stored as waiting without being known here."""
 
     def __len__(self) -> int:
         return len(self._rows)
 
     def rows(self) -> dict[str, HoldRow]:
-        """Return who waits, by name."""
+        """Return the stored rows of the waiting robots, by name."""
         return dict(self._rows)
 
     def report(self) -> list[HoldReport]:
-        """Return who waits as operators are told it."""
+        """Return the reports of the waiting robots."""
         return [hold_report(row) for row in self._rows.values()]
 
     async def restore(self) -> None:
-        """Take up the robots that wait since an earlier gateway."""
+        """Load the robots that wait since an earlier gateway."""
         rows = await self._database.run(stored.held)
         self._rows.clear()
-        # Those of other gateways are sent on by these.
+        # Robots of other gateways are sent on by those.
         self._rows.update({row.robot: row for row in rows if self._robots.gateway_of(row.robot) is None})
 
     def doubt(self) -> None:
-        """Look soon who waits: robots may have come that another gateway had."""
+        """Mark the stored rows to be read again: robots of another gateway may have come."""
         self._doubtful = True
 
     def clock_was_set(self, step: ClockStep) -> None:
-        """Keep the times that robots wait for: one would wait for years, or no more."""
+        """Keep the remaining times of waiting: a robot would wait for years, or no more."""
         self._rows.update({n: row._replace(until=step.moved(row.until)) for n, row in self._rows.items()})
 
     async def catch_up(self) -> None:
-        """Take up robots that were stored as waiting without that being known; raises StoreError."""
+        """Load robots that may be stored as waiting without being known here; raises StoreError."""
         if self._doubtful:
             await self._commands.look_up()
             await self.restore()
@@ -294,10 +293,10 @@ class YieldManager:
     async def send(
         self, way: RobotPath, first: list[Point], rest: list[Point], other: str, until: float, operator: str
     ) -> str:
-        """Send a robot along ``first`` and let it wait there for ``other`` until ``until`` at least.
+        """Send a robot along ``first`` and make it wait there for ``other`` until ``until`` at least.
 
-        Then it is sent along ``rest``; the path of a queue's task goes on as that task. Return the id of the
-        command that it carries out; raises as :meth:`.Detours.send`.
+        Then it is sent along ``rest``; the path of a queue's task continues as that task. Return the id of
+        the command that it carries out; raises as :meth:`.Detours.send`.
         """
         task, queues = self._detours.queued(way), self._detours.queues
         if task is not None:
@@ -325,16 +324,16 @@ class YieldManager:
         return await self._detours.queues.stop_over(way.robot, first, rest, row.other, row.by, also)
 
     def note_step(self, report: CommandReport) -> None:
-        """Note a command: whoever is told anything else waits no longer, and is sent on by nobody."""
+        """Process a command: a robot that is sent another one no longer waits, and is not sent on."""
         row = self._rows.get(report.robot)
         ends = report.state is CommandState.QUEUED and report.op in ENDING
-        # What leads it to where it waits may be written for it once more.
+        # The command to its place of waiting may be written again.
         if ends and row is not None and row.command != report.command:
             del self._rows[report.robot]
             log.warning("robot %s was told %s, and waits no longer", report.robot, report.op)
 
     def check(self, robot: str) -> None:
-        """Raise RefusedError for a robot that asks for its way while it is to wait."""
+        """Raise RefusedError for a robot that requests its path while it must wait."""
         row = self._rows.get(robot)
         if row is not None and self._commands.busy_with(robot) == row.command:
             raise RefusedError(
@@ -342,21 +341,21 @@ class YieldManager:
             )
 
     async def see_to(self, seen: TrafficSnapshot) -> None:
-        """Send on who waits no longer: the time is over and nobody is in the way.
+        """Send on the robots with an expired wait and a free path.
 
-        Of a robot of which it is not known where it is now nothing is decided yet.
+        Robots with an unknown present position are left for later.
         """
         for row in [row for row in self._rows.values() if row.robot in seen.placed]:
             try:
-                await self._see_to(row, seen)
+                await self._send_on(row, seen)
             except BridgeError as error:
                 log.warning("robot %s, which waits for %s, is not sent on: %s", row.robot, row.other, error)
             except Exception:
                 log_unforeseen(log, f"robot {row.robot}, which waits for {row.other}")
 
-    async def _see_to(self, row: HoldRow, seen: TrafficSnapshot) -> None:
+    async def _send_on(self, row: HoldRow, seen: TrafficSnapshot) -> None:
         task = self._commands.busy_with(row.robot)
-        if not self._goes_on(row, task, seen):
+        if not self._still_waits(row, task, seen):
             log.warning("robot %s has been told otherwise, or gave up; it waits no longer", row.robot)
             await self._forget(row.robot)
             return
@@ -381,15 +380,15 @@ class YieldManager:
         await self._detours.send(way, path, row.by, f"{row.other} has passed", also)
         self._rows.pop(row.robot, None)
 
-    def _goes_on(self, row: HoldRow, task: str | None, seen: TrafficSnapshot) -> bool:
-        """Return whether the robot still does what it was told to, or stands where it was to wait."""
+    def _still_waits(self, row: HoldRow, task: str | None, seen: TrafficSnapshot) -> bool:
+        """Return whether the robot still carries out its command, or stands at its place of waiting."""
         if task is not None:
             return task == row.command
         place, _ = seen.places[row.robot]
         return math.dist(place, SetPath(**row.rest).points[0]) <= NEAR
 
     async def forget(self, robot: str) -> None:
-        """Let a robot wait no longer, and send it nowhere; raises StoreError."""
+        """End the waiting of a robot without sending it on; raises StoreError."""
         if robot in self._rows:
             await self._forget(robot)
 
@@ -399,7 +398,7 @@ class YieldManager:
 
 
 def _is_free(row: HoldRow, seen: TrafficSnapshot) -> bool:
-    """Return whether the robot meets nobody on the rest of its way if it goes on now."""
+    """Return whether the robot has no conflict on the rest of its path if it continues now."""
     movements = seen._replace(holds={**seen.holds, row.robot: row._replace(until=seen.now)}).movements()
     mine = movements.pop(row.robot)
     return not conflicts_with(mine, movements.values(), seen.settings.margin_m, seen.now)

@@ -83,7 +83,7 @@ async def test_one_that_waits_in_trouble_holds_up_no_other_that_waits(
             raise error
         seen_to.append(row.robot)
 
-    monkeypatch.setattr(waiting, "_see_to", see_to)
+    monkeypatch.setattr(waiting, "_send_on", see_to)
     await roads.fleet.watch_roads()
     assert seen_to == ["r2"]
     assert said in caplog.text
