@@ -65,17 +65,17 @@ from .storage.singleton_lock import MessageNote, SingletonLock
 from .traffic.road_planning import RoadPlanner
 from .trajectories.recording import TrajectoryPages
 
-# --- The end of a gateway in good order: every client is told, and none of them holds it up ---
+# --- Shutdown in good order: every client is notified, and none of them delays it ---
 
 REASON = "the gateway ends; connect again after a while"
 FIRST_WORDS = 0.1
-"""seconds for operators' sessions to send what they are told last."""
+"""seconds for operators' sessions to send their last notifications."""
 CLOSED_WITHIN = 0.8
-"""seconds for the closing handshakes, all at once; who has not closed by then is cut off."""
+"""seconds for the closing handshakes, all at once; connections still open then are aborted."""
 
 
 async def notify_clients(server: Server, fleet: Fleet) -> None:
-    """Take no more connections, tell operators ``stopping``, and close every connection with code 1012."""
+    """Accept no more connections, send operators ``stopping``, and close every connection with code 1012."""
     server.close(close_connections=False)
     fleet.listeners.announce("stopping", "", to_json(Stopping(REASON)))
     await asyncio.sleep(FIRST_WORDS)
@@ -99,7 +99,7 @@ async def _close(connection: ServerConnection) -> None:
         await connection.close(CloseCode.SERVICE_RESTART, REASON)
 
 
-# --- The gateway: puts the parts together, starts and stops them ---
+# --- The gateway: assembles the parts, starts and stops them ---
 
 log = logging.getLogger(__name__)
 
@@ -117,15 +117,15 @@ PLANS_INTERVAL = 0.5
 MOST_THREADS = 32
 ENDPOINTS = {path: kind for kind, path in PATHS.items()}
 SAVE_WITHIN, CLOSE_WITHIN = 2.2, 0.5
-"""seconds for the last words to the database, so that a gateway ends within five in all."""
+"""seconds for the last writes to the database, so that a gateway ends within five in all."""
 
 
 @dataclass(frozen=True)
 class GatewaySettings:
-    """What a gateway is started with; port 0 takes any free one.
+    """Start settings of a gateway; port 0 takes any free one.
 
-    ``state`` is the folder for what it notes on this computer, None for the one that the site's lies in.
-    A site that a supervisor chose goes before ``site``, unless it has to be served ``site_as_given``. Where
+    ``state`` is the folder for its state files on this computer, None for the parent of the site's folder.
+    A site that a supervisor chose precedes ``site``, unless it must be served ``site_as_given``. Where
     ``site`` is the folder of a ``site_copy``, that is kept as new as its database. With ``cluster`` it is one
     of several gateways that serve the fleet.
     """
@@ -143,7 +143,7 @@ class GatewaySettings:
 
 @dataclass
 class Signals:
-    """What a gateway is told from outside while it runs: to end, and to read its settings again."""
+    """External signals to a running gateway: to end, and to read its settings again."""
 
     stop: asyncio.Event = field(default_factory=asyncio.Event)
     reload: asyncio.Event = field(default_factory=asyncio.Event)
@@ -178,12 +178,12 @@ class Gateway:
         self.retention = Retention(fleet.database, fleet.site)
 
     async def serve(self, host: str, port: int) -> Server:
-        """Listen for robots and operators; raises BridgeError when that cannot be done there."""
+        """Listen for robots and operators; raises BridgeError when it cannot listen there."""
         context = self._tls.context if self._tls else None
         return await listen(self._gate, host, port, context, self._admit, self._connected)
 
     def works(self, address: str) -> dict[str, Work]:
-        """Return what keeps a gateway at ``address`` going: liveness, trajectories, links, accounts."""
+        """Return the works of a gateway at ``address``: liveness, trajectories, links, accounts etc."""
         fleet, counters = self._fleet, self._fleet.counters
         works: dict[str, Work] = {
             "sql link": SqlInterface(fleet, fleet.database).run,
@@ -261,7 +261,7 @@ class Gateway:
         return await self._gate.admit(connection, request, kind, name, self._largest_message(kind))
 
     def _own_origin(self, request: Request, path: str) -> str | None:
-        """Return the origin of the field page, of a request that it may make."""
+        """Return the origin of the field page for a request that it may make."""
         host = request.headers.get("Host") if len(request.headers.get_all("Host")) == 1 else None
         may = path == PATHS[TokenKind.OPERATOR] or self._field.serves(path)
         if host is None or not may or self._host_fault(request) is not None:
@@ -276,7 +276,7 @@ class Gateway:
         return await self._field.site(request)
 
     def _host_fault(self, request: Request) -> str | None:
-        """Return why a page is not asked for by a name of this gateway, None where it is."""
+        """Return the fault where a page is not requested by a name of this gateway, else None."""
         names = (*self._gate.limits.hosts, *(self._tls.names if self._tls is not None else ()))
         return host_fault(request.headers.get_all("Host"), names)
 
@@ -293,7 +293,7 @@ class Gateway:
         largest = self._gate.limits.largest_message_bytes
         if kind is TokenKind.OPERATOR:
             return largest
-        # An image travels as base64, four bytes for three, with its parameters beside it.
+        # An image is sent as base64, four bytes for three, with its parameters.
         image = self._fleet.site.settings.observations.largest_image_bytes
         return max(largest, image * 4 // 3 + 65_536)
 
@@ -311,7 +311,7 @@ class Gateway:
 def request_handlers(
     fleet: Fleet, plans: PlanService, database: Database, sites: SiteWatch, journal: AuditJournal
 ) -> RequestHandlers:
-    """Return who answers which request of operators; those that concern a connection alone, that does."""
+    """Return the handlers of operators' requests; those on a connection alone are handled by it."""
     handlers = RequestHandlers(
         fleet.orders,
         fleet.emergency,
@@ -335,12 +335,12 @@ def request_handlers(
 
 
 async def run(settings: GatewaySettings, signals: Signals, started: Callable[[str], None]) -> None:
-    """Run a gateway until it is told to stop; ``started`` is called with its address, ``ws://host:port``.
+    """Run a gateway until its stop signal; ``started`` is called with its address, ``ws://host:port``.
 
-    :raises BridgeError: when it may not listen there, another gateway runs on its database, or it cannot go
-        on; SiteError and StoreError for its site and database.
+    :raises BridgeError: when it may not listen there, another gateway runs on its database, or it cannot
+        continue; SiteError and StoreError for its site and database.
     """
-    # Threads that wait for one another's ways must not keep others waiting.
+    # Threads that wait for one another in route planning must not block other work.
     asyncio.get_running_loop().set_default_executor(ThreadPoolExecutor(MOST_THREADS, "gateway"))
     if settings.cluster is not None:
         settings.cluster.check(settings.database)
@@ -352,7 +352,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
         stack.push_async_callback(database.close, CLOSE_WITHIN)
         await database.open()
         cluster, holding = await _hold_database(settings, database, stack)
-        # After the database: a city takes a while to read, and a wrong address is told at once.
+        # After the database: a city takes a while to read, and a wrong address is reported at once.
         site = await asyncio.to_thread(read_site, settings.site)
         # Before anything is stored by this clock.
         doubt = check_clock_at_start(time.time(), await database.run(newest_time))
@@ -395,7 +395,7 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
             log.warning("%s", doubt.text)
             if doubt.may_be_ahead:
                 gateway.retention.doubt_clock()
-        # Without them positions are stored all the same; what is wrong is logged when it is tried again.
+        # Without them positions are stored all the same; the error is logged at the next attempt.
         with contextlib.suppress(StoreError):
             await gateway.retention.make_days()
         server = await gateway.serve(settings.host, settings.port)
@@ -419,9 +419,9 @@ async def run(settings: GatewaySettings, signals: Signals, started: Callable[[st
 async def _hold_database(
     settings: GatewaySettings, database: Database, stack: contextlib.AsyncExitStack
 ) -> tuple[Cluster | None, dict[str, Work]]:
-    """Have the database alone, or enter the fleet that it is; return that, and the work that keeps it so.
+    """Lock the database, or join the cluster on it; return the cluster, and the works that keep the hold.
 
-    :raises BridgeError: when others have it in a way that does not go with this one's; StoreError.
+    :raises BridgeError: when other gateways use it in an incompatible way; StoreError.
     """
     if settings.cluster is None:
         sole = SingletonLock(settings.database)
@@ -435,7 +435,7 @@ async def _hold_database(
     note = await _checked_note(settings, database, stack)
     cluster = await join_cluster(settings.cluster, database, lease, fleet)
     stack.push_async_callback(cluster.membership.leave)
-    # At once: to read a city takes longer than a lease lasts.
+    # At once: reading a city takes longer than a lease lasts.
     holding = asyncio.create_task(cluster.membership.hold())
     stack.callback(holding.cancel)
     return cluster, {"lease": lambda: asyncio.shield(holding), "newest message": note.hold}
@@ -444,7 +444,7 @@ async def _hold_database(
 async def _checked_note(
     settings: GatewaySettings, database: Database, stack: contextlib.AsyncExitStack
 ) -> MessageNote:
-    """Return the note of the newest message, after the database was compared with it; StoreError."""
+    """Return the note of the newest message, after a comparison with the database; raises StoreError."""
     name = None if settings.cluster is None else settings.cluster.name
     note = MessageNote(database, _state_folder(settings), name)
     await note.check()
@@ -453,7 +453,7 @@ async def _checked_note(
 
 
 def _state_folder(settings: GatewaySettings) -> Path | None:
-    """Return the folder for what the gateway notes on this computer; None for a database in memory."""
+    """Return the folder for the gateway's state files on this computer; None for a database in memory."""
     if settings.database.get_backend_name() == "sqlite":
         file = sqlite_file_of(settings.database)
         return None if file is None else file.parent
@@ -476,7 +476,7 @@ def _relays(
 
 
 async def _site_folder(settings: GatewaySettings, database: Database) -> Path:
-    """Return the folder of the site to be served: the one that a supervisor chose, else the given one."""
+    """Return the folder of the site to serve: the one that a supervisor chose, else the given one."""
     given = settings.site.resolve()
     if settings.site_as_given:
         await database.run(metadata.forget_site)
@@ -505,9 +505,9 @@ def _chosen(folder: Path, given: Site) -> Site:
 async def _check_frame(
     site: Site, settings: GatewaySettings, database: Database, cluster: Cluster | None
 ) -> None:
-    """Raise BridgeError for a site whose metres are other places than those in the database; StoreError.
+    """Raise BridgeError for a site with a frame that differs from that of the database; StoreError.
 
-    Robots would be sent to the numbers of what they were to do, and find other places there.
+    Robots would be sent to stored coordinates that are other places in the frame of this site.
     """
     frame = frame_text(site.settings)
     is_alone = cluster is None or not cluster.membership.others()
@@ -532,7 +532,7 @@ def _journal(settings: GatewaySettings) -> StopJournal | None:
 
 
 async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event) -> None:
-    """Run ``watch`` until ``stop`` is set; what it raises ends the gateway."""
+    """Run ``watch`` until ``stop`` is set; an exception of it ends the gateway."""
     watching, stopping = asyncio.create_task(watch), asyncio.create_task(stop.wait())
     await asyncio.wait({watching, stopping}, return_when=asyncio.FIRST_COMPLETED)
     if watching.done():
@@ -543,7 +543,7 @@ async def _until_stopped(watch: Coroutine[None, None, None], stop: asyncio.Event
 
 
 async def _save_last(fleet: Fleet, plans: PlanService, gate: AuthGate) -> None:
-    """Store what waits; a database that does not answer must not keep the gateway from ending."""
+    """Store all that is pending; a database that does not answer must not prevent the gateway's end."""
     try:
         async with asyncio.timeout(SAVE_WITHIN):
             await fleet.finish_trajectories()
@@ -555,7 +555,7 @@ async def _save_last(fleet: Fleet, plans: PlanService, gate: AuthGate) -> None:
 
 
 def _name_in(path: str, kind: TokenKind) -> str | None:
-    """Return who a request says to come from: ``?robot=NAME``, or ``?link=NAME``."""
+    """Return the name in a request: ``?robot=NAME``, or ``?link=NAME``."""
     if kind is TokenKind.LINK:
         links = parse_qs(urlsplit(path).query).get("link")
         return check_link_name(links[0]) if links else None
@@ -564,7 +564,7 @@ def _name_in(path: str, kind: TokenKind) -> str | None:
 
 
 def _for_links(address: str) -> str:
-    """Return where links on this computer find the gateway, of its address ``ws://host:port``."""
+    """Return the URL of the gateway for links on this computer, from its address ``ws://host:port``."""
     parts = urlsplit(address)
     host = address_here(parts.hostname or "")
     return f"{parts.scheme}://{f'[{host}]' if ':' in host else host}:{parts.port}{PATHS[TokenKind.LINK]}"

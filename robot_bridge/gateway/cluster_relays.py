@@ -1,4 +1,4 @@
-"""Relays between the gateways of a fleet, put together on what the fleet of this one is."""
+"""Relays between the gateways of a fleet, assembled on the fleet of this one."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ FORGET_INTERVAL_S = 600.0
 LEADER_LOOK_S = 0.25
 SUSPEND_INTERVAL_S = 0.5
 ONCE_PER_DATABASE = ("sql link", "links", "prune", "stuck robots")
-"""Work that the leader does for all gateways."""
+"""Works that the leader does for all gateways."""
 
 
 class ClusterRelays:
-    """What a gateway of several does beside what one alone does."""
+    """The additional works of a gateway that is one of several."""
 
     def __init__(
         self,
@@ -69,11 +69,11 @@ class ClusterRelays:
         exchange.subscribe(Wake, self._woken)
 
     def reach(self, link: Callable[[str, str], bool]) -> None:
-        """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
+        """Call ``link`` with a robot and the id of a call when another gateway aborts it directly."""
         self.requests.reach(link)
 
     def works(self, works: Mapping[str, Work], counters: Counters) -> dict[str, Work]:
-        """Return ``works`` of a gateway as one of several does them, and what it does beside."""
+        """Return ``works`` of a gateway adapted to one of several, with the additional ones."""
         if "suspensions" in works:
             works = {
                 **works,
@@ -108,13 +108,13 @@ class ClusterRelays:
         }
 
     async def _beat(self) -> None:
-        """Tell others that this gateway is there, whatever else waits."""
+        """Send heartbeats to other gateways, independent of all other work."""
         while True:
             self._numbers.send_beat()
             await asyncio.sleep(BEAT_INTERVAL_S)
 
     async def _suspend(self) -> None:
-        """Learn which accounts are suspended, and decide on that while this gateway leads."""
+        """Read the suspended accounts, and update them while this gateway leads."""
         await self._fleet.suspensions.follow()
         if self._cluster.membership.leads:
             await self._fleet.suspensions.update()
@@ -137,13 +137,13 @@ class ClusterRelays:
             self._owners_changed.set()
 
     def _led(self, name: str, work: Work, counters: Counters) -> Work:
-        """Return the work that does ``work`` while this gateway leads."""
+        """Return a work that runs ``work`` only while this gateway leads."""
 
         async def led() -> None:
             membership = self._cluster.membership
             while True:
                 while not membership.leads:
-                    # It is well with what another gateway does.
+                    # Work done by another gateway counts as done.
                     counters.beat(name)
                     await asyncio.sleep(LEADER_LOOK_S)
                 task = asyncio.ensure_future(work())

@@ -25,7 +25,7 @@ from ..core.logs import TroubleNews
 
 log = logging.getLogger(__name__)
 
-# --- What the gateway counts while it works: plain numbers, so that a message costs no more than an addition
+# --- Counters of the gateway: plain numbers, so that a message costs no more than an addition
 
 
 @dataclass
@@ -44,7 +44,7 @@ class Counters:
     beats: dict[str, float] = field(default_factory=dict)
 
     def beat(self, task: str) -> None:
-        """Note that ``task`` did its work just now."""
+        """Record that ``task`` did its work just now."""
         self.beats[task] = time.monotonic()
 
     def age(self, task: str) -> float | None:
@@ -62,7 +62,7 @@ def gateway_version() -> str:
         return "unknown"
 
 
-# --- What the gateway has to say in numbers, in the format that Prometheus reads ---
+# --- Metrics of the gateway, in the format of Prometheus ---
 
 CONTENT_TYPE = CONTENT_TYPE_LATEST
 _DATABASE_BUCKETS = (0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0)
@@ -72,7 +72,7 @@ Values = Mapping[tuple[str, ...], float]
 
 @dataclass(frozen=True)
 class MetricReading:
-    """A number that is looked up when somebody asks: ``values`` by the values of its ``labels``."""
+    """A metric that is read on request: ``values`` by the values of its ``labels``."""
 
     name: str
     text: str
@@ -82,7 +82,7 @@ class MetricReading:
 
 
 class Metrics:
-    """The numbers of one gateway, in a registry of its own."""
+    """The metrics of one gateway, in a registry of its own."""
 
     def __init__(self, counters: Counters) -> None:
         self._registry = CollectorRegistry()
@@ -97,11 +97,11 @@ class Metrics:
         self._registry.register(_Collector(self._readings))
 
     def add(self, readings: Iterable[MetricReading]) -> None:
-        """Add numbers that are looked up when somebody asks."""
+        """Add metrics that are read on request."""
         self._readings.extend(readings)
 
     def page(self) -> bytes:
-        """Return all numbers as text; its content type is :data:`CONTENT_TYPE`."""
+        """Return all metrics as text; its content type is :data:`CONTENT_TYPE`."""
         return generate_latest(self._registry)
 
 
@@ -115,13 +115,13 @@ class _Collector:
         for reading in self._readings:
             kind = CounterMetricFamily if reading.counts else GaugeMetricFamily
             family = kind(reading.name, reading.text, labels=reading.labels)
-            # A copy: other threads count on while this is read.
+            # A copy: other threads continue counting while this is read.
             for labels, value in sorted(dict(reading.values()).items()):
                 family.add_metric(labels, value)
             yield family
 
     def describe(self) -> list[Metric]:
-        """Return nothing: the readings are not all there yet."""
+        """Return nothing: the readings are not complete yet."""
         return []
 
 
@@ -155,23 +155,23 @@ def _counter_readings(counters: Counters) -> Iterator[MetricReading]:
         yield MetricReading(f"robot_bridge_{name}", text, (label,), single(counter), counts=True)
 
 
-# --- Work that goes on as long as the gateway does: what fails is logged, counted and tried again ---
+# --- Works that run as long as the gateway: failures are logged, counted and retried ---
 
 Work = Callable[[], Awaitable[None]]
 
 FIRST_PAUSE, LONGEST_PAUSE = 0.25, 2.0
-"""seconds before something foreseen, such as a database that is away, is tried again."""
+"""seconds before a retry after a foreseen failure, such as an unavailable database."""
 LONGEST_PAUSE_UNFORESEEN = 30.0
 LAST_ATTEMPT = 20
-"""failures in a row that nobody foresaw, after which the process had better be started again."""
+"""unforeseen failures in a row after which the process should be restarted."""
 SOUND = 60.0
 """seconds of work without a failure after which earlier ones no longer count."""
 
 
 async def keep_all_going(works: Mapping[str, Work], counters: Counters) -> None:
-    """Run every work side by side, as :func:`keep_going`, until one of them is hopeless.
+    """Run all works concurrently, as :func:`keep_going`, until one of them cannot continue.
 
-    :raises FatalError: when one of them cannot go on.
+    :raises FatalError: when one of them cannot continue.
     """
     tasks = [asyncio.create_task(keep_going(name, work, counters), name=name) for name, work in works.items()]
     try:
@@ -185,7 +185,7 @@ async def keep_all_going(works: Mapping[str, Work], counters: Counters) -> None:
 async def keep_going(name: str, work: Work, counters: Counters) -> None:
     """Run ``work``, and again after a growing pause when it raises; returns when it returns.
 
-    :raises FatalError: when ``work`` raises it, or fails again and again for a reason nobody foresaw.
+    :raises FatalError: when ``work`` raises it, or fails repeatedly for an unforeseen reason.
     """
     trouble = RetryState(name)
     while True:
@@ -201,7 +201,7 @@ async def keep_going(name: str, work: Work, counters: Counters) -> None:
 
 
 class RetryState:
-    """The failures of one work in a row: how long to wait after each, and which the log is told of."""
+    """The failures of one work in a row: the wait after each, and which of them are logged."""
 
     def __init__(self, name: str) -> None:
         self._name = name
@@ -210,9 +210,9 @@ class RetryState:
         self._news = TroubleNews()
 
     def record_failure(self, error: Exception, lasted: float) -> float:
-        """Log ``error`` and return the seconds to wait; ``lasted`` is how long the work went well before it.
+        """Log ``error`` and return the seconds to wait; ``lasted`` is the time that the work ran before it.
 
-        :raises FatalError: when it has failed too often for a reason nobody foresaw.
+        :raises FatalError: when it has failed too often for unforeseen reasons.
         """
         if lasted > SOUND:
             self._pause, self._unforeseen = FIRST_PAUSE, 0
@@ -220,7 +220,7 @@ class RetryState:
         self._unforeseen += 0 if foreseen else 1
         pause = self._pause
         self._pause = min(2 * pause, LONGEST_PAUSE if foreseen else LONGEST_PAUSE_UNFORESEEN)
-        self._tell(error, foreseen, pause)
+        self._log_failure(error, foreseen, pause)
         if self._unforeseen >= LAST_ATTEMPT:
             raise FatalError(
                 f"{self._name} failed {self._unforeseen} times, last with {type(error).__name__}: {error}; "
@@ -228,7 +228,7 @@ class RetryState:
             ) from error
         return pause
 
-    def _tell(self, error: Exception, foreseen: bool, pause: float) -> None:
+    def _log_failure(self, error: Exception, foreseen: bool, pause: float) -> None:
         if not foreseen:
             name = type(error).__name__
             log.exception("%s: unexpected %s; trying again in %g s", self._name, name, pause)
@@ -237,17 +237,17 @@ class RetryState:
 
 
 class Steps:
-    """The steps of one work: each is done whatever becomes of the others."""
+    """The steps of one work: each is done even if others fail."""
 
     def __init__(self, name: str) -> None:
         self._name = name
         self._news = TroubleNews()
 
     async def run(self, steps: Mapping[str, Work]) -> None:
-        """Do every step in its order; the log is told of each that fails, once a minute while it does.
+        """Do every step in order; each that fails is logged, once a minute while it does.
 
-        What nobody foresaw stays with its step: what a robot or a row has brought about there would end the
-        gateway, and the next one too.
+        An unforeseen error is confined to its step: a cause in a robot or a row would end the gateway, and
+        the next one too.
 
         :raises BridgeError: the first one of any step, after the last step.
         """
@@ -271,7 +271,7 @@ class Steps:
 
 
 class BackgroundTasks:
-    """Tasks that nobody awaits, kept until they end: the event loop alone would let them be collected."""
+    """Tasks that are not awaited, kept until they end: the event loop has only weak references to them."""
 
     def __init__(self) -> None:
         self._tasks: set[asyncio.Task[None]] = set()
@@ -287,66 +287,66 @@ class BackgroundTasks:
         return task
 
     async def wait(self, most: int = 0) -> None:
-        """Wait until no more than ``most`` run, whatever becomes of them."""
+        """Wait until no more than ``most`` run, whatever their outcomes."""
         until = asyncio.FIRST_COMPLETED if most else asyncio.ALL_COMPLETED
         while len(self._tasks) > most:
             await asyncio.wait(self._tasks, return_when=until)
 
 
 async def wait_at_most(event: asyncio.Event, seconds: float) -> None:
-    """Wait until ``event`` is set, ``seconds`` at most; it stays as it is."""
+    """Wait until ``event`` is set, ``seconds`` at most; the event is not changed."""
     with contextlib.suppress(TimeoutError):
         async with asyncio.timeout(seconds):
             await event.wait()
 
 
 async def every(seconds: float, work: Work, name: str, counters: Counters) -> None:
-    """Run ``work`` every so many seconds for ever, each success noted as a beat of ``name``."""
+    """Run ``work`` every so many seconds forever, each success recorded as a beat of ``name``."""
     while True:
         await asyncio.sleep(seconds)
         await work()
         counters.beat(name)
 
 
-# --- How often Python looks for objects that hold each other: rarely, since everybody waits while it does
+# --- Garbage collection of reference cycles: rare, since all work waits meanwhile
 
 YOUNG, MIDDLE, OLD = 50_000, 5, 4
-"""Objects, and rounds, before the next look (see :func:`gc.set_threshold`). A thousand robots that send ten
-thousand positions a second have up to 20 000 objects waiting to be stored, whose end is known of without a
-look. With fewer YOUNG than that there was one every two seconds, and one of 30 ms every ten; with Python's
-own it was one of 140 ms every five. What connections leave behind that are gone waits for a look at the OLD,
-which comes after ten thousand of them: see :class:`GarbageCollection`."""
+"""Thresholds of :func:`gc.set_threshold`: objects, and rounds, before the next collection. A thousand robots
+that send ten thousand positions a second have up to 20 000 objects waiting to be stored, which are freed
+without a collection. With fewer YOUNG than that there was one every two seconds, and one of 30 ms every ten;
+with Python's defaults it was one of 140 ms every five. Remains of closed connections wait for a collection of
+the OLD, which comes after ten thousand of them: see :class:`GarbageCollection`."""
 MOST_GONE = 1000
-"""Connections that go before the next look at all objects, whatever else there is to do. Each leaves 90
-objects that hold each other, 12 kB in all."""
+"""Closed connections before the next full collection, whatever else there is to do. Each leaves 90 objects
+in reference cycles, 12 kB in all."""
 REST = 50.0
-"""How many times as long as such a look took none follows: everybody waits while it is done."""
+"""Pause after a full collection as a multiple of its duration: all work waits during one."""
 
 
 def freeze_permanent_objects() -> None:
-    """Call when everything is loaded: that is not looked at again, and the rest less often."""
+    """Exclude all loaded objects from collection, and collect others less often; call it once loaded."""
     gc.collect()
     gc.freeze()
     gc.set_threshold(YOUNG, MIDDLE, OLD)
 
 
 AFTER_STOP_S, MOST_POSTPONED_S = 5.0, 30.0
-"""seconds without a look after an emergency stop has begun, and at most where one follows another: to stop a
-thousand robots makes so many objects that there would be several, of 40 ms of a core each and more."""
+"""seconds without collections after an emergency stop has begun, and at most where one follows another:
+stopping a thousand robots makes so many objects that there would be several, of 40 ms or more."""
 
 
 class GarbageCollection:
-    """Sees to what connections leave behind: by the time they go it is old, and looks at the old are rare."""
+    """Collects the remains of closed connections, which are in the oldest generation, rarely collected."""
 
     def __init__(self, clock: Clock = SYSTEM_CLOCK) -> None:
         self._clock = clock
-        self._looked_at = 0
+        self._collected_at = 0
         self._rests_until = -math.inf
         self._postponed_since: float | None = None
         self._postponed_until = -math.inf
 
     def postpone(self) -> None:
-        """Have Python look at nothing for a while; :meth:`clear_away` lets it look again."""
+        """Disable collections for a while; :meth:`clear_away` enables them again."""
         now = self._clock.steady()
         if self._postponed_since is None:
             self._postponed_since = now
@@ -354,16 +354,16 @@ class GarbageCollection:
         self._postponed_until = min(now + AFTER_STOP_S, self._postponed_since + MOST_POSTPONED_S)
 
     def clear_away(self, gone: int) -> None:
-        """Look at all objects when ``gone``, connections since the start, has grown by MOST_GONE since."""
+        """Do a full collection when ``gone``, connections closed since the start, has grown by MOST_GONE."""
         began = self._clock.steady()
         if self._postponed_since is not None:
             if began < self._postponed_until:
                 return
             self._postponed_since = None
             gc.enable()
-        if gone - self._looked_at < MOST_GONE or began < self._rests_until:
+        if gone - self._collected_at < MOST_GONE or began < self._rests_until:
             return
-        self._looked_at = gone
+        self._collected_at = gone
         gc.collect()
         now = self._clock.steady()
         self._rests_until = now + REST * (now - began)

@@ -1,6 +1,6 @@
-"""How long things are kept: what is older than the site's settings say is deleted, in small pieces.
+"""Retention: data older than the site's settings allow is deleted, in small pieces.
 
-Days of positions that are partitions are made ahead here, and dropped as a whole.
+Daily partitions of positions are made ahead here, and dropped as a whole.
 """
 
 from __future__ import annotations
@@ -23,19 +23,19 @@ log = logging.getLogger(__name__)
 
 AT_ONCE = 1000
 IMAGES_AT_ONCE = 20
-"""in one transaction; an image may be 15 MiB."""
+"""images deleted in one transaction; one may be 15 MiB."""
 PAUSE = 0.05
 """seconds between two deletions, in which robots and operators have the database."""
 LARGEST_STEP = 3600.0
 DAYS_AHEAD = 3
-"""days that have a partition in time, today included: a backup may take hours, and none is made meanwhile."""
+"""days with a partition made ahead, today included: a backup may take hours, and blocks making any."""
 DOUBT = DAY
-"""seconds without deletions while the clock may be ahead: everything would be too old at once, and nothing
-brings back what is deleted."""
+"""seconds without deletions while the clock may be ahead: all data would be too old at once, and deletions
+cannot be undone."""
 
 
 class RetainedRows(NamedTuple):
-    """Things of one kind: ``forget(connection, before, limit)`` deletes some, and returns how many."""
+    """Rows of one kind: ``forget(connection, before, limit)`` deletes some, and returns their number."""
 
     name: str
     days: float
@@ -44,7 +44,7 @@ class RetainedRows(NamedTuple):
 
 
 def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
-    """Yield all that is kept for a time only, with the days for which a site wants it."""
+    """Yield all kinds of rows that are kept for a limited time, with the days set by the site."""
     yield RetainedRows("whole days of positions", settings.trajectories.keep_days, trajectories.drop_day)
     yield RetainedRows("positions", settings.trajectories.keep_days, trajectories.forget)
     yield RetainedRows("ended commands", settings.commands.keep_days, commands.forget)
@@ -62,7 +62,7 @@ def kept(settings: SiteSettings) -> Iterator[RetainedRows]:
 
 
 class Retention:
-    """Deletes what is too old; ``settings`` is asked each time, so they may change."""
+    """Deletes data that is too old; ``settings`` are read each time, so they may change."""
 
     def __init__(
         self,
@@ -82,9 +82,9 @@ class Retention:
         self._doubtful_until = self._clock.steady() + DOUBT
 
     async def make_days(self) -> None:
-        """Have today's and the next days' positions partitions of their own, where days are partitions.
+        """Make the partitions of positions for today and the next days, where days are partitions.
 
-        Raises StoreError. A partition that is missing keeps no position from being stored.
+        Raises StoreError. A missing partition does not prevent positions from being stored.
         """
         if not self._database.dialect.partitions_days:
             return
@@ -98,7 +98,7 @@ class Retention:
         self._missing = missing
 
     async def prune(self) -> None:
-        """Delete what the settings do not keep any longer; raises StoreError."""
+        """Delete data beyond the limits of the settings; raises StoreError."""
         if not self._trusts_clock():
             return
         for kind in kept(self._site.settings):

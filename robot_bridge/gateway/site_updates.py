@@ -1,4 +1,4 @@
-"""New versions of the site: fetched from a database, and taken over while the gateway runs."""
+"""New versions of the site: fetched from a database, and adopted while the gateway runs."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ if TYPE_CHECKING:
 
 log = logging.getLogger(__name__)
 
-# --- A site that is published in a database: its newest version is fetched into a folder, which is served
-# The folder is as a publication makes it, and a new version takes the place of the earlier one in it as a
-# publication does, so that :class:`SiteWatch` sees no difference.
+# --- Site published in a database: its newest version is fetched into a folder, which is served
+# The folder is as a publication makes it, and a new version replaces the earlier one in it as a publication
+# does, so that :class:`SiteWatch` sees no difference.
 
 FETCH_INTERVAL = 2.0
 PATIENCE = 20.0
@@ -46,7 +46,7 @@ _STAGE = ".fetching-"
 
 
 class SiteCopyError(StoreError):
-    """A site that cannot be fetched from its database; what is served stays as it is."""
+    """A site that cannot be fetched from its database; the served version is kept."""
 
 
 class _Version(NamedTuple):
@@ -57,11 +57,11 @@ class _Version(NamedTuple):
 class SiteCopy:
     """The copy of the site at ``address`` on this computer, in :attr:`folder`, which lies in ``state``.
 
-    Nothing in here waits for one answer of the database longer than PATIENCE, and a cancel ends it at once.
+    No method waits for one answer of the database longer than PATIENCE, and a cancellation ends it at once.
     """
 
     def __init__(self, address: SiteAddress, state: Path | None) -> None:
-        # One folder for each database: sites that lie side by side are offered to operators.
+        # One folder for each database: sites in the same parent folder are offered to operators.
         place = hashlib.sha256(address.shown.encode()).hexdigest()[:16]
         self.folder = (state or _state_folder()) / "sites" / place / address.site
         self._address = address
@@ -69,7 +69,7 @@ class SiteCopy:
         self._connection: AsyncConnection[Any] | None = None
 
     def fetch_first(self) -> None:
-        """Fetch what is newer, before a gateway runs; a copy that is there serves where that fails.
+        """Fetch a newer version, before a gateway runs; if this fails, an existing copy is served.
 
         :raises SiteCopyError: when it fails and there is no copy.
         """
@@ -90,7 +90,7 @@ class SiteCopy:
             await self.close()
 
     async def refresh(self) -> None:
-        """Fetch the newest version unless it is there; raises SiteCopyError saying why it cannot."""
+        """Fetch the newest version unless present; raises SiteCopyError with the reason where it cannot."""
         psycopg = _psycopg()
         try:
             await self._refresh()
@@ -116,7 +116,7 @@ class SiteCopy:
             try:
                 await self._fetch(connection, newest)
             except SiteError as error:
-                # Once: what is wrong there is wrong until it is published again.
+                # Once: a faulty version stays faulty until it is published again.
                 self._refused = newest
                 raise SiteCopyError(
                     f"{error}. What was fetched before stays; publish the site again"
@@ -158,7 +158,7 @@ class SiteCopy:
             )
 
     async def _fetch(self, connection: AsyncConnection[Any], newest: _Version) -> None:
-        """Fetch ``newest`` whole and put it into the folder; raises SiteError for what is damaged."""
+        """Fetch ``newest`` whole and put it into the folder; raises SiteError for damaged files."""
         query = f"select name, digest, size from {SCHEMA}.files where site = %s and version = %s"  # nosec B608 # names of ours
         files = await _rows(connection, query, self._address.site, newest.number)
         digests = {name: digest for name, digest, _ in files}
@@ -178,7 +178,7 @@ class SiteCopy:
     async def _fetch_file(
         self, connection: AsyncConnection[Any], newest: _Version, file: Path, size: int
     ) -> str:
-        """Write one file, a part at a time, and not much beyond its ``size``; return its digest."""
+        """Write one file, part by part, and not much beyond its ``size``; return its digest."""
         digest, number, written = hashlib.sha256(), 0, 0
         query = (
             f"select content from {SCHEMA}.parts "  # nosec B608 # our names
@@ -198,18 +198,18 @@ class SiteCopy:
         if (settings.id, settings.version) != (self._address.site, newest.number):
             raise SiteError(f"{self._address.shown}: version {newest.number} holds that of {settings.stamp}")
         publish_staged(staged)
-        write_state(self._note, json.dumps(newest._asdict()).encode())
+        write_state(self._version_file, json.dumps(newest._asdict()).encode())
 
     @property
-    def _note(self) -> Path:
+    def _version_file(self) -> Path:
         return self.folder.parent / _NOTE
 
     def _kept(self) -> _Version | None:
-        """Return the version that was fetched last, None where it is not there."""
+        """Return the version that was fetched last, None where it is missing."""
         if not all((self.folder / name).is_file() for name in (SETTINGS_FILE, GEOPACKAGE_FILE)):
             return None
         try:
-            found = decode_json(self._note.read_bytes(), SHORT)
+            found = decode_json(self._version_file.read_bytes(), SHORT)
             return _Version(int(found["number"]), str(found["digest"]))
         except (OSError, DecodingError, KeyError, TypeError, ValueError):
             return None
@@ -231,7 +231,7 @@ class SiteCopy:
 
 
 def _psycopg() -> Any:
-    """Return the driver; it is imported where it is used, for it may be missing."""
+    """Return the driver; it is imported on use, because it may be missing."""
     try:
         import psycopg
     except ImportError as error:
@@ -243,14 +243,14 @@ def _psycopg() -> Any:
 
 
 def _state_folder() -> Path:
-    """Return where programs of this account keep what they need again."""
+    """Return the state folder for programs of this account."""
     given = os.environ.get("XDG_STATE_HOME")
     return (Path(given) if given else Path.home() / ".local" / "state") / "robot-bridge"
 
 
 @contextlib.asynccontextmanager
 async def _snapshot(connection: AsyncConnection[Any]) -> AsyncIterator[None]:
-    """Have all that is read in the block be of one moment, whatever is published meanwhile."""
+    """Read everything in the block from one snapshot, whatever is published meanwhile."""
     await _answered(connection, "begin isolation level repeatable read read only")
     yield
     await _answered(connection, "rollback")
@@ -261,10 +261,10 @@ async def _rows(connection: AsyncConnection[Any], query: str, *values: object) -
 
 
 async def _answered(connection: AsyncConnection[Any], query: str, *values: object) -> AsyncCursor[Any]:
-    """Return what the database answers; raises TimeoutError where that takes longer than PATIENCE.
+    """Return the database's answer; raises TimeoutError where that takes longer than PATIENCE.
 
-    The driver, when it is cancelled, asks the server to end the query and waits for that, 10 s where it is
-    frozen: a stop of the gateway would have to wait, too. So its connection is cut instead.
+    The driver, when cancelled, requests the server to end the query and waits for that, 10 s for a frozen
+    server: the shutdown of the gateway would wait, too. So its connection is cut instead.
     """
     asking = asyncio.ensure_future(connection.execute(query.encode(), values or None, binary=True))
     asking.add_done_callback(lambda done: done.cancelled() or done.exception())
@@ -278,7 +278,7 @@ async def _answered(connection: AsyncConnection[Any], query: str, *values: objec
     return asking.result()
 
 
-# --- The folder of the site while the gateway runs: a new version, or changed settings, are taken over ---
+# --- Watching the folder of the site: a new version, or changed settings, are adopted ---
 
 LOOK_INTERVAL = 1.0
 
@@ -286,18 +286,18 @@ Stamp = tuple[tuple[int, int, int] | None, ...]
 
 
 def stamp_of(folder: Path) -> Stamp:
-    """Return what changes whenever one of the site's files is written or replaced."""
+    """Return a stamp that changes whenever one of the site's files is written or replaced."""
     return tuple(_stamp(folder / name) for name in (SETTINGS_FILE, GEOPACKAGE_FILE))
 
 
 class SiteWatch:
-    """Looks at the folder of the site every second, and at once when ``reload`` is set.
+    """Checks the folder of the site every second, and at once when ``reload`` is set.
 
-    Supervisors may choose another folder beside it; the choice outlives the gateway, and without one the
-    folder named ``given`` there is served.
+    Supervisors may choose a sibling folder; the choice outlives the gateway, and without one the sibling
+    named ``given`` is served.
 
-    ``seen`` is the stamp of the folder from before the site was read. A publication is taken over whole or
-    not at all: a folder that is half written, or wrong, leaves the gateway with what it serves.
+    ``seen`` is the stamp of the folder from before the site was read. A publication is adopted whole or not
+    at all: with a folder that is half written, or faulty, the gateway continues to serve its version.
     """
 
     def __init__(
@@ -306,7 +306,7 @@ class SiteWatch:
         self._folder = folder
         self._given = given
         self._refused: tuple[str, Stamp] | None = None
-        """what was chosen at another gateway and cannot be served here."""
+        """the choice at another gateway that cannot be served here."""
         self._seen = seen
         self._doubtful: Stamp | None = None
         self._maps = maps
@@ -315,25 +315,25 @@ class SiteWatch:
         self._reading = asyncio.Lock()
 
     async def run(self) -> None:
-        """Take over what is published, until cancelled."""
+        """Adopt publications, until cancelled."""
         while True:
             await wait_at_most(self._reload, LOOK_INTERVAL)
             await self.refresh(requested=self._reload.is_set())
 
     async def refresh(self, *, requested: bool = False) -> None:
-        """Look once; ``requested``: read the site even if it looks the same."""
+        """Check once; ``requested``: read the site even if its stamp is the same."""
         self._reload.clear()
         async with self._reading:
-            await self._look(requested)
+            await self._check_folder(requested)
 
     @handles(GetSites)
     async def offers(self) -> Sites:
-        """Return the sites that lie beside the one that is served, and that one."""
+        """Return the served site and its siblings."""
         return await asyncio.to_thread(self._offers)
 
     @handles(ChooseSite)
     async def choose(self, request: ChooseSite) -> SiteReport:
-        """Serve the site in a folder beside this one; raises RefusedError saying why not."""
+        """Serve the site in a sibling folder; raises RefusedError with the reason where it cannot."""
         async with self._reading:
             folder, stamp, site = await asyncio.to_thread(self._choice, request.site)
             await self._fleet.database.run(metadata.choose_site, request.site)
@@ -343,16 +343,16 @@ class SiteWatch:
 
     @property
     def goes_on(self) -> bool:
-        """Whether what was chosen cannot be served here: it may be published better."""
+        """Whether the chosen site cannot be served here: a corrected one may be published."""
         return self._maps.report.problem is not None
 
     async def follow(self) -> None:
-        """Serve what was chosen at another gateway of the fleet; raises StoreError.
+        """Serve the site that was chosen at another gateway of the fleet; raises StoreError.
 
-        What cannot be served here is told to all desks for as long as that is so, and tried again once it is
-        published anew.
+        One that cannot be served here is reported to all desks as long as this is so, and retried once it is
+        published again.
         """
-        # What is published here waits for no database that is away.
+        # A publication here does not wait for an unavailable database.
         if await self._chosen() == self._folder.resolve().name and self._maps.report.problem is None:
             return
         async with self._reading:
@@ -380,10 +380,10 @@ class SiteWatch:
     async def _serve(self, folder: Path, stamp: Stamp, site: Site) -> None:
         self._folder, self._seen, self._doubtful = folder, stamp, None
         self._report_problem(None)
-        await self._take_over(site)
+        await self._adopt(site)
 
     def _report_problem(self, problem: str | None) -> None:
-        """Tell operators why this gateway does not serve what was chosen, or (None) that it does."""
+        """Report to operators why this gateway does not serve the chosen site, or (None) that it does."""
         if problem is None:
             self._refused = None
         if problem == self._maps.report.problem:
@@ -393,7 +393,7 @@ class SiteWatch:
         self._maps.note_problem(problem)
         self._fleet.announce_site()
 
-    async def _look(self, requested: bool) -> None:
+    async def _check_folder(self, requested: bool) -> None:
         stamp = await asyncio.to_thread(stamp_of, self._folder)
         if stamp == self._seen and not requested:
             return
@@ -402,14 +402,14 @@ class SiteWatch:
             self._check(site)
             await asyncio.to_thread(check_roads, site)
         except (SiteError, BridgeError) as error:
-            # Two files are replaced one after the other: what is wrong may be half of something right.
+            # Two files are replaced one after the other: a fault may be half of a correct publication.
             if stamp == self._doubtful or requested:
                 self._seen = stamp
                 log.error("version %d is served on: %s", self._maps.report.version, error)
             self._doubtful = stamp
             return
         self._seen = stamp
-        await self._take_over(site)
+        await self._adopt(site)
 
     def _beside(self, name: str) -> Path:
         return self._folder.resolve().parent / name
@@ -427,7 +427,7 @@ class SiteWatch:
         return SiteOffer(name, served, found.id, found.name, found.version, refusal)
 
     def _choice(self, name: str) -> tuple[Path, Stamp, Site]:
-        """Return the folder ``name`` beside this one, its stamp and its site; raises RefusedError."""
+        """Return the sibling folder ``name``, its stamp and its site; raises RefusedError."""
         known = sibling_sites(self._folder)
         if name not in known:
             raise RefusedError(f"there is no site in a folder {name!r}; choose one of: {', '.join(known)}")
@@ -455,7 +455,7 @@ class SiteWatch:
                 "positions of the one are wrong in the other, so end the gateway and start it anew"
             )
 
-    async def _take_over(self, site: Site) -> None:
+    async def _adopt(self, site: Site) -> None:
         old = self._maps.settings
         if site.settings == old and site.version == old.version:
             return

@@ -118,9 +118,9 @@ class GeofenceWatch:
         self._reported_at, self._reported = -REPORT_EVERY_S, 0
         """Time of the last report, and its number of stays."""
         self._to_operators, self._to_gateways = _Passed(), _Passed()
-        events.subscribe(FenceJudgedElsewhere, self._note_elsewhere)
-        events.subscribe(RobotClaimed, self._note_claimed)
-        events.subscribe(RobotLeft, self._note_left)
+        events.subscribe(FenceJudgedElsewhere, self._handle_elsewhere)
+        events.subscribe(RobotClaimed, self._handle_claimed)
+        events.subscribe(RobotLeft, self._handle_left)
 
     async def watch(self) -> None:
         """Judge the robots that have moved since the last call, act on the result, and report it."""
@@ -289,14 +289,14 @@ class GeofenceWatch:
         if self._to_operators.is_due(report):
             self._listeners.announce("geofence", "geofence", to_json(report))
 
-    def _note_claimed(self, claimed: RobotClaimed) -> None:
+    def _handle_claimed(self, claimed: RobotClaimed) -> None:
         self._elsewhere.keep_alarms(claimed.robot, self._clock.steady())
 
-    def _note_left(self, left: RobotLeft) -> None:
+    def _handle_left(self, left: RobotLeft) -> None:
         self._judged.discard(left.robot)
         self._elsewhere.drop_alarms([left.robot])
 
-    def _note_elsewhere(self, judged: FenceJudgedElsewhere) -> None:
+    def _handle_elsewhere(self, judged: FenceJudgedElsewhere) -> None:
         self._elsewhere.add_report(judged.gateway, judged.report, self._clock.steady())
 
     def _unjudged(self, places: RobotPlaces, now: float) -> list[str]:

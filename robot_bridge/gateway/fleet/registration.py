@@ -96,7 +96,7 @@ class Takeover:
         self._waiting: dict[str, asyncio.Future[None]] = {}
         self._left: set[str] = set()
         """the gateways that had the waiting robots."""
-        self._taking_up: asyncio.Task[None] | None = None
+        self._adopting: asyncio.Task[None] | None = None
         self._unsynced: set[str] = set()
         """gateways with newly learned robots, until their positions are requested."""
 
@@ -111,11 +111,11 @@ class Takeover:
         if await self._ownership.claim(robot) or before is not None:
             if before is not None:
                 self._left.add(before)
-            await self._take_up_together(robot)
+            await self._adopt_together(robot)
 
     async def claim_left(self) -> None:
         """Claim the robots that no living gateway has, if this gateway leads; raises StoreError."""
-        await self._take_up(await self._ownership.claim_left())
+        await self._adopt(await self._ownership.claim_left())
 
     async def follow(self) -> None:
         """Drop the robots that another gateway has by now, and add new ones of others; raises StoreError."""
@@ -123,7 +123,7 @@ class Takeover:
         for robot in sorted(changes.lost):
             self._drop(robot, changes.gateways.get(robot))
         if changes.new:
-            await self._take_up(sorted(changes.new))
+            await self._adopt(sorted(changes.new))
         for robot in changes.gone:
             if self._robots.gateway_of(robot) is not None and self._robots.get(robot).state in AWAY:
                 self._robots.remove(robot)
@@ -152,34 +152,34 @@ class Takeover:
                 robot.link = link_elsewhere(robot.gateway)
                 self._robots.restore(robot, self._clock.time())
 
-    async def _take_up_together(self, robot: str) -> None:
+    async def _adopt_together(self, robot: str) -> None:
         """Load a robot together with those that come meanwhile, such as all of a gateway that died."""
         waiting = self._waiting.get(robot)
         if waiting is None:
             waiting = self._waiting[robot] = asyncio.get_running_loop().create_future()
-            if self._taking_up is None or self._taking_up.done():
-                self._taking_up = asyncio.create_task(self._take_up_waiting())
+            if self._adopting is None or self._adopting.done():
+                self._adopting = asyncio.create_task(self._adopt_waiting())
         await asyncio.shield(waiting)
 
-    async def _take_up_waiting(self) -> None:
+    async def _adopt_waiting(self) -> None:
         while self._waiting:
             some, self._waiting = self._waiting, {}
             left, self._left = self._left, set()
-            await self._take_up_for(some)
+            await self._adopt_for(some)
             for gateway in sorted(left):
                 self._exchange.wake("owners", gateway)
 
-    async def _take_up_for(self, some: dict[str, asyncio.Future[None]]) -> None:
+    async def _adopt_for(self, some: dict[str, asyncio.Future[None]]) -> None:
         """Load robots and resolve their futures; an error with one robot concerns only that one."""
         try:
-            await self._take_up(list(some))
+            await self._adopt(list(some))
         except asyncio.CancelledError:
             raise
         except BaseException as error:
             is_away = isinstance(error, StoreError) and not isinstance(error, DataRefusedError)
             if len(some) > 1 and not is_away:
                 for robot, waiting in some.items():
-                    await self._take_up_for({robot: waiting})
+                    await self._adopt_for({robot: waiting})
                 return
             for waiting in some.values():
                 waiting.set_exception(error)
@@ -189,7 +189,7 @@ class Takeover:
             for waiting in some.values():
                 waiting.set_result(None)
 
-    async def _take_up(self, names: Sequence[str]) -> None:
+    async def _adopt(self, names: Sequence[str]) -> None:
         for begin in range(0, len(names), AT_ONCE):
             some = names[begin : begin + AT_ONCE]
             try:
@@ -484,13 +484,13 @@ class Decommissioning:
         failed: list[StoreError] = []
         for robot in sorted(self._leaving):
             try:
-                await self._take_out(robot)
+                await self._remove(robot)
             except StoreError as error:
                 failed.append(error)
         if failed:
             raise failed[0]
 
-    async def _take_out(self, robot: str) -> None:
+    async def _remove(self, robot: str) -> None:
         if robot not in self._robots:
             await self._commands.give_up(robot, REASON)
             await self._waiting.forget(robot)

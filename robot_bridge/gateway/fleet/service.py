@@ -314,7 +314,7 @@ class Fleet:
         elif isinstance(request, SendPos):
             self._check_place(robot, link, (request.x, request.y), now, waited=waited)
         if isinstance(request, SendPos):
-            if (rest := self._take_pose(robot, link, request, now, waited=waited)) is not None:
+            if (rest := self._apply_pose(robot, link, request, now, waited=waited)) is not None:
                 await rest
             return RequestOutcome(robot)
         if isinstance(request, OpAck):
@@ -512,9 +512,9 @@ class Fleet:
     def _consider_pose(self, robot: str, link: str, pose: SendPos, now: float) -> Awaitable[None] | None:
         self.robots.check_run(robot, pose.magic, link)
         self._check_place(robot, link, (pose.x, pose.y), now)
-        return self._take_pose(robot, link, pose, now)
+        return self._apply_pose(robot, link, pose, now)
 
-    def _take_pose(
+    def _apply_pose(
         self, robot: str, link: str, pose: SendPos, now: float, *, waited: bool = False
     ) -> Awaitable[None] | None:
         unseen = self.robots.is_unseen(robot, now)

@@ -118,7 +118,7 @@ class Stays:
             stay = self._begin(key, name, found.places[key.robot], settings, now)
             if stay is not None:
                 entered.append(stay)
-        self._note_outside(found, now)
+        self._record_outside(found, now)
         ended = [*self._end_outside(now), *self._earlier.values()]
         self._earlier.clear()
         return StayChanges(entered, ended)
@@ -148,7 +148,7 @@ class Stays:
         self._stays[key] = stay
         return stay
 
-    def _note_outside(self, found: FoundStays, now: float) -> None:
+    def _record_outside(self, found: FoundStays, now: float) -> None:
         for key in self._stays:
             if key in found.near:
                 self._outside_since.pop(key, None)

@@ -302,7 +302,7 @@ class Robots:
         robot = self.get(name)
         # Only driving, or a Ready, sets a robot that said Stopped in motion.
         robot.ended_in_order |= stopped
-        self._note_heard(robot, link, now, stopped=stopped, waited=waited)
+        self._record_received(robot, link, now, stopped=stopped, waited=waited)
         self._touch(robot)
         return robot
 
@@ -313,7 +313,7 @@ class Robots:
         """
         robot = self.get(name)
         robot.ended_in_order &= standing(pose)
-        self._note_heard(robot, link, now, stopped=False, waited=waited)
+        self._record_received(robot, link, now, stopped=False, waited=waited)
         is_newest = robot.order.admit(pose.fix_t, pose.t, link, now)
         if is_newest:
             self._place(robot, pose, now)
@@ -569,7 +569,7 @@ class Robots:
             lost_after=self._lost_after,
         )
 
-    def _note_heard(self, robot: Robot, link: str, now: float, *, stopped: bool, waited: bool) -> None:
+    def _record_received(self, robot: Robot, link: str, now: float, *, stopped: bool, waited: bool) -> None:
         robot.link, robot.heard_since = link, not stopped
         if not waited:
             if robot.state in AWAY:
