@@ -54,7 +54,7 @@ ANSWERS_TOGETHER = 0.05
 """seconds for which answers of robots are collected before operators are notified: to count thousands at
 each answer of one of them would leave no time to receive from the robots."""
 REPEATED_S = 1.0
-"""seconds after which a stop in force is reported to operators again, as a sign that reports arrive."""
+"""seconds after which a stop in force is reported to operators again: silence shows a broken link."""
 AHEAD_S = 1.0
 """seconds by which a time may lie in the future: the offset of the database's clock is not exact."""
 DOUBTED_S = 60.0

@@ -52,7 +52,7 @@ _LONGEST_NAME = 100
 
 
 class AuditNote(Protocol):
-    """Writes into the audit log (see :meth:`.access.journal.Journal.note`)."""
+    """Writes into the audit log (see :meth:`.AuditJournal.note`)."""
 
     def __call__(
         self, who: str, action: str, *, done: bool = ..., subject: str | None = ..., detail: str | None = ...
