@@ -75,7 +75,9 @@ class Replanning:
         seconds = self._ground.terms.seconds
         self._until = time.monotonic() + PATIENCE * seconds
         objective = Objective(self._plan.objective, time_limit_s=seconds)
-        return replan(self._plan, self._travel, self._situation, objective, lambda share: self._goes_on())
+        return replan(
+            self._plan, self._travel, self._situation, objective, lambda share: self._may_continue()
+        )
 
     def _travel(self, job: AssignmentJob) -> Travel:
         terms, planner = self._ground.terms, self._ground.planner
@@ -296,7 +298,7 @@ class Replanner:
                 if self._making.get(plan) is not making:
                     return
                 await self._plans.refresh()
-                del self._making[plan]
+                self._making.pop(plan, None)
                 one = self._plans.get(plan)
                 if one.plan.revision != making.revision:
                     return

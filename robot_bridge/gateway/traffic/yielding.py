@@ -287,8 +287,13 @@ class YieldManager:
         """Load robots that may be stored as waiting without being known here; raises StoreError."""
         if self._doubtful:
             await self._commands.look_up()
-            await self.restore()
+            # Before the rows are read: a robot that comes meanwhile may not be among them.
             self._doubtful = False
+            try:
+                await self.restore()
+            except BaseException:
+                self._doubtful = True
+                raise
 
     async def send(
         self, way: RobotPath, first: list[Point], rest: list[Point], other: str, until: float, operator: str

@@ -173,3 +173,29 @@ async def test_who_waits_is_stored_with_what_sends_it_there_or_nothing_is(roads,
     assert await roads.states() == before
     assert await roads.acknowledge_all() == []
     assert (await roads.fleet.roads.traffic.conflicts()).waiting == []
+
+
+async def test_a_robot_that_comes_while_the_waiting_ones_are_read_is_known_with_the_next_look(
+    roads, monkeypatch
+):
+    await roads.drive("one", [(16.0, 8.0), (44.0, 22.0), (90.0, 22.0)])
+    await roads.drive("two", [(13.0, 22.0), (56.0, 22.0), (56.0, 40.0)], robot="r2")
+    await roads.fleet.roads.traffic.resolve(ResolveConflict("r1", "r2", "waiting"), "Ada")
+    waiting, run = roads.fleet.roads.waiting, roads.database.run
+    (row,) = waiting.rows().values()
+
+    async def read_too_early(work, *arguments):
+        rows = await run(work, *arguments)
+        if work is stored_closures.held:
+            monkeypatch.undo()
+            # Another gateway had r1 then, and it comes here now.
+            waiting.doubt()
+            return []
+        return rows
+
+    monkeypatch.setattr(roads.database, "run", read_too_early)
+    waiting.doubt()
+    await waiting.catch_up()
+    assert waiting.rows() == {}
+    await waiting.catch_up()
+    assert waiting.rows() == {"r1": row}
