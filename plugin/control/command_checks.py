@@ -1,4 +1,4 @@
-"""What a pending command is checked against: site, map, layers, its robot and other robots."""
+"""Checks of a pending command against the site, the map, layers, its robot and other robots."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ from .layer_checks import (
 from .pending_command import CONE, ROUTE, START, TARGETS, Findings, PendingCommand, Point
 
 AT_ONCE = 500
-"""Tracks that are gone through between two looks at the clock."""
+"""Tracks processed between two readings of the clock."""
 
 T = TypeVar("T")
 Check = KeepoutCheck | ObstacleCheck | SurfaceCheck
@@ -48,7 +48,7 @@ Found = dict[CheckedPath, list[Any]]
 
 
 def check_bounds(points: Sequence[Point], site: SiteReport) -> Findings:
-    """Refuse what lies outside the site's bounds; ``points`` are metres in the site frame."""
+    """Refuse points outside the site's bounds; ``points`` are metres in the site frame."""
     x_min, y_min, x_max, y_max = site.bounds
     outside = [(x, y) for x, y in points if not (x_min <= x <= x_max and y_min <= y <= y_max)]
     if not outside:
@@ -88,11 +88,11 @@ def check_map(transform: SiteToMapTransform) -> Findings:
 class LayerCheck(QObject):
     """Checks drafts against the project's layers that carry the roles of obstacles, keepouts and surfaces.
 
-    What was found for a part of a draft is kept until a layer changes or another check needs it no more.
+    Findings for a part of a draft are kept until a layer changes or no check needs them any more.
     """
 
     changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin again."""
+    """A layer has changed: checks under way must start again."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -109,16 +109,16 @@ class LayerCheck(QObject):
         self._watch.changed.connect(self._forget)
 
     def remove(self) -> None:
-        """Watch no layer any longer."""
+        """Stop watching layers."""
         self._watch.remove()
         self._readings.remove()
 
     def check_command(
         self, draft: PendingCommand, transform: SiteToMapTransform, afresh: bool = False
     ) -> Steps[Findings]:
-        """Find what touches a keepout or an obstacle, warn of what leaves the road; ``afresh`` all of it.
+        """Find keepouts and obstacles touched, warn where the draft leaves the road; check all if ``afresh``.
 
-        Where a robot says that it stands is not looked at: it may have been put there.
+        The reported position of the robot is not checked: the robot may have been put there.
 
         :raises MapTransformError: when a point has no place in a layer's CRS.
         :raises ExpressionError: when the filter of a layer is no expression.
@@ -133,7 +133,7 @@ class LayerCheck(QObject):
         for of_one in layers.values():
             self._watch.watch(of_one)
         findings = Findings()
-        # By themselves for each draft: another one is checked beside it, and may find the layer read.
+        # A dictionary per draft: another draft is checked concurrently, and may find the layer read.
         unread: dict[str, Unread] = {}
         for number, check in enumerate(self._checks):
             work = self._look_by(check, layers[check], draft, transform, unread)
@@ -176,9 +176,9 @@ class LayerCheck(QObject):
             still_needed[track] = found
             if number % AT_ONCE == 0:
                 yield 0.0
-        # Of a layer that was not read nobody knows anything, the next time neither.
+        # Nothing is known of a layer that was not read, nor will be the next time.
         self._kept[check] = {} if unread.keys() & set(ids) else still_needed
-        # As with the alarms: of layers with nothing in them, as published sites without surfaces have them.
+        # As with the alarms: layers that are empty, like those of published sites without surfaces.
         is_watched = not self._readings.empty.issuperset(ids)
         return (yield from _checked(check, draft, _without_repetition(draft, found_for), is_watched))
 
@@ -218,27 +218,27 @@ class LayerCheck(QObject):
 def _checked(
     check: Check, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Any]]], is_watched: bool
 ) -> Steps[Findings]:
-    """Return what is to be told of what was ``found``, and which of that is about the way to the draft."""
+    """Return the findings to report of ``found``, and those of them about the way to the draft."""
     if not draft.way.line:
         return (yield from check.findings(draft, found, is_watched))
     of_place = yield from check.findings(
         draft, [one for one in found if one[0] != draft.way.line], is_watched
     )
     if draft.kind == ROUTE:
-        # By itself: what is told of the route's own legs must not change as its robot moves.
+        # Separately: findings on the route's own legs must not change as its robot moves.
         way = [one for one in found if one[0] == draft.way.line]
         of_way = yield from check.findings(draft, way, is_watched)
         return of_place + replace(of_way, of_way=of_way.overridable + of_way.warnings)
     findings = yield from check.findings(draft, found, is_watched)
     texts = findings.overridable + findings.warnings
-    # What is told of the place alone is not of the way to it.
+    # A finding about the place alone is not about the way to it.
     return replace(findings, of_way=tuple(text for text in texts if text not in of_place.all_texts))
 
 
 def _without_repetition(
     draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Any]]]
 ) -> Sequence[tuple[CheckedPath, list[Any]]]:
-    """Return what was ``found``, but of the way to a target not what is at the target as well."""
+    """Return ``found`` without findings on the way to a target that also hold at the target."""
     if not draft.way.line:
         return found
     at_target = {_name(hit) for track, hits in found if len(track) == 1 for hit in hits}
@@ -249,14 +249,14 @@ def _without_repetition(
 
 
 def _name(hit: Any) -> Any:
-    """Return the name of a keepout or an obstacle; what a surface holds of a track has none."""
+    """Return the name of a keepout or an obstacle; a surface's share of a track has none."""
     if isinstance(hit, str):
         return hit
     return hit[0] if isinstance(hit[0], str) else object()
 
 
 def _why_unseen(layer: QgsMapLayer, unread: Unread | None) -> str:
-    """Return why nobody can tell what of a layer is in a draft's way; empty where it can be told."""
+    """Return why a layer cannot be checked against a draft; empty where it can."""
     if layer.isValid() and unread is Unread.SILENT:
         return tr(
             "The layer {layer} has not answered for {seconds:g} s, so what is in it was not looked at. "
@@ -299,7 +299,7 @@ _NEEDED: dict[str, Ability] = {CONE: "targets", TARGETS: "targets", ROUTE: "path
 
 
 def has_ability(robot: RobotView | None, ability: Ability) -> bool:
-    """Tell whether a robot did not say that it cannot do this."""
+    """Return whether a robot has not declared that it lacks this ability."""
     abilities = None if robot is None else robot.values.get("abilities")
     return abilities is None or ability in abilities.split()
 
@@ -327,14 +327,14 @@ def check_abilities(draft: PendingCommand, robot: RobotView | None) -> Findings:
 
 
 REPLACING = (CONE, ROUTE)
-"""What a robot does in place of what it is at."""
+"""Commands that replace a robot's current one."""
 
 
 GONE = (RobotState.LOST, RobotState.OFFLINE)
 
 
 def check_last_seen(draft: PendingCommand, robot: RobotView | None) -> Findings:
-    """Warn where nothing is heard of the draft's ``robot``: what is sent waits, or is not carried out."""
+    """Warn where the draft's ``robot`` is silent: a message waits, or is not carried out."""
     if robot is None or robot.state not in GONE:
         return Findings()
     return Findings(
@@ -351,9 +351,9 @@ def check_last_seen(draft: PendingCommand, robot: RobotView | None) -> Findings:
 
 
 def check_orders(draft: PendingCommand, task: CommandReport | None, operator: str) -> Findings:
-    """Warn where ``task``, what the draft's robot is at, was asked for by another than ``operator``.
+    """Warn where ``task``, the current command of the draft's robot, comes from another than ``operator``.
 
-    An empty ``operator`` is one whose name the gateway has not told.
+    ``operator`` is empty where the gateway has not reported its name.
     """
     if task is None or not operator or task.operator == operator or draft.kind not in REPLACING:
         return Findings()
@@ -374,7 +374,7 @@ CLEAR_M = 1.0
 
 
 class OtherTarget(NamedTuple):
-    """Where a robot is to go, metres in the site frame, and ``what`` that is in words."""
+    """The target of a robot, metres in the site frame, and ``what`` describes it in words."""
 
     robot: str
     what: str
@@ -383,7 +383,7 @@ class OtherTarget(NamedTuple):
 
 
 class TargetCheck:
-    """Knows the targets of all robots, now and in their queues; reads only those with news again."""
+    """Knows the targets of all robots, current and queued; reads again only robots with changes."""
 
     def __init__(self, cache: CommandCache, queues: QueueCache):
         self._cache = cache
@@ -394,7 +394,7 @@ class TargetCheck:
         self._places: npt.NDArray[np.float64] = np.empty((0, 2))
 
     def mark_changed(self, robots: Iterable[str]) -> None:
-        """Take in that something new is known of what these robots have to do."""
+        """Record that the commands or queues of these robots have changed."""
         self._with_news.update(robots)
 
     def clear(self) -> None:
@@ -498,7 +498,7 @@ def check_standing(draft: PendingCommand, state: FleetState) -> Findings:
 
 
 def _cones_put_down(state: FleetState) -> Iterator[tuple[str, Point]]:
-    """Return who put which cone where: those of queues, collected ones not, and those of single targets."""
+    """Return robot and place of each cone put down: by queues unless collected since, by single targets."""
     known = set()
     for cone in state.placed_cones:
         known.add(cone.command)
@@ -527,7 +527,7 @@ class CommandChecks(QObject):
     """Checks drafts against the project's layers, and against what the gateway reports of site and robots."""
 
     changed = pyqtSignal()
-    """A layer is not as it was: what is under way has to begin again."""
+    """A layer has changed: checks under way must start again."""
 
     def __init__(
         self,
@@ -546,9 +546,9 @@ class CommandChecks(QObject):
         state.queues_changed.connect(self._mark_changed)
 
     def check_command(self, draft: PendingCommand, afresh: bool) -> Steps[PendingCommand]:
-        """Look at a draft, all of it ``afresh`` or only what is new; return it with what was found.
+        """Check a draft, everything if ``afresh``, else only what is new; return it with the findings.
 
-        An override holds for what was found when it was given: it is gone when something else is found.
+        An override holds for the findings it was given for: it is dropped when there are others.
 
         :raises FleetError: when there is no site or a layer cannot be read.
         """
@@ -556,9 +556,9 @@ class CommandChecks(QObject):
         found = check_bounds(draft.points, transform.site) + check_map(transform)
         found += yield from self._layers.check_command(draft, transform, afresh)
         found += draft.way.findings
-        # At the end, so that nobody is sent there meanwhile.
+        # At the end, so that no other draft is sent to the same place meanwhile.
         found += self._targets.check_command(draft)
-        # First what a robot would run into: the panel has room for a few lines.
+        # Collisions first: the panel has room for a few lines.
         found = check_standing(draft, self._state) + found
         robot = self._state.robot(draft.robot)
         found += check_last_seen(draft, robot) + check_abilities(draft, robot)
@@ -568,13 +568,13 @@ class CommandChecks(QObject):
         return replace(draft, findings=found, override=override, is_checked=True, places_cone=cones)
 
     def forget_targets(self) -> None:
-        """Forget what every robot has to do."""
+        """Forget the targets of every robot."""
         self._targets.clear()
 
     def remove(self) -> None:
-        """Watch the project's layers no more."""
+        """Stop watching the project's layers."""
         self._layers.remove()
 
     def _mark_changed(self, robots: Iterable[str]) -> None:
-        """Take in that something new is known of what these robots have to do."""
+        """Record that the commands or queues of these robots have changed."""
         self._targets.mark_changed(robots)

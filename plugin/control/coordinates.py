@@ -30,16 +30,16 @@ _WORDS = re.compile(r"\b(lat(itude)?|lon(gitude)?|lng|x|y|easting|northing)\b\s*
 
 
 class PlaceTextError(FleetError):
-    """A text is no pair of coordinates."""
+    """A text is not a pair of coordinates."""
 
 
 def read_place(text: str, *, geographic: bool) -> tuple[float, float]:
     """Return x, y of a text: longitude, latitude in degrees where ``geographic``, else easting, northing.
 
-    Geographic texts say latitude first unless letters tell otherwise: ``48.2, 16.37``; ``48,2; 16,37``;
+    In geographic texts latitude comes first unless letters say otherwise: ``48.2, 16.37``; ``48,2; 16,37``;
     ``N 48° 12' 30.5"  E 16° 22'``; ``16.37E 48.2N``. Others say x first.
 
-    :raises PlaceTextError: naming what was read and what is right.
+    :raises PlaceTextError: naming the text read and the form expected.
     """
     pair = _halves(_WORDS.sub("", text.strip().strip("()[]")))
     if pair is None:
@@ -73,7 +73,7 @@ def _halves(text: str) -> tuple[tuple[float, str], tuple[float, str]] | None:
         first, second = map(_angle, parts) if len(parts) == 2 else (None, None)
         if first is not None and second is not None:
             return first, second
-    # Without a separator: wherever two whole angles stand side by side.
+    # Without a separator: split where two complete angles are adjacent.
     for gap in re.finditer(r"\s+", text):
         first, second = _angle(text[: gap.start()]), _angle(text[gap.end() :])
         if first is not None and second is not None:
@@ -90,7 +90,7 @@ def _angle(text: str) -> tuple[float, str] | None:
     if minutes >= 60 or seconds >= 60:
         return None
     value = _value(found["degrees"]) + minutes / 60 + seconds / 3600
-    # O is west in Spanish and Catalan, and east in German: only what is clear is taken.
+    # O is west in Spanish and Catalan, and east in German: only unambiguous letters are accepted.
     letter = (found["before"] or found["after"] or "").upper()
     if letter == "O" or (letter and found["sign"]):
         return None
@@ -110,11 +110,11 @@ def _wrong(text: str, geographic: bool) -> PlaceTextError:
 
 
 FURTHEST_M = 10_000.0
-"""Metres outside the site's bounds up to which a place is accepted: further off, the numbers are wrong."""
+"""Metres outside the site's bounds up to which a place is accepted: beyond that the numbers are wrong."""
 
 
 class FarPlaceError(FleetError):
-    """Coordinates that are a place, but nowhere near the site."""
+    """Coordinates of a valid place that is nowhere near the site."""
 
 
 def read_site_place(
@@ -147,14 +147,14 @@ def read_site_place(
 
 
 def metres_outside(point: Point, site: SiteReport) -> float:
-    """Return how far a place of the site frame is from the site's bounds; 0 inside them."""
+    """Return the distance of a place in the site frame from the site's bounds; 0 inside them."""
     x_min, y_min, x_max, y_max = site.bounds
     x, y = point
     return math.hypot(max(x_min - x, 0.0, x - x_max), max(y_min - y, 0.0, y - y_max))
 
 
 def _swapped_pair(x: float, y: float, crs: QgsCoordinateReferenceSystem) -> Point | None:
-    """Return the same two numbers the other way round, None where they are no place then."""
+    """Return the two numbers swapped, None where they are not a place then."""
     if crs.isGeographic() and abs(x) > 90:
         return None
     return y, x

@@ -1,4 +1,4 @@
-"""The operator's desk: what is known, who is selected, what is asked; the parts on screen listen to it."""
+"""The operator's desk: fleet state, selection and requests; the parts on screen listen to it."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ from .validation import TargetRoutes, ValidationRunner
 from .view_subscription import RobotSearch, ViewSubscription
 
 STOPPED_BY = "emergency stop"
-"""What a gateway's refusal holds where an emergency stop is the reason."""
+"""Text in a gateway's refusal where an emergency stop is the reason."""
 
 
 class Selection(QObject):
-    """The robots that the operator has selected, each once, in the order of their selection."""
+    """The robots that the operator has selected, without duplicates, in order of selection."""
 
     changed = pyqtSignal()
 
@@ -45,11 +45,11 @@ class Selection(QObject):
 
     @property
     def last(self) -> str | None:
-        """The robot that drafts are made for: of several selected ones the last. None without any."""
+        """The robot that drafts are made for: the last one selected. None without a selection."""
         return self.robots[-1] if self.robots else None
 
     def select(self, robot: str | None) -> None:
-        """Select a robot alone, None for none."""
+        """Select one robot alone, None for none."""
         self.select_all([] if robot is None else [robot])
 
     def select_all(self, robots: Iterable[str]) -> None:
@@ -64,17 +64,17 @@ class FleetController(QObject):
     """Builds the parts that draw, check and send commands, and does what the operator asks for."""
 
     emergency_changed = pyqtSignal()
-    """An emergency stop was asked for, or the gateway said how one stands."""
+    """An emergency stop was requested, or the gateway reported its state."""
     failed = pyqtSignal(str)
-    """Something that was asked for was not done: the text must not go unseen."""
+    """A request was not carried out: the text must be seen by the operator."""
     resolved = pyqtSignal(str)
-    """What ``failed`` told with this text is over: it need not hang there any longer."""
+    """The failure reported with this text is over: the message can be removed."""
     warning = pyqtSignal(str)
-    """A text that the operator needs in order to go on."""
+    """A text that the operator needs in order to continue."""
     info = pyqtSignal(str)
-    """What came of something small: a text that is seen for a while, whatever else is told of drafts."""
+    """A minor outcome: a text shown for a while, whatever else is shown about drafts."""
     hint = pyqtSignal(str)
-    """A text that the operator may want to see where drafts are told of, while there is none."""
+    """An optional text shown in the place for texts about drafts, while there is none."""
 
     def __init__(
         self,
@@ -122,7 +122,7 @@ class FleetController(QObject):
         self._pass_on_words()
 
     def _follow_state(self) -> None:
-        """Have the parts know what the gateway reports before those on screen do."""
+        """Connect the parts to the state's signals before those on screen are connected."""
         state = self.state
         state.link_changed.connect(self._link_changed)
         state.about_to_forget.connect(self.messages.clear)
@@ -138,7 +138,7 @@ class FleetController(QObject):
         state.updated.connect(self.beat.advance)
 
     def _pass_on_words(self) -> None:
-        """Tell as the desk's own what its parts have to say to the operator."""
+        """Forward messages of the parts as the desk's own."""
         for signal, level in (
             (self.failed, Level.ERROR),
             (self.warning, Level.WARNING),
@@ -168,7 +168,7 @@ class FleetController(QObject):
         credentials: OperatorCredentials | None = None,
         known: FleetGateways | None = None,
     ) -> None:
-        """Connect to a gateway; what another one told is forgotten when this one says which site it serves.
+        """Connect to a gateway; reports of a previous one are forgotten once this one reports its site.
 
         ``known`` are other gateways of its fleet, from an earlier session.
 
@@ -180,7 +180,7 @@ class FleetController(QObject):
         self.state.start(url)
 
     def close_link(self) -> None:
-        """Disconnect; what is known stays on the map and ages."""
+        """Disconnect; the known state stays on the map and ages."""
         self.connection.close()
         self.state.pull()
 
@@ -242,7 +242,7 @@ class FleetController(QObject):
         self.drafts.done()
 
     def _robots_removed(self, gone: RemovedRobots) -> None:
-        """Forget robots that an administrator has removed; what they did stays in the log."""
+        """Forget robots that an administrator has removed; their commands stay in the log."""
         self._endings.robots_removed(gone.names)
         self.selection.select_all(robot for robot in self.selection.robots if robot not in gone.names)
         draft = self.drafts.draft
@@ -254,7 +254,7 @@ class FleetController(QObject):
             self.drafts.done()
 
     def _check_draft_again(self) -> None:
-        """Check the draft on the map once more: the site may have been published again beneath it."""
+        """Check the draft on the map again: the site may have been published again meanwhile."""
         self.sending.outgoing.begin_anew()
         if self.checks.is_under_way:
             self.checks.begin_anew()
@@ -263,7 +263,7 @@ class FleetController(QObject):
 
     def _drafted(self) -> None:
         if self.drafts.draft is None:
-            # It was sent, or given up: so is what led to the mouse.
+            # It was sent or given up, so the way to the mouse is dropped as well.
             self.preview.forget()
 
     def _found(self, draft: PendingCommand) -> None:
@@ -271,10 +271,10 @@ class FleetController(QObject):
             text = in_brief(draft.findings.faults)
             self.messages.post(text, Level.WARNING, messages.draft_topic(draft.place))
 
-    # --- what the operator does ---
+    # --- Actions of the operator ---
 
     def abort_selected(self) -> None:
-        """Ask every selected robot to give up its task."""
+        """Request an abort for every selected robot."""
         if not self.selection.robots:
             text = tr("No robot is selected, so none was aborted. Select it in the table or on the map.")
             self.messages.post(text, Level.WARNING, messages.SELECTION)
@@ -283,43 +283,43 @@ class FleetController(QObject):
         self._give_up_drafting()
 
     def abort_all(self) -> None:
-        """Ask every robot to give up its task, at once and without a question."""
+        """Request an abort for every robot, at once and without confirmation."""
         self._try(self.orders.abort_all)
         self._give_up_drafting()
 
     def emergency_stop(self) -> None:
-        """Stop every robot at once and without a question, until a supervisor clears it."""
+        """Stop every robot at once and without confirmation, until a supervisor clears it."""
         self._try(self.orders.emergency_stop)
         self._give_up_drafting()
         self.emergency_changed.emit()
 
     def _give_up_drafting(self) -> None:
-        """Send nothing that is still looked at, and show no way to the mouse: robots are to stand."""
+        """Send no draft that is still being checked, and show no way to the mouse: robots must stand."""
         self.sending.withdraw()
         self.preview.forget()
 
     def clear_emergency(self, stop: str, reason: str) -> None:
-        """Ask for the emergency stop ``stop`` to be cleared; the gateway lets supervisors only."""
+        """Request that the emergency stop ``stop`` be cleared; the gateway allows it to supervisors only."""
         self._try(lambda: self.orders.clear_emergency(stop, reason))
 
     def close_road(self, place: Point, reach: float, reason: str, seconds: float | None) -> None:
-        """Ask for the road at ``place`` to be closed, for ``seconds`` or until it is opened."""
+        """Request that the road at ``place`` be closed, for ``seconds`` or until it is opened."""
         self._try(lambda: self.roads.close(place, reach, reason, seconds))
 
     def open_road(self, closure: str) -> None:
-        """Ask for a closed road to be opened."""
+        """Request that a closed road be opened."""
         self._try(lambda: self.roads.open(closure))
 
     def resolve_conflict(self, robot: str, other: str) -> None:
-        """Ask for ``robot`` to give way to ``other``."""
+        """Request that ``robot`` give way to ``other``."""
         self._try(lambda: self.roads.resolve(robot, other))
 
     def pause_robot(self, robot: str) -> None:
-        """Ask for ``robot`` to stand and keep what it is doing; never refused here, as nothing that stops."""
+        """Request that ``robot`` stand and keep its task; like all that stops robots, never refused here."""
         self._try(lambda: self.orders.ask(PauseRobot(robot), tr("Pause of {robot}", robot=robot)))
 
     def propose_route(self, robot: str, points: list[Point]) -> None:
-        """Put a route for ``robot`` on the map, to be looked at, and sent as any other."""
+        """Put a route for ``robot`` on the map, to be checked and sent like any other."""
         route = PendingCommand(robot, ROUTE, tuple(points), legs=(1,) * len(points))
         self._try(lambda: self.target_ways.set_command(route))
 
@@ -332,7 +332,7 @@ class FleetController(QObject):
         return True
 
     def report_failure(self, text: str, *topics: messages.Topic) -> None:
-        """Say that something was not done, until one of ``topics`` is over."""
+        """Report that something was not done; shown until one of ``topics`` is over."""
         stop = self.state.emergency
         if stop is not None and stop.in_force and STOPPED_BY in text:
             topics = (*topics, messages.EMERGENCY)

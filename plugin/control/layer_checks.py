@@ -43,18 +43,18 @@ from ..ui.language import tr
 from ..ui.scheduling import ReadingThread, ReadingTurns, StalledError, Steps
 from .pending_command import ROUTE, START, ApproachKind, Findings, PendingCommand, Point
 
-# Each is looked at by itself, so that after a change only what has changed is looked at again.
+# Each track is checked separately, so that after a change only changed tracks are checked again.
 
 CheckedPath = tuple[Point, ...]
 """One point is a place, several are a way; metres in the site frame."""
 AT_BEGINNING_M = 0.5
-"""Metres within which a robot stands where its route begins."""
+"""Metres within which a robot counts as standing where its route begins."""
 AT_ONCE = 200
-"""Tracks that become geometries between two looks at the clock."""
+"""Tracks converted to geometries between two readings of the clock."""
 
 
 def legs(draft: PendingCommand) -> Iterator[CheckedPath]:
-    """Yield a draft's places and the way there, or each leg of a route with the point it leads on from."""
+    """Yield a draft's places and the way there, or each leg of a route with the point before it."""
     if draft.kind != ROUTE:
         yield from _places(draft)
         if draft.way.line:
@@ -68,9 +68,9 @@ def legs(draft: PendingCommand) -> Iterator[CheckedPath]:
 
 
 def drawn_by_hand(draft: PendingCommand) -> Iterator[CheckedPath]:
-    """Yield the places of a draft and the straight way to it, and legs of a route that follow no roads.
+    """Yield the places of a draft and the straight way to it, and legs of a route that do not follow roads.
 
-    Legs along the roads are the gateway's, which knows obstacles as the site was published.
+    Legs along the roads come from the gateway, which knows obstacles as the site was published.
     """
     if draft.kind != ROUTE:
         yield from _places(draft)
@@ -86,7 +86,7 @@ def drawn_by_hand(draft: PendingCommand) -> Iterator[CheckedPath]:
 
 
 def stops(draft: PendingCommand) -> Iterator[CheckedPath]:
-    """Yield the places of a draft, or those where the legs of a route end."""
+    """Yield the places of a draft, or the ends of the legs of a route."""
     if draft.kind != ROUTE:
         yield from _places(draft)
         return
@@ -95,7 +95,7 @@ def stops(draft: PendingCommand) -> Iterator[CheckedPath]:
 
 
 def is_looked_at(draft: PendingCommand) -> bool:
-    """Tell whether a draft is held against layers: where a robot says it stands it may have been put."""
+    """Return whether a draft is checked against layers: not a start position, robots may be put there."""
     return draft.kind != START
 
 
@@ -105,7 +105,7 @@ def lines_in(
     layer: QgsVectorLayer | None,
     project: QgsProject,
 ) -> Steps[list[QgsGeometry]]:
-    """Make geometries of tracks, in the CRS of ``layer``, or of the site for None.
+    """Convert tracks to geometries, in the CRS of ``layer``, or of the site for None.
 
     :raises MapTransformError: when a point has no place in the layer's CRS.
     """
@@ -127,7 +127,7 @@ def lines_in(
 
 
 def boxes_of(lines: Sequence[QgsGeometry], around: float) -> Steps[list[QgsRectangle]]:
-    """Return what each geometry takes up, and so much around it, in its own units."""
+    """Return the bounding box of each geometry, grown by ``around``, in its own units."""
     boxes = []
     for number, line in enumerate(lines):
         boxes.append(line.boundingBox().buffered(around))
@@ -137,7 +137,7 @@ def boxes_of(lines: Sequence[QgsGeometry], around: float) -> Steps[list[QgsRecta
 
 
 def place_in_words(track: CheckedPath) -> str:
-    """Return the end of a track as operators read it."""
+    """Return the end of a track as text for operators."""
     x, y = track[-1]
     return tr("({x:.2f}, {y:.2f}) m", x=x, y=y)
 
@@ -154,7 +154,7 @@ def _places(draft: PendingCommand) -> Iterator[CheckedPath]:
 
 
 def _spans(draft: PendingCommand) -> Iterator[tuple[int, int]]:
-    """Yield the first point of each leg of a route, and the one after its last."""
+    """Yield the index of the first point of each leg of a route, and the one after its last."""
     begin = 0
     for leg in draft.legs:
         yield begin, begin + leg
@@ -162,23 +162,23 @@ def _spans(draft: PendingCommand) -> Iterator[tuple[int, int]]:
 
 
 FEW = 20
-"""Places that the layer is asked for one by one; for more it is read once."""
+"""Places up to which the layer is queried one by one; for more it is read once."""
 
 Near = list[tuple[QgsFeature, list[int]]]
-"""Features, each with the numbers of the places that it is near to."""
+"""Features, each with the numbers of the places near it."""
 
 
 class Unread(Enum):
-    """Why nobody knows what a layer holds."""
+    """Why the content of a layer is unknown."""
 
     GONE = "gone"
     """Its file or database is gone or damaged."""
     SILENT = "silent"
-    """Nothing has come from it for as long as anybody waits."""
+    """It did not answer within the time limit."""
 
 
 class UnreadError(Exception):
-    """A layer was not read, or not to its end."""
+    """A layer was not read, or not completely."""
 
     def __init__(self, why: Unread):
         super().__init__(why.value)
@@ -186,7 +186,7 @@ class UnreadError(Exception):
 
 
 class LayerReading(NamedTuple):
-    """What was read of a layer; ``is_empty`` where it holds nothing at all."""
+    """Features read from a layer; ``is_empty`` where it has no features at all."""
 
     near: Near
     is_empty: bool
@@ -195,7 +195,7 @@ class LayerReading(NamedTuple):
 
 
 class LayerReader:
-    """Reads the features of a layer that count, in any thread; made in that of the layer.
+    """Reads the relevant features of a layer, in any thread; created in the thread of the layer.
 
     :raises ExpressionError: when the filter of the layer is no expression.
     """
@@ -210,11 +210,11 @@ class LayerReader:
         self._path = file_of(layer)
 
     def read(self, go_on: Callable[[], bool]) -> LayerReading:
-        """Return the features whose boxes meet those given, in the layer's CRS, while ``go_on`` says so."""
+        """Return the features whose boxes meet those given, in the layer's CRS, while ``go_on()`` is true."""
         file = file_state(self._path)
         begin_reading()
         near = self._near(go_on)
-        # Of a damaged file QGIS passes on what comes before the damage, and no error.
+        # Of a damaged file QGIS returns the features before the damage, and no error.
         is_complete = not (self._provider == "ogr" and error_of_gdal())
         if not self._has_features:
             self._has_features = has_features(self._features)
@@ -258,15 +258,15 @@ class LayerReader:
 
     def _counts(self, feature: QgsFeature) -> bool:
         doubts: list[str] = []
-        # What the filter cannot tell of may be in the way.
+        # A feature for which the filter cannot be evaluated may be in the way.
         return self._counted.keeps(feature, doubts) or bool(doubts)
 
 
 class LayerReadings:
-    """Reads layers in threads, of each layer one at a time.
+    """Reads layers in threads, one thread per layer at a time.
 
-    A layer whose file has been replaced since it was added to the project, or is back after it was gone, is
-    opened again first: QGIS may read on in the file of before. :meth:`remove` undoes the constructor.
+    A layer whose file has been replaced since it was added to the project, or has reappeared, is
+    opened again first: QGIS may continue to read the old file. :meth:`remove` undoes the constructor.
     """
 
     def __init__(self, project: QgsProject) -> None:
@@ -276,7 +276,7 @@ class LayerReadings:
         self._note_files(list(project.mapLayers().values()))
         self._turns: dict[str, ReadingTurns] = {}
         self.empty: set[str] = set()
-        """Layers that held nothing the last time, by their ids."""
+        """Ids of layers that had no features at the last reading."""
 
     def near(self, layer: QgsVectorLayer, boxes: Sequence[QgsRectangle]) -> Steps[Near]:
         """Find the features of ``layer`` near ``boxes``.
@@ -284,13 +284,13 @@ class LayerReadings:
         :raises UnreadError: when it cannot be read, or not in time.
         :raises ExpressionError: when the filter of the layer is no expression.
         """
-        # Nothing is asked of the layer later: it may be gone when it has been read.
+        # The layer is not accessed afterwards: it may be gone when it has been read.
         id = layer.id()
         reading = yield from self._read(id, LayerReader(layer, boxes))
         is_replaced = self._is_replaced(id, reading.file)
         self._files[id] = reading.file
         if is_replaced:
-            # This begins the check again where the layer is watched.
+            # This restarts the check where the layer is watched.
             again = self._project.mapLayer(id)
             if isinstance(again, QgsVectorLayer) and not again.isEditable():
                 again.dataProvider().reloadData()
@@ -303,7 +303,7 @@ class LayerReadings:
         return reading.near
 
     def remove(self) -> None:
-        """Note no layer that is added any more."""
+        """Stop recording layers that are added."""
         self._project.layersAdded.disconnect(self._note_files)
 
     def _read(self, id: str, reader: LayerReader) -> Steps[LayerReading]:
@@ -321,7 +321,7 @@ class LayerReadings:
 
 
 class _FileStates:
-    """Notes in ``states`` how the files of layers are, in a thread: a share may not answer."""
+    """Records the state of layers' files in ``states``, in a thread: a network share may not answer."""
 
     def __init__(self, paths: Mapping[str, str], states: dict[str, FileState]):
         self._paths, self._states = paths, states
@@ -332,7 +332,7 @@ class _FileStates:
 
 
 def engine_of(geometry: QgsGeometry, times: int) -> QgsGeometryEngine:
-    """Return what answers so many questions about ``geometry``, which has to outlive it."""
+    """Return an engine for that many queries about ``geometry``, which must outlive it."""
     engine = QgsGeometry.createGeometryEngine(geometry.constGet())
     if times > 1:
         engine.prepareGeometry()
@@ -340,7 +340,7 @@ def engine_of(geometry: QgsGeometry, times: int) -> QgsGeometryEngine:
 
 
 def name_of(feature: QgsFeature, layer: QgsVectorLayer) -> str:
-    """Return what a feature is called, by its attribute ``name``, else by its layer and number."""
+    """Return the name of a feature: its attribute ``name``, else its layer and number."""
     index = layer.fields().lookupField("name")
     name = feature.attribute(index) if index >= 0 else None
     if isinstance(name, str) and name:
@@ -359,13 +359,13 @@ class KeepoutCheck:
         self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
-        """Yield what of a draft is looked at: all of it."""
+        """Yield the tracks of a draft to check: all of them."""
         return legs(draft)
 
     def check_paths(
         self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], transform: SiteToMapTransform
     ) -> Steps[dict[int, list[str]]]:
-        """Find the names of the keepouts in ``layer`` by the numbers of the tracks that enter them."""
+        """Find the names of the keepouts in ``layer``, by the numbers of the tracks that enter them."""
         found: dict[int, list[str]] = {}
         lines = yield from lines_in(tracks, transform, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
@@ -382,7 +382,7 @@ class KeepoutCheck:
     def findings(
         self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[str]]], is_watched: bool
     ) -> Steps[Findings]:
-        """Return the findings of what was found for each track."""
+        """Return the findings for the hits of each track."""
         texts: dict[str, None] = {}
         for track, names in found:
             place = place_in_words(track)
@@ -405,7 +405,7 @@ CLEARANCE_M = 0.25
 """Metres within which a place is taken to be on an obstacle: half the width of a small robot."""
 
 Hit = tuple[str, float]
-"""The name of an obstacle, and how many metres away it is."""
+"""The name of an obstacle, and its distance in metres."""
 
 
 class ObstacleCheck:
@@ -419,7 +419,7 @@ class ObstacleCheck:
         self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
-        """Yield what of a draft is looked at: what was drawn by hand."""
+        """Yield the tracks of a draft to check: those drawn by hand."""
         return drawn_by_hand(draft)
 
     def check_paths(
@@ -464,7 +464,7 @@ class ObstacleCheck:
         for track, hits in found:
             place = place_in_words(track)
             spot = place if len(track) == 1 else tr("The way to {to}", to=place)
-            # Several features may have one name: the nearest counts.
+            # Several features may share a name: the nearest counts.
             for name in sorted({name for name, _ in hits}):
                 texts.append(_obstacle_text(spot, name, min(away for other, away in hits if other == name)))
             yield 1.0
@@ -472,14 +472,14 @@ class ObstacleCheck:
 
 
 def _boxes(tracks: Sequence[QgsGeometry], way: QgsCoordinateTransform) -> Steps[list[QgsRectangle]]:
-    """Return what is to be looked at in the layer's CRS, where ``way`` leads from."""
+    """Return the boxes to search in the layer's CRS; ``way`` leads from it."""
     boxes = yield from boxes_of(tracks, CLEARANCE_M)
     if not way.isValid() or way.isShortCircuited():
         return boxes
     back = QgsCoordinateTransform(way.destinationCrs(), way.sourceCrs(), way.context())
     limits = [(box.xMinimum(), box.yMinimum(), box.xMaximum(), box.yMaximum()) for box in boxes]
     corners = [(limit[x], limit[y]) for limit in limits for x, y in ((0, 1), (2, 1), (2, 3), (0, 3))]
-    # At the scale of a site the corners hold what lies between them, but for a hair.
+    # At the scale of a site the transformed corners bound what lies between them, but for a hair.
     there = transform_or_raise(np.array(corners), back).reshape(-1, 4, 2)
     least, most = there.min(axis=1), there.max(axis=1)
     slack = (most - least) * 0.01
@@ -493,15 +493,15 @@ def _obstacle_text(spot: str, name: str, away: float) -> str:
 
 
 GAP_M = 0.5
-"""Metres between two surfaces that a robot is not said to leave the road for."""
+"""Metres between two surfaces that do not count as leaving the road."""
 
 Share = tuple[float, float]
-"""From where to where of a track one surface reaches: 0 is its beginning, 1 its end."""
+"""The part of a track on one surface, from and to: 0 is the track's beginning, 1 its end."""
 WHOLE: Share = (0.0, 1.0)
 
 
 class SurfaceCheck:
-    """Finds for each place, and each leg that was drawn, what of it is on a road surface."""
+    """Finds for each place, and each leg drawn by hand, the part that is on a road surface."""
 
     roles = (ROAD_SURFACE,)
     only_polygons = True
@@ -511,14 +511,14 @@ class SurfaceCheck:
         self._readings = readings
 
     def tracks(self, draft: PendingCommand) -> Iterator[CheckedPath]:
-        """Yield what of a draft is looked at: where its legs end, and those that do not follow the roads."""
+        """Yield the tracks of a draft to check: ends of legs, and legs that do not follow the roads."""
         yield from stops(draft)
         yield from (track for track in drawn_by_hand(draft) if len(track) > 1)
 
     def check_paths(
         self, layer: QgsVectorLayer, tracks: Sequence[CheckedPath], transform: SiteToMapTransform
     ) -> Steps[dict[int, list[Share]]]:
-        """Find what surfaces of ``layer`` hold of the tracks, by the tracks' numbers."""
+        """Find the parts of the tracks on surfaces of ``layer``, by the tracks' numbers."""
         found: dict[int, list[Share]] = {}
         lines = yield from lines_in(tracks, transform, layer, self._project)
         boxes = yield from boxes_of(lines, 0.0)
@@ -540,7 +540,7 @@ class SurfaceCheck:
     def findings(
         self, draft: PendingCommand, found: Sequence[tuple[CheckedPath, list[Share]]], is_watched: bool
     ) -> Steps[Findings]:
-        """Return the findings; without any road surface nobody can tell."""
+        """Return the findings; without any road surface nothing can be said."""
         yield 1.0
         if not is_watched:
             return Findings()
@@ -556,7 +556,7 @@ class SurfaceCheck:
 
 
 def _shares(line: QgsGeometry, area: QgsGeometry) -> list[Share]:
-    """Return what of a straight line is in ``area``, in the CRS of both."""
+    """Return the parts of a straight line in ``area``, in the CRS of both."""
     start, *_, end = line.vertices()
     dx, dy = end.x() - start.x(), end.y() - start.y()
     square = dx * dx + dy * dy

@@ -1,4 +1,4 @@
-"""Messages to the operator: topics that end them, and QGIS's message bar."""
+"""Messages to the operator: topics that end them, and the QGIS message bar."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from ..ui.language import time_of_day, tr
 from .pending_command import PendingCommandModel
 
 # A message is posted with topics. When the condition that a topic names has ended, all messages with it are
-# withdrawn: what is no longer true hides nothing that is.
+# withdrawn, so that outdated messages do not hide current ones.
 
 SHOWN_ROBOTS = 5
-"""of a link that is down, in its message."""
+"""Robots of a link that is down, named in its message."""
 
 
 class Level(Enum):
-    """How pressing a message is."""
+    """Severity of a message."""
 
     ERROR = "error"
-    """It stays until it is closed or no longer true."""
+    """Stays until it is closed or no longer true."""
     WARNING = "warning"
     INFO = "info"
 
 
 class Topic(NamedTuple):
-    """A condition that a message is about: its kind, and whose."""
+    """A condition that a message is about: its kind, and whom or what it concerns."""
 
     kind: str
     about: Hashable = ""
@@ -50,29 +50,29 @@ EMERGENCY = Topic("emergency")
 OUTAGE = Topic("outage")
 """The link is down."""
 SELECTION = Topic("selection")
-"""Other robots have to be selected."""
+"""Another selection of robots is needed."""
 NO_DRAFT = Topic("no_draft")
 """There is no draft on the map."""
 PLAN_REQUEST = Topic("plan", "asked")
-"""Something was asked of cone plans; it ends when something else is."""
+"""A request about cone plans; ends with the next one."""
 PLAN_SENT = Topic("plan", "sent")
-"""What the gateway said of a cone plan; it ends when something else is asked of one, or none is shown."""
+"""The gateway's answer about a cone plan; ends with the next request about one, or when none is shown."""
 REPLAY = Topic("replay")
-"""What was loaded to be replayed; it ends when something else is."""
+"""Data loaded for replay; ends when other data is loaded."""
 
 
 def request_topic(method: str, about: Hashable) -> Topic:
-    """Return the topic of a request that was refused: it ends when the same is asked for again."""
+    """Return the topic of a refused request: it ends when the same is requested again."""
     return Topic("request", (method, about))
 
 
 def draft_topic(draft: Hashable) -> Topic:
-    """Return the topic of a draft on the map: it ends when another one is there, or none."""
+    """Return the topic of a draft on the map: it ends when the draft is replaced or removed."""
     return Topic("draft", draft)
 
 
 def plan_topic(plan: str, what: str) -> Topic:
-    """Return the topic of what is the matter with a cone plan that is driven: it ends when that is over."""
+    """Return the topic of a problem with a cone plan being driven: it ends when the problem is over."""
     return Topic("plan", (plan, what))
 
 
@@ -82,8 +82,8 @@ def conflict_topic(robot: str, other: str) -> Topic:
 
 
 class QueueStand(NamedTuple):
-    """What of a queue a message is about; ``state`` (a QueueState's, empty without a queue) and ``task``
-    where they count."""
+    """The state of a queue that a message is about; ``state`` (a QueueState's, empty without a queue) and
+    ``task`` where they count."""
 
     robot: str
     state: str | None = None
@@ -91,27 +91,27 @@ class QueueStand(NamedTuple):
 
 
 def queue_topic(stand: QueueStand) -> Topic:
-    """Return the topic of a queue: it ends when its state is another, or its task no longer to be done."""
+    """Return the topic of a queue: it ends when its state changes, or its task is no longer pending."""
     return Topic("queue", stand)
 
 
 def observation_topic(number: int) -> Topic:
-    """Return the topic of an observation that waits for its review."""
+    """Return the topic of an observation that waits for review."""
     return Topic("observation", number)
 
 
 def file_topic(what: str) -> Topic:
-    """Return the topic of a file that was not written: it ends when ``what`` is written once more."""
+    """Return the topic of a file that was not written: it ends when ``what`` is written again."""
     return Topic("file", what)
 
 
 def robot_topic(robot: str) -> Topic:
-    """Return the topic of what a robot does: it ends when the robot is ordered to do something else."""
+    """Return the topic of a robot's activity: it ends when the robot receives another command."""
     return Topic("robot", robot)
 
 
 class MessageBoard(QObject):
-    """Keeps the topics of what is shown, and says what is not true any more."""
+    """Keeps the topics of the messages shown, and reports which are no longer true."""
 
     posted = pyqtSignal(str, object)
     """A message's text and its Level."""
@@ -123,7 +123,7 @@ class MessageBoard(QObject):
         self._topics: dict[str, frozenset[Topic]] = {}
 
     def post(self, text: str, level: Level, *topics: Topic) -> None:
-        """Show ``text`` until the first of ``topics`` has ended, or the link leads to other robots."""
+        """Show ``text`` until the first of ``topics`` has ended, or the link changes to another fleet."""
         self._topics.pop(text, None)
         self._topics[text] = frozenset(topics)
         self.posted.emit(text, level)
@@ -133,11 +133,11 @@ class MessageBoard(QObject):
         self._withdraw(text for text, its in self._topics.items() if its.intersection(topics))
 
     def end_others(self, kind: str, holding: Collection[Topic]) -> None:
-        """Withdraw every message with a topic of this ``kind`` that is not among those that still hold."""
+        """Withdraw every message with a topic of this ``kind`` that is not in ``holding``."""
         self.end_where(kind, lambda about: Topic(kind, about) not in holding)
 
     def end_where(self, kind: str, is_over: Callable[[Any], bool]) -> None:
-        """Withdraw every message with a topic of this ``kind`` where what that is about is over."""
+        """Withdraw every message with a topic of this ``kind`` whose subject ``is_over``."""
         self._withdraw(
             text
             for text, its in self._topics.items()
@@ -154,7 +154,7 @@ class MessageBoard(QObject):
         self._withdraw(self._topics)
 
     def forget(self, text: str) -> None:
-        """Note that a message is not shown any more: its time is over, or the operator has closed it."""
+        """Record that a message is no longer shown: its time is over, or the operator has closed it."""
         self._topics.pop(text, None)
 
     def _withdraw(self, texts: Iterable[str]) -> None:
@@ -163,7 +163,7 @@ class MessageBoard(QObject):
 
 
 class MessageEndings(QObject):
-    """Tells the board what is over; the desk says of each change that it has happened."""
+    """Ends topics on the board; the desk reports each change to it."""
 
     def __init__(
         self, messages: MessageBoard, drafts: PendingCommandModel, state: FleetState, parent: QObject
@@ -177,25 +177,25 @@ class MessageEndings(QObject):
         state.observations_changed.connect(self._observations_changed)
 
     def emergency_cleared(self) -> None:
-        """End what was refused because of an emergency stop."""
+        """End refusals due to an emergency stop."""
         self._messages.end(EMERGENCY)
 
     def selection_changed(self) -> None:
-        """End what asked for another selection."""
+        """End messages that asked for another selection."""
         self._messages.end(SELECTION)
 
     def commands_changed(self, reports: Sequence[CommandReport]) -> None:
-        """End what was told of robots that have been ordered to do something else since."""
+        """End messages about robots that have received another command since."""
         new = (report for report in reports if report.state is CommandState.QUEUED)
         ordered = {report.robot for report in new if report.op != Abort.__name__}
         self._messages.end(*map(robot_topic, ordered))
 
     def robots_removed(self, robots: Collection[str]) -> None:
-        """End what was told of robots that are there no more."""
+        """End messages about robots that no longer exist."""
         self._messages.end_where("robot", lambda robot: robot in robots)
 
     def _queues_changed(self) -> None:
-        """End what was told of queues that are paused or go on since, or of tasks that are done since."""
+        """End messages about queues that were paused or continued since, or tasks done since."""
 
         def is_over(stand: QueueStand) -> bool:
             queue = self._state.queues.get(stand.robot)
@@ -207,7 +207,7 @@ class MessageEndings(QObject):
         self._messages.end_where("queue", is_over)
 
     def _observations_changed(self) -> None:
-        """End what was told of observations that somebody has reviewed since."""
+        """End messages about observations that have been reviewed since."""
 
         def is_over(number: int) -> bool:
             report = self._state.observations.get(number)
@@ -229,7 +229,7 @@ class MessageEndings(QObject):
 
 
 class ReportNotices(QObject):
-    """Texts about what the gateway reports: which are new, and which are over."""
+    """Texts about the gateway's reports: posts new ones and withdraws those that are over."""
 
     began = pyqtSignal(str)
     over = pyqtSignal(str)
@@ -239,7 +239,7 @@ class ReportNotices(QObject):
         self._texts: list[str] = []
 
     def renew(self, texts: list[str]) -> None:
-        """Say what is new in ``texts``, and that the rest of the former ones is over."""
+        """Post the texts that are new in ``texts``, and withdraw the former ones not in it."""
         before, self._texts = self._texts, texts
         for text in before:
             if text not in texts:
@@ -253,15 +253,15 @@ class SuspensionNotices(ReportNotices):
     """Texts about robots whose accounts of the database are locked."""
 
     def show(self, suspensions: Suspensions) -> None:
-        """Tell of the newest report."""
+        """Show the newest report."""
         self.renew([_suspended(one) for one in suspensions.robots])
 
 
 class LinkNotices(ReportNotices):
-    """Texts about links to robots of another kind that are down, or whose robots are not in order."""
+    """Texts about links to robots of another kind that are down, or whose robots have problems."""
 
     def show(self, links: Links) -> None:
-        """Tell of the newest report."""
+        """Show the newest report."""
         self.renew([_not_in_order(one) for one in links.links if one.text or not one.up])
 
 
@@ -301,19 +301,19 @@ LEVELS = {
     Level.INFO: Qgis.MessageLevel.Info,
 }
 SECONDS = {Qgis.MessageLevel.Info: 6, Qgis.MessageLevel.Success: 5, Qgis.MessageLevel.Warning: 12}
-"""How long a text stays; what is critical stays until it is closed."""
+"""Seconds for which a text stays; critical ones stay until closed."""
 BESIDE_TEXT = 190
-"""Pixels of the bar's width that its icons, counter and buttons take."""
+"""Width in pixels of the bar's icons, counter and buttons."""
 
 
 class MessageBar(QObject):
-    """Shows texts in the message bar, each once at a time, and writes all of them to QGIS's message log.
+    """Shows texts in the message bar, without duplicates, and writes all of them to the QGIS message log.
 
-    The newest one is seen first, also one that hung beneath others already.
+    The newest one is on top, even if it was already shown beneath others.
     """
 
     closed = pyqtSignal(str)
-    """A text does not hang there any more."""
+    """A text is no longer shown."""
 
     def __init__(self, bar: QgsMessageBar, parent: QObject | None = None):
         super().__init__(parent)
@@ -326,29 +326,29 @@ class MessageBar(QObject):
         self._show(text, LEVELS[level])
 
     def error(self, error: Exception | str) -> None:
-        """Say what failed; stays until it is closed."""
+        """Show an error; it stays until it is closed."""
         self._show(str(error), Qgis.MessageLevel.Critical)
 
     def warning(self, text: Exception | str) -> None:
-        """Say what the operator should know and mend."""
+        """Show a warning that the operator should act on."""
         self._show(str(text), Qgis.MessageLevel.Warning)
 
     def info(self, text: str) -> None:
-        """Say what happened."""
+        """Show information about what happened."""
         self._show(text, Qgis.MessageLevel.Info)
 
     def texts(self) -> list[str]:
-        """Return what hangs there now."""
+        """Return the texts shown now."""
         return list(self._shown)
 
     def take_down(self, text: str) -> None:
-        """Take down a text that is over; one that does not hang there is passed over."""
+        """Remove a text that is over; one that is not shown is ignored."""
         item = self._shown.pop(text, None)
         if item is not None:
             self._bar.popWidget(item)
 
     def remove(self) -> None:
-        """Take down whatever still hangs there."""
+        """Remove all texts still shown."""
         self._bar.widgetRemoved.disconnect(self._removed)
         for item in list(self._shown.values()):
             self._bar.popWidget(item)
@@ -373,10 +373,10 @@ class MessageBar(QObject):
 
 
 class MessageLabel(QLabel):
-    """A text on as many lines as it needs; an item of QGIS's own cuts it after one and a half.
+    """A text on as many lines as it needs; QGIS's own item cuts it after one and a half.
 
-    It asks for the width of its longest word and takes what there is: QGIS's bar makes the whole window as
-    wide as what hangs in it wishes to be.
+    It requests the width of its longest word and uses the width available: QGIS's bar makes the whole
+    window as wide as the size hint of its content.
     """
 
     def __init__(self, text: str, bar: QgsMessageBar):
@@ -403,19 +403,19 @@ class MessageLabel(QLabel):
         self._fit(self.width())
 
     def _fit(self, width: int) -> None:
-        # Qt counts the least height that was set before among what the text takes.
+        # Qt includes the minimum height set before in the height of the text.
         self.setMinimumHeight(0)
         self.setFixedHeight(self.heightForWidth(width))
 
 
 BROAD_TEXT = 360
-"""Pixels of text beside which its buttons stand; where that leaves less, they stand beneath it."""
+"""Pixels of text beside which its buttons stand; with less room they stand beneath it."""
 
 
 class NoticeBody(QWidget):
-    """Asks for no more than the width of its buttons, and takes what there is.
+    """Requests only the width of its buttons, and uses the width available.
 
-    QGIS's bar makes the whole window as wide as what hangs in it wishes to be.
+    QGIS's bar makes the whole window as wide as the size hint of its content.
     """
 
     def __init__(self, text: QLabel, buttons: Sequence[QAbstractButton], parent: QWidget):

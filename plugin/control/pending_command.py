@@ -1,4 +1,4 @@
-"""The pending command: what the operator is about to send, its changes, and as tasks of a queue."""
+"""The pending command: the draft that the operator is about to send, its changes, and as tasks of a queue."""
 
 from __future__ import annotations
 
@@ -28,18 +28,18 @@ START = "start"
 TARGETS = "targets"
 
 LEAST_POINTS = 2
-"""Points that a route needs."""
+"""Points required for a route."""
 MOST_STEPS = 100
-"""Drafts that can be come back to."""
+"""Drafts kept for undo."""
 
 
 @dataclass(frozen=True)
 class Findings:
-    """What a check of a draft found.
+    """The findings of a check of a draft.
 
-    ``refused`` forbids sending it. ``overridable`` does so until somebody overrides it, who says why.
-    ``warnings`` do not. ``of_way`` are those of all these that are about the way to a target from where its
-    robot is now: a task of a queue is driven from elsewhere.
+    ``refused`` forbids sending it. ``overridable`` does so until an operator overrides it, with a reason.
+    ``warnings`` do not. ``of_way`` are those of all these that are about the way to a target from the present
+    position of its robot: a task of a queue is driven from elsewhere.
     """
 
     refused: tuple[str, ...] = ()
@@ -57,27 +57,27 @@ class Findings:
 
     @property
     def faults(self) -> tuple[str, ...]:
-        """All that speaks against sending it."""
+        """Findings that forbid sending it."""
         return self.refused + self.overridable
 
     @property
     def all_texts(self) -> frozenset[str]:
-        """All that was found."""
+        """All findings."""
         return frozenset(self.refused + self.warnings + self.overridable)
 
     def without_way(self) -> Findings:
-        """Return what was found but for the way to a target."""
+        """Return the findings except those on the way to a target."""
         kinds = (self.refused, self.warnings, self.overridable)
         return Findings(*(tuple(text for text in kind if text not in self.of_way) for kind in kinds))
 
 
 class ApproachKind(Enum):
-    """How a robot comes to a cone target, or to where its route begins."""
+    """How a robot gets to a cone target, or to the beginning of its route."""
 
     UNKNOWN = "unknown"
-    """Nobody knows: it has not said where it is, or the gateway does not answer."""
+    """Unknown: the robot has not reported its position, or the gateway does not answer."""
     SOUGHT = "sought"
-    """The gateway is asked for the way along the roads."""
+    """The gateway has been asked for the way along the roads."""
     STRAIGHT = "straight"
     """The target or route is sent, and the robot drives straight to it."""
     PATH = "path"
@@ -88,10 +88,10 @@ class ApproachKind(Enum):
 
 @dataclass(frozen=True)
 class Approach:
-    """The way to a cone target, or to where a route begins, from where the robot is: metres, site frame.
+    """The way to a cone target, or to the beginning of a route, from the robot: metres, site frame.
 
-    ``note`` is what operators are told of it, ``refusal`` why it cannot be driven. ``declared`` is what the
-    robot had declared of its paths when it was found.
+    ``note`` is shown to operators, ``refusal`` is why it cannot be driven. ``declared`` is what the
+    robot had declared of its paths when the way was found.
     """
 
     kind: ApproachKind = ApproachKind.UNKNOWN
@@ -102,7 +102,7 @@ class Approach:
 
     @property
     def findings(self) -> Findings:
-        """What is to be told of it, besides what is in its way."""
+        """Findings about it, besides obstacles in its way."""
         if self.refusal:
             return Findings(refused=(self.refusal,), of_way=(self.refusal,))
         if self.note and not self.is_along_roads:
@@ -123,12 +123,12 @@ class PendingCommand:
     """A cone target or start position (one point), a route (its points) or several cone targets.
 
     Points are metres in the site frame. ``robot`` is the one that was selected when the draft was begun:
-    another selection does not change it. ``legs`` says how many of a route's points each click brought: one,
-    or a way along the roads. ``note`` is what the operator is told of such ways. ``theta`` is the heading of
-    a start position. ``names`` are those of several targets. ``override`` says why it is sent in spite of
-    what can be overridden. Nothing was found yet unless it ``is_checked``. ``way`` leads to a cone
-    target, or to where a route begins; with ``is_direct`` the operator wants it straight. A robot that cannot
-    place cones is sent there without: ``places_cone`` is false then.
+    another selection does not change it. ``legs`` is how many of a route's points each click added: one,
+    or a way along the roads. ``note`` is shown to the operator about such ways. ``theta`` is the heading of
+    a start position. ``names`` are those of several targets. ``override`` is why it is sent in spite of
+    overridable findings. There are no findings yet unless it ``is_checked``. ``way`` leads to a cone
+    target, or to the beginning of a route; with ``is_direct`` the operator wants it straight. A robot that
+    cannot place cones is sent there without: ``places_cone`` is false then.
     """
 
     robot: str
@@ -161,12 +161,12 @@ class PendingCommand:
 
     @property
     def place(self) -> tuple[str, str, tuple[Point, ...]]:
-        """What makes it another draft: for whom, of which kind and where."""
+        """The key that distinguishes drafts: robot, kind and places."""
         return self.robot, self.kind, self.points
 
     @property
     def fault(self) -> str | None:
-        """Why it cannot be sent, None if it can."""
+        """The reason why it cannot be sent, None if it can."""
         if self.kind == ROUTE and len(self.points) < LEAST_POINTS:
             return tr("a route needs at least two points: click the next one")
         if self.way.kind is ApproachKind.SOUGHT:
@@ -176,17 +176,17 @@ class PendingCommand:
         return in_brief(self.findings.refused if self.override else self.findings.faults) or None
 
     def as_task(self) -> PendingCommand:
-        """Return what a task of a queue is made of: the way to that is found when its turn has come."""
+        """Return the draft as a task of a queue: the way to it is found when its turn comes."""
         return replace(self, way=NO_APPROACH, findings=self.findings.without_way())
 
     @property
     def can_be_overridden(self) -> bool:
-        """Tell whether nothing but an override is wanting."""
+        """Return whether only an override is missing."""
         return bool(self.findings.overridable) and replace(self, override="all").fault is None
 
     @property
     def outline(self) -> tuple[Point, ...]:
-        """What is drawn: the points, the way along the roads to a target, a heading of a start position."""
+        """The line to draw: the points, the way along the roads to a target, heading of a start position."""
         if self.way.is_along_roads:
             return self.way.line
         if self.theta is None:
@@ -213,7 +213,7 @@ class PendingCommand:
         return SetPath.__name__, to_json(SetPath(list(self.points)))
 
     def in_words(self) -> str:
-        """Return what would be sent to whom."""
+        """Return the command and its robot in words."""
         if self.kind == CONE:
             cone = tr("Cone for {robot} at {place}", robot=self.robot, place=_place(self.points[0]))
             return cone + self._way_in_words()
@@ -254,7 +254,7 @@ class PendingCommand:
 
 
 class PendingCommandModel(QObject):
-    """Holds the one draft that there can be, tells who shows it when it changes, and takes changes back."""
+    """Holds the single draft, notifies views when it changes, and supports undo and redo."""
 
     changed = pyqtSignal()
     pointed = pyqtSignal()
@@ -263,20 +263,20 @@ class PendingCommandModel(QObject):
         super().__init__(parent)
         self.draft: PendingCommand | None = None
         self.is_dragged = False
-        """Whether the draft is one under the mouse, which becomes another with each of its moves."""
+        """Whether the draft is being dragged with the mouse, and is replaced at each move."""
         self.cursor: Point | None = None
         self._before: list[PendingCommand | None] = []
         self._after: list[PendingCommand | None] = []
 
     def set_command(self, draft: PendingCommand | None) -> None:
-        """Make ``draft`` the one, None for no draft."""
+        """Set ``draft`` as the current one, None for no draft."""
         if draft is not None or self.draft is not None:
             self._before = [*self._before, self.draft][-MOST_STEPS:]
             self._after = []
         self._show(draft)
 
     def renew(self, draft: PendingCommand) -> None:
-        """Put ``draft`` in place of the present one, of which it differs in what was found or overridden."""
+        """Replace the present draft by ``draft``, which differs from it in findings or override only."""
         self._show(draft, cursor=self.cursor)
 
     def drag(self, draft: PendingCommand) -> None:
@@ -284,34 +284,34 @@ class PendingCommandModel(QObject):
         self._show(draft, is_dragged=True)
 
     def done(self) -> None:
-        """Take the draft away for good: it was sent, or belongs to another site."""
+        """Remove the draft for good: it was sent, or belongs to another site."""
         self.forget_changes()
         self._show(None)
 
     def forget_changes(self) -> None:
-        """Let no change be taken back that was made so far."""
+        """Clear the history for undo and redo."""
         self._before, self._after = [], []
 
     @property
     def can_undo(self) -> bool:
-        """Tell whether there is a draft from before."""
+        """Return whether there is an earlier draft."""
         return bool(self._before)
 
     @property
     def can_redo(self) -> bool:
-        """Tell whether something was taken back."""
+        """Return whether a change was undone."""
         return bool(self._after)
 
     def undo(self) -> bool:
-        """Go back to the draft from before the last change; false when there is none."""
+        """Return to the draft before the last change; false when there is none."""
         return self._go(self._before, self._after)
 
     def redo(self) -> bool:
-        """Make the change again that was taken back last; false when there is none."""
+        """Repeat the change that was undone last; false when there is none."""
         return self._go(self._after, self._before)
 
     def point_at(self, cursor: Point | None) -> None:
-        """Say where the mouse is, in the site frame, for the preview of the next leg."""
+        """Set the position of the mouse, in the site frame, for the preview of the next leg."""
         self.cursor = cursor
         self.pointed.emit()
 
@@ -332,7 +332,7 @@ class PendingCommandModel(QObject):
 
 
 def in_brief(texts: Sequence[str], most: int = 3) -> str:
-    """Return the first of ``texts`` and how many more there are: of a whole layer there may be hundreds."""
+    """Return the first of ``texts`` and the number of the others: for a whole layer there may be hundreds."""
     more = len(texts) - most
     return " ".join([*texts[:most], *([tr("And {more} more.", more=more)] if more > 0 else [])])
 
@@ -341,21 +341,21 @@ def _place(point: Point) -> str:
     return tr("{x:.2f}, {y:.2f} m", x=point[0], y=point[1])
 
 
-# Legs that follow the roads are the gateway's: their points are no vertices and are not changed by hand.
+# Legs that follow the roads come from the gateway: their points are no vertices and not edited by hand.
 
 
 class RouteEditError(FleetError):
-    """A route cannot be changed so."""
+    """A route cannot be changed in this way."""
 
 
 def vertices(draft: PendingCommand) -> list[int]:
-    """Return the points that were clicked one by one, in order."""
+    """Return the indices of the points that were clicked one by one, in order."""
     ends = accumulate(draft.legs)
     return [end - 1 for leg, end in zip(draft.legs, ends, strict=True) if leg == 1]
 
 
 def moved(draft: PendingCommand, vertex: int, to: Point) -> PendingCommand:
-    """Return the route with a vertex at another place, unchecked."""
+    """Return the route with a vertex moved to another place, unchecked."""
     _check_vertex(draft, vertex)
     points = (*draft.points[:vertex], to, *draft.points[vertex + 1 :])
     return _changed(draft, points, draft.legs)
@@ -383,9 +383,9 @@ def deleted(draft: PendingCommand, vertex: int) -> PendingCommand | None:
 
 
 def turned_round(draft: PendingCommand) -> PendingCommand:
-    """Return the route from its end to its beginning, unchecked.
+    """Return the route reversed, unchecked.
 
-    :raises RouteEditError: when a part follows the roads: the way back may be another.
+    :raises RouteEditError: when a part follows the roads: the way back may differ.
     """
     if len(vertices(draft)) < len(draft.points):
         raise RouteEditError(
@@ -416,9 +416,9 @@ def _check_vertex(draft: PendingCommand, vertex: int) -> None:
 
 
 def queue_tasks(draft: PendingCommand) -> list[QueueTask]:
-    """Return what a robot has to do for a draft, one after the other.
+    """Return the tasks that a draft consists of, in order.
 
-    :raises NotSentError: for what is no task.
+    :raises NotSentError: for a draft that cannot be a task.
     """
     if draft.kind == START:
         raise NotSentError(tr("A start position is no task: Send tells the robot at once."))

@@ -1,4 +1,4 @@
-"""What the operator asks for, from the press of a button to the gateway's answer."""
+"""Requests of the operator, from the press of a button to the gateway's answer."""
 
 from __future__ import annotations
 
@@ -27,40 +27,40 @@ SLOW_AFTER = 5.0
 
 
 class AnswerReceiver(Protocol):
-    """Who asks the gateway something, and waits for the answer."""
+    """A part that sends requests to the gateway and waits for their answers."""
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in an answer; false when it is one to something else."""
+        """Handle an answer; return false when it belongs to another request."""
 
 
 class RequestSender(QObject):
-    """Hands requests to the connection while there is a link; what stops robots also before there is one.
+    """Hands requests to the connection while there is a link; those that stop robots also before that.
 
-    Each answer is handed to who asked.
+    Each answer is handed to the part that sent the request.
     """
 
     failed = pyqtSignal(str)
-    """What stops robots waits for the link: the text, which must not go unseen."""
+    """A request that stops robots waits for the link: the text, which must be seen by the operator."""
     resolved = pyqtSignal(str)
-    """What ``failed`` told with this text is over."""
+    """The failure reported with this text is over."""
 
     def __init__(self, connection: ConnectionThread, state: FleetState, parent: QObject | None = None):
         super().__init__(parent)
         self._connection, self._state = connection, state
         self._receivers: list[AnswerReceiver] = []
         self._not_sent_yet: set[str] = set()
-        """What was told of stops and Aborts that wait for the link."""
+        """Texts shown about stops and Aborts that wait for the link."""
         state.link_changed.connect(self._link_changed)
         state.answered.connect(self._answered)
 
     def add_receiver(self, receiver: AnswerReceiver) -> None:
-        """Hand ``receiver`` the answers that none of those accepts that were added before it."""
+        """Offer answers to ``receiver`` that none of the receivers added before it accepts."""
         self._receivers.append(receiver)
 
     def submit(self, request: OperatorRequest) -> None:
         """Send a request; raises NotSentError when it cannot be sent."""
         if not (request.lasting or _stops(request) or DESK_REQUESTS[request.method].stops):
-            # Its places and robots are those that the operator sees: no other gateway may carry it out.
+            # Its places and robots are those that this operator sees: no other gateway may carry it out.
             request = replace(request, ground=self._state.ground)
         if self._state.link.phase is ConnectionPhase.CONNECTED:
             self._connection.submit(request)
@@ -100,14 +100,14 @@ class RequestSender(QObject):
 
 
 def _stops(request: OperatorRequest) -> bool:
-    """Tell whether a request stops robots, and sets none in motion."""
+    """Return whether a request stops robots and sets none in motion."""
     is_abort = request.method == Send.method and request.params.get("op") == Abort.__name__
     return is_abort or request.method in (EmergencyStop.method, AbortAll.method)
 
 
 @dataclass
 class PendingRequest:
-    """An order without an answer: what it is in words, and the draft it came from."""
+    """A request without an answer yet: its text, and the draft it came from."""
 
     words: str
     requested_at: float
@@ -115,24 +115,24 @@ class PendingRequest:
     stops: bool = False
     slow_notice: str = ""
     topics: tuple[Topic, ...] = ()
-    """What a refusal is about."""
+    """The subjects of a refusal."""
 
 
 class RequestTracker(QObject):
-    """Gives each press of a button its own id, hands it to the connection and tells what became of it."""
+    """Gives each press of a button its own id, hands it to the connection and reports the outcome."""
 
     answered = pyqtSignal(object)
-    """What became of a request: the RequestResult."""
+    """The outcome of a request: the RequestResult."""
     refused = pyqtSignal(str, object, object)
-    """An order was not carried out: the text, the draft it came from or None, and the text's topics."""
+    """A request was not carried out: the text, the draft it came from or None, and the text's topics."""
     retried = pyqtSignal(object)
-    """Something is asked for now that may have been refused before: the Topic of that."""
+    """A request is sent that may have been refused before: its Topic."""
     accepted = pyqtSignal(str)
     kept = pyqtSignal(str, str)
-    """A command is in the gateway's keeping: its id, and what it is in words. Its steps follow as reports."""
+    """The gateway has stored a command: its id, and its text. Its steps follow as reports."""
     slow = pyqtSignal(str)
     resolved = pyqtSignal(str)
-    """An order that ``slow`` told of with this text has been answered."""
+    """A request that ``slow`` reported with this text has been answered."""
 
     def __init__(
         self,
@@ -149,7 +149,7 @@ class RequestTracker(QObject):
         return len(self._pending)
 
     def forget_drafts(self) -> None:
-        """Bring no draft back that was sent before: its places are another site's."""
+        """Restore no draft that was sent before: its places are another site's."""
         for pending in self._pending.values():
             pending.draft = None
 
@@ -172,14 +172,14 @@ class RequestTracker(QObject):
         return self._command(draft.robot, op, params, draft.in_words(), draft, draft.override)
 
     def abort(self, robot: str) -> str:
-        """Ask one robot to give up its task and return the command's id.
+        """Request an abort for one robot and return the command's id.
 
         :raises NotSentError: when it cannot be sent.
         """
         return self._command(robot, Abort.__name__, {}, tr("Abort of {robot}", robot=robot), None)
 
     def abort_all(self) -> str:
-        """Ask every robot to give up its task and return the order's key.
+        """Request an abort for every robot and return the request's key.
 
         :raises NotSentError: when it cannot be sent.
         """
@@ -189,11 +189,11 @@ class RequestTracker(QObject):
 
     @property
     def awaits_stop(self) -> bool:
-        """Whether an emergency stop was asked for that the gateway has not answered yet."""
+        """Whether an emergency stop was requested that the gateway has not answered yet."""
         return any(pending.stops for pending in self._pending.values())
 
     def emergency_stop(self) -> str:
-        """Ask for every robot to stop, and for none to be sent until that is cleared; return its id.
+        """Request that every robot stop, and none be sent until that is cleared; return its id.
 
         :raises NotSentError: when it cannot be sent.
         """
@@ -208,7 +208,7 @@ class RequestTracker(QObject):
         return key
 
     def clear_emergency(self, stop: str, reason: str) -> str:
-        """Ask for robots to be let go again and return the order's key.
+        """Request that robots be released again and return the request's key.
 
         :raises NotSentError: when it cannot be sent.
         """
@@ -217,19 +217,19 @@ class RequestTracker(QObject):
         return self._put(order, tr("Clear emergency stop"))
 
     def ask(self, request: Any, words: str, *topics: Topic, draft: PendingCommand | None = None) -> str:
-        """Ask the gateway for ``request``, which is ``words`` to the operator, and return its key.
+        """Send ``request`` to the gateway, described to the operator by ``words``, and return its key.
 
-        What becomes of it comes with :attr:`answered`. A refusal is told until one of ``topics`` is over;
-        the ``draft`` that it was made of comes back then.
+        Its outcome is signalled with :attr:`answered`. A refusal is shown until one of ``topics`` is over;
+        the ``draft`` that it was made from is restored then.
 
         :raises NotSentError: when it cannot be sent.
         """
         return self.submit(self._order(request), words, topics, draft)
 
     def inquire(self, request: Any, *, lasting: bool = False) -> str:
-        """Ask the gateway for what it knows, without a word to the operator, and return the request's key.
+        """Query the gateway without a message to the operator, and return the request's key.
 
-        A ``lasting`` one is asked again however long the link was lost.
+        A ``lasting`` one is repeated however long the link was lost.
 
         :raises NotSentError: when it cannot be sent.
         """
@@ -244,7 +244,7 @@ class RequestTracker(QObject):
         topics: tuple[Topic, ...] = (),
         draft: PendingCommand | None = None,
     ) -> str:
-        """Ask for something that has its key already, and return that; as :meth:`ask` otherwise."""
+        """Send a request that already has its key, and return that; otherwise as :meth:`ask`."""
         return self._put(order, words, draft, topics)
 
     def _order(self, request: Any, lasting: bool = False) -> OperatorRequest:
@@ -253,7 +253,7 @@ class RequestTracker(QObject):
         )
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in what became of a request, and tell of it with :attr:`answered`."""
+        """Handle the outcome of a request, and signal it with :attr:`answered`."""
         self._settle(answer)
         self.answered.emit(answer)
         return True
@@ -274,7 +274,7 @@ class RequestTracker(QObject):
         elif "closure" in result:
             self.accepted.emit(tr("{words}: done", words=pending.words))
         elif result.get("in_force"):
-            # The banner says so, for as long as it is true.
+            # The banner shows this for as long as it is true.
             return
         elif result.keys() & {"in_force", "revision", "queues", "placements", "tasks"}:
             self.accepted.emit(tr("{words}: done", words=pending.words))
@@ -291,7 +291,7 @@ class RequestTracker(QObject):
             )
 
     def watch(self) -> None:
-        """Tell once of each order that waits for its answer for too long."""
+        """Warn once about each request that has waited too long for its answer."""
         now = self._clock.steady()
         for pending in self._pending.values():
             if not pending.slow_notice and now - pending.requested_at > SLOW_AFTER:
@@ -336,20 +336,20 @@ class RequestTracker(QObject):
 
 
 def topics_of(method: str, params: dict[str, Any]) -> tuple[Topic, ...]:
-    """Return what a refusal of this request is about; the first of them is the request itself."""
+    """Return the topics of a refusal of this request; the first of them is the request itself."""
     robot, other = params.get("robot", ""), params.get("other", "")
-    # An Abort is no other try of a target that was refused.
+    # An Abort does not retry a target that was refused.
     what = params.get("op", "") == Abort.__name__
     about = (robot, other, what, params.get("closure", ""), params.get("observation", ""))
     topics = (request_topic(method, about),)
     return (*topics, conflict_topic(robot, other)) if method == ResolveConflict.method else topics
 
 
-# --- Closed roads and conflicts: what is asked about them ---
+# --- Closed roads and conflicts: requests about them ---
 
 
 class RoadStatus(QObject):
-    """What the gateway reports of roads, and what the operator asks about them."""
+    """The gateway's reports of roads, and the operator's requests about them."""
 
     def __init__(self, state: FleetState, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
@@ -362,7 +362,7 @@ class RoadStatus(QObject):
         return self._state.closures
 
     def close(self, place: Point, reach: float, reason: str, seconds: float | None) -> str:
-        """Ask for the road at ``place`` to be closed and return the closure's id.
+        """Request that the road at ``place`` be closed and return the closure's id.
 
         :raises NotSentError: when that cannot be sent.
         """
@@ -379,11 +379,11 @@ class RoadStatus(QObject):
         return closure
 
     def open(self, closure: str) -> None:
-        """Ask for a closed road to be opened; raises NotSentError when that cannot be sent."""
+        """Request that a closed road be opened; raises NotSentError when that cannot be sent."""
         self._requests.submit(self._order(str(uuid.uuid4()), OpenRoad(closure)), tr("Opening the road"))
 
     def resolve(self, robot: str, other: str) -> None:
-        """Ask for ``robot`` to give way to ``other``; raises NotSentError when that cannot be sent."""
+        """Request that ``robot`` give way to ``other``; raises NotSentError when that cannot be sent."""
         request = ResolveConflict(robot, other)
         self._requests.submit(
             self._order(str(uuid.uuid4()), request),

@@ -1,4 +1,4 @@
-"""Routes along the roads asked of the gateway to where the mouse is, and routes in words."""
+"""Queries to the gateway for routes along the roads to the mouse, and routes in words."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ from .pending_command import Point
 from .request_tracker import SLOW_AFTER, RequestSender
 
 UNANSWERED_AFTER = 3.0
-"""Seconds after which a question that follows the mouse is taken to be lost, so that the next is asked."""
+"""Seconds after which a query that follows the mouse counts as lost, so that the next is sent."""
 
 
 @dataclass(frozen=True)
 class RoutePreferences:
-    """The shortest way along all roads, unless something else is wanted.
+    """Preferences for a route; by default the shortest way along all roads.
 
-    ``surfaces`` names those that may be used, none of them: all. ``least_width`` is what a road must have,
-    in metres, beside the width of the site's robots. ``avoid_reserved`` leaves out the roads on which other
-    robots' tasks lead.
+    ``surfaces`` names those that may be used, empty for all. ``least_width`` is the least width of a road
+    in metres, besides the width of the site's robots. ``avoid_reserved`` leaves out roads that are reserved
+    for other robots' tasks.
     """
 
     fastest: bool = False
@@ -36,7 +36,7 @@ class RoutePreferences:
     avoid_reserved: bool = False
 
     def in_words(self) -> list[str]:
-        """Return what is wanted beyond the shortest way, a text for each."""
+        """Return the preferences beyond the shortest way, a text for each."""
         words = []
         if self.fastest:
             words.append(tr("the fastest way"))
@@ -64,14 +64,14 @@ class RouteQuestion:
 
 
 class RouteQuery(QObject):
-    """Asks as often as the gateway answers, and never twice at once: what is shown is never long outdated."""
+    """Sends a query whenever the last one was answered, never two at once: the route shown is current."""
 
     shown = pyqtSignal()
-    """There is another way to show, or none."""
+    """The route to show has changed, or is gone."""
     answered = pyqtSignal(object, object)
-    """A question that was taken: the :class:`RouteQuestion` and its RouteReport."""
+    """The answer to a clicked query: the :class:`RouteQuestion` and its RouteReport."""
     refused = pyqtSignal(str)
-    """There is no way to where the operator clicked: why."""
+    """There is no route to the clicked place: the reason."""
 
     def __init__(
         self,
@@ -87,19 +87,19 @@ class RouteQuery(QObject):
         self._next: RouteQuestion | None = None
         self.route: RouteReport | None = None
         self.wishes = SHORTEST
-        """What was wanted of that way."""
+        """The preferences for that route."""
         self.why_not = ""
-        """Why there is no way to where the mouse is."""
+        """Why there is no route to the mouse."""
 
     @property
     def awaits_click(self) -> bool:
-        """Whether a way to where the operator clicked is still to be answered."""
+        """Whether a route to a clicked place has not been answered yet."""
         if not self._waits():
             return False
         return self._pending[1].taken or (self._next is not None and self._next.taken)
 
     def want(self, question: RouteQuestion) -> None:
-        """Ask for a way, now or when the question before is answered; raises NotSentError."""
+        """Request a route, now or when the query before is answered; raises NotSentError."""
         if self._waits():
             if self._next is None or not self._next.taken or question.taken:
                 self._next = question
@@ -107,13 +107,13 @@ class RouteQuery(QObject):
         self._ask(question)
 
     def forget(self) -> None:
-        """Show no way, and take no answer any more."""
+        """Show no route, and ignore answers still to come."""
         self._pending = self._next = self.route = None
         self.why_not = ""
         self.shown.emit()
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in the answer to a question; false when it is one to something else."""
+        """Handle an answer; return false when it belongs to another request."""
         if answer.order.method != GetRoute.method:
             return False
         if self._pending is None or answer.order.key != self._pending[0]:
@@ -124,7 +124,7 @@ class RouteQuery(QObject):
         return True
 
     def watch(self) -> None:
-        """Give up a question that waits for its answer too long, and say so of one that was taken.
+        """Give up a query that waits too long for its answer, and report it if it was clicked.
 
         One that only follows the mouse is given up when another waits behind it.
         """
@@ -139,7 +139,7 @@ class RouteQuery(QObject):
         self._ask_next()
 
     def _waits(self) -> bool:
-        """Whether a question is asked whose answer may still come in time."""
+        """Whether a query is pending whose answer may still come in time."""
         if self._pending is None:
             return False
         _, question, requested_at = self._pending
@@ -176,7 +176,7 @@ class RouteQuery(QObject):
 
 
 def route_in(answer: RequestResult) -> tuple[RouteReport | None, str]:
-    """Return the way that the answer to a GetRoute holds, and why it holds none."""
+    """Return the route in the answer to a GetRoute, and why there is none."""
     if answer.error is not None:
         return None, answer.error
     try:
@@ -194,14 +194,14 @@ def _click_unanswered() -> str:
 
 
 def _restrictions(wishes: RoutePreferences) -> dict[str, Any]:
-    """Return wishes as the question's parameters."""
+    """Return preferences as the query's parameters."""
     return {**asdict(wishes), "surfaces": list(wishes.surfaces) or None}
 
 
 def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = "; ") -> str:
-    """Return a way's length, time and surfaces, what was wanted of it, and what is not as it should be.
+    """Return a route's length, time and surfaces, its preferences, and what is not as it should be.
 
-    ``apart`` stands between these.
+    ``apart`` separates these.
     """
     minutes, seconds = divmod(round(route.seconds), 60)
     time = (
@@ -214,7 +214,7 @@ def route_in_words(route: RouteReport, wishes: RoutePreferences, apart: str = ";
         else tr("{seconds} s", seconds=seconds)
     )
     surfaces = [(one.metres, one.surface or tr("surface not known")) for one in route.surfaces]
-    # Of one surface the metres are those of the way, which cuts corners that the roads' have.
+    # With one surface, use the length of the route, which cuts corners that the roads have.
     parts = (
         [tr("{metres:.0f} m {surface}", metres=metres, surface=surface) for metres, surface in surfaces]
         if len(surfaces) > 1

@@ -1,4 +1,4 @@
-"""Sending of a pending command once it has been validated, and of those overtaken meanwhile."""
+"""Sending of a pending command once it has been validated, and of drafts displaced meanwhile."""
 
 from __future__ import annotations
 
@@ -22,20 +22,20 @@ Then = Callable[[PendingCommand], None]
 
 
 class OutgoingCommand(NamedTuple):
-    """A draft, and what is done with it once it has been checked."""
+    """A draft, and the action to perform once it has been checked."""
 
     draft: PendingCommand
     then: Then
 
 
 class OutgoingCommands(QObject):
-    """Checks them afresh one after the other, in the order of the presses, beside the draft on the map.
+    """Checks drafts afresh one after the other, in the order of the presses, beside the draft on the map.
 
     The next one is checked when the one before has been sent: its target counts for the others.
     """
 
     changed = pyqtSignal()
-    """One was added, has gone, or its check went on."""
+    """A draft was added or removed, or its check progressed."""
     failed = pyqtSignal(object, str)
     """A draft cannot be checked: the Draft, and why."""
 
@@ -50,28 +50,28 @@ class OutgoingCommands(QObject):
 
     @property
     def first(self) -> PendingCommand | None:
-        """The draft that is being checked; None for none."""
+        """The draft being checked; None for none."""
         return self._waiting[0].draft if self._waiting else None
 
     @property
     def share(self) -> float:
-        """How much of its check is done, 0 to 1."""
+        """The part of its check that is done, 0 to 1."""
         return self._slices.share
 
     def add(self, draft: PendingCommand, then: Then) -> None:
-        """Check ``draft`` after those that wait already, then do ``then`` with it."""
+        """Check ``draft`` after those already waiting, then call ``then`` with it."""
         self._waiting.append(OutgoingCommand(draft, then))
         if len(self._waiting) == 1:
             self._check_first()
         self.changed.emit()
 
     def begin_anew(self) -> None:
-        """Give up what was found so far: a layer has changed under the check."""
+        """Discard the findings so far: a layer has changed under the check."""
         if self._waiting:
             self._check_first()
 
     def withdraw(self) -> list[PendingCommand]:
-        """Do nothing with any of them, and return them."""
+        """Drop all of them, and return them."""
         self._slices.stop()
         drafts = [one.draft for one in self._waiting]
         self._waiting.clear()
@@ -80,7 +80,7 @@ class OutgoingCommands(QObject):
         return drafts
 
     def _check_first(self) -> None:
-        # Never in the press that added it: what is on the map then is not settled yet.
+        # Never within the press that added it: the draft on the map is not settled yet.
         work = self._work(self._waiting[0].draft, True)
         self._slices.begin_soon(work, self._checked, self._cannot_be_checked)
 
@@ -101,16 +101,16 @@ class OutgoingCommands(QObject):
 class CommandSender(QObject):
     """Sends no draft that has changed meanwhile, nor one with warnings that the operator has not seen.
 
-    A draft that is sent before its check has ended goes out when it has, also where another one has been
+    A draft that is sent before its check has ended is sent when it has, even if another one has been
     begun meanwhile. A double click sends once.
     """
 
     failed = pyqtSignal(str, object)
-    """A draft was not sent: the text, which must not go unseen, and its topics."""
+    """A draft was not sent: the text, which must be seen by the operator, and its topics."""
     warning = pyqtSignal(str)
-    """There is none to be sent."""
+    """There is no draft to send."""
     waiting_changed = pyqtSignal()
-    """A target whose way is sought is to be sent as soon as that is known, or is not any more."""
+    """A target whose way is sought will be sent as soon as that is known, or no longer."""
 
     def __init__(
         self,
@@ -125,7 +125,7 @@ class CommandSender(QObject):
         self._awaits_way: PendingCommand | None = None
         self.outgoing = OutgoingCommands(checks.work, self)
         self._pressed: tuple[PendingCommand, float] | None = None
-        """What was sent by the last press, and when."""
+        """The draft sent by the last press, and when."""
         self.outgoing.failed.connect(self._not_checked)
         checks.displaced.connect(self.outgoing.add)
         checks.found.connect(self._looked_at)
@@ -135,7 +135,7 @@ class CommandSender(QObject):
         orders.refused.connect(self._refused)
 
     def send(self) -> None:
-        """Send the draft once it was looked at afresh; without one, or when it cannot be sent, say so."""
+        """Send the draft after a fresh check; warn without one, or when it cannot be sent."""
         draft = self._drafts.draft
         if self.is_second_press():
             return
@@ -178,7 +178,7 @@ class CommandSender(QObject):
         self.waiting_changed.emit()
 
     def _looked_at(self, draft: PendingCommand) -> None:
-        """Send the target whose way is known by now, if that was asked for."""
+        """Send the target whose way is known by now, if that was requested."""
         waiting = self._awaits_way
         if waiting is None or draft.way.kind is ApproachKind.SOUGHT:
             return
@@ -187,14 +187,14 @@ class CommandSender(QObject):
             self.send()
 
     def _changed(self) -> None:
-        """Let a target whose way is sought go out beside another draft that was begun meanwhile."""
+        """Send a target whose way is sought beside another draft that was begun meanwhile."""
         waiting, draft = self._awaits_way, self._drafts.draft
         if waiting is None:
             return
         if draft is None or (draft.robot, draft.points) != (waiting.robot, waiting.points):
             self._set_waiting(None)
             if draft is not None:
-                # To take changes back must not lead to what is on its way out.
+                # Undo must not return to a draft that is being sent.
                 self._drafts.forget_changes()
                 self._ways.seek_beside(waiting)
 
@@ -203,9 +203,9 @@ class CommandSender(QObject):
         self.outgoing.add(draft, lambda checked: self._order(checked, known, self._send))
 
     def order(self, order: Callable[[PendingCommand], None]) -> None:
-        """Check the draft on the map afresh, then do something with it.
+        """Check the draft on the map afresh, then call ``order`` with it.
 
-        Not if it was changed by then, nor if the operator has not seen the warnings that there are now.
+        Not if it was changed by then, nor if the operator has not seen its present warnings.
 
         :raises FleetError: when it cannot be checked.
         """
@@ -218,14 +218,14 @@ class CommandSender(QObject):
             self._order(checked, known, order)
 
         if len(self.outgoing):
-            # What was sent before goes first.
+            # Drafts sent before go first.
             self._drafts.done()
             self.outgoing.add(draft, then)
         else:
             self._checks.again(then)
 
     def is_second_press(self) -> bool:
-        """Tell whether this is the second press of a double click: what it would send was sent by the first.
+        """Return whether this is the second press of a double click: the first has sent the draft.
 
         A draft that comes back refused between the two is not sent again either.
         """
@@ -237,12 +237,12 @@ class CommandSender(QObject):
         return is_quick and (draft is None or draft.place == pressed.place)
 
     def clear(self, draft: PendingCommand) -> None:
-        """Take ``draft`` off the map, where it still is there: it was sent."""
+        """Take ``draft`` off the map, if it is still there: it was sent."""
         if self._drafts.draft is not None and self._drafts.draft.place == draft.place:
             self._drafts.done()
 
     def withdraw(self) -> None:
-        """Send no draft any more that is still checked: the operator wants robots to stand."""
+        """Send no draft that is still being checked: the operator wants robots to stand."""
         draft, waiting = self._drafts.draft, self._awaits_way
         self._set_waiting(None)
         withdrawn = [*self._ways.withdraw(), *self.outgoing.withdraw()]
@@ -290,12 +290,12 @@ class CommandSender(QObject):
 
     def _refused(self, text: str, draft: PendingCommand | None, topics: tuple[Topic, ...] = ()) -> None:
         if draft is not None and self._drafts.draft is None:
-            # Nothing the operator drew is lost because a gateway refused it.
+            # A draft must not be lost because a gateway refused it.
             self._drafts.set_command(draft)
         self._fail(text, draft, topics)
 
     def _fail(self, text: str, draft: PendingCommand | None, topics: tuple[Topic, ...] = ()) -> None:
-        """Say why ``draft`` was not sent, as long as it is the one on the map."""
+        """Report why ``draft`` was not sent, as long as it is the one on the map."""
         on_map = self._drafts.draft
         if draft is not None and on_map is not None and on_map.place == draft.place:
             topics = (*topics, draft_topic(draft.place))

@@ -1,4 +1,4 @@
-"""The pending command kept as it is to be sent: its way as its robot moves, and what its checks find."""
+"""The pending command kept ready to send: its way as its robot moves, and the findings of its checks."""
 
 from __future__ import annotations
 
@@ -33,25 +33,25 @@ from .route_queries import SHORTEST, route_in, route_in_words
 # --- Its checks: run when it is put on the map, and again whenever something changes ---
 
 Work = Callable[[PendingCommand, bool], Steps[PendingCommand]]
-"""Takes a draft, and whether all of it is to be looked at afresh; returns the draft with what was found."""
+"""Takes a draft, and whether to check all of it afresh; returns the draft with the findings."""
 
 
 class ValidationRunner(QObject):
     """Checks the draft on ``board``, and no other.
 
-    What was found is for the one draft that was looked at: a draft is never changed, only replaced, and with
-    another one on the board nothing comes of the check that was under way. What was to follow it is passed on
+    Findings are for the one draft that was checked: a draft is never changed, only replaced, and with
+    another one on the board the check under way is dropped. The action that was to follow it is passed on
     with ``displaced`` where another draft was begun.
     """
 
     progressed = pyqtSignal()
-    """A check has begun, gone on, or come to its end."""
+    """A check has begun, progressed or ended."""
     overtaken = pyqtSignal(object)
-    """The draft was changed before something could be done with it: the Draft as it was."""
+    """The draft was changed before the action on it: the Draft as it was."""
     displaced = pyqtSignal(object, object)
-    """Another draft was begun before something could be done with this one: the Draft, and what to do."""
+    """Another draft was begun before the action on this one: the Draft, and the action."""
     found = pyqtSignal(object)
-    """The draft that was put on the map has been looked at: the Draft, with its findings."""
+    """The draft that was put on the map has been checked: the Draft, with its findings."""
 
     def __init__(self, board: PendingCommandModel, work: Work, parent: QObject | None = None):
         super().__init__(parent)
@@ -74,23 +74,23 @@ class ValidationRunner(QObject):
 
     @property
     def has_order(self) -> bool:
-        """Whether something is to be done with the draft once it has been looked at."""
+        """Whether an action on the draft is due after its check."""
         return self._then is not None
 
     @property
     def share(self) -> float:
-        """How much of the check is done, 0 to 1."""
+        """The part of the check that is done, 0 to 1."""
         return self._slices.share
 
     def set_command(self, draft: PendingCommand) -> None:
-        """Make ``draft`` the one on the board; a small one has been checked when this returns.
+        """Set ``draft`` as the one on the board; a small one has been checked when this returns.
 
         :raises FleetError: when it cannot be checked; what was on the board stays then.
         """
         self._put(draft, self._board.set_command)
 
     def amend(self, draft: PendingCommand) -> None:
-        """Put ``draft`` in place of the one on the board, whose way is another by now; check it as by put.
+        """Replace the draft on the board by ``draft``, whose way has changed; check it as ``set_command``.
 
         :raises FleetError: as :meth:`set_command`.
         """
@@ -110,13 +110,13 @@ class ValidationRunner(QObject):
         if checked is not None:
             self._end(checked)
         if ordered is not None:
-            # To take changes back must not lead to what is on its way out.
+            # Undo must not return to a draft that is being sent.
             self._board.forget_changes()
             self.displaced.emit(ordered, before[3])
         self.progressed.emit()
 
     def again(self, then: Callable[[PendingCommand], None]) -> None:
-        """Look at the draft on the board afresh, then do something with it unless it is another by then.
+        """Check the draft on the board afresh, then call ``then`` with it unless it was replaced by then.
 
         :raises FleetError: when it cannot be checked; nothing is done then.
         """
@@ -131,33 +131,33 @@ class ValidationRunner(QObject):
         self.progressed.emit()
 
     def withdraw(self) -> bool:
-        """Do nothing with the draft after the check; false where nothing was to be done."""
+        """Drop the action due after the check; false where none was due."""
         had_order, self._then = self.has_order, None
         if had_order:
             self.progressed.emit()
         return had_order
 
     def begin_anew(self) -> None:
-        """Give up what was found so far: a layer has changed under it."""
+        """Discard the findings so far: a layer has changed under the check."""
         if self._draft is not None:
             self._slices.stop()
-            # A layer that is changed feature by feature tells of each.
+            # A layer that is changed feature by feature signals each change.
             self._anew.start()
 
     def stop(self) -> None:
-        """Look at nothing any more."""
+        """Stop checking."""
         self._give_up()
 
     def _changed(self) -> None:
         draft = self._board.draft
         if draft is self._draft:
             return
-        # Who takes a draft away needs not be told that it is not sent.
+        # A caller that removes a draft need not be notified that it is not sent.
         ordered = self._ordered if draft is not None else None
         self._give_up()
         self._tell_of(ordered)
         if draft is not None and not draft.is_checked and not self._board.is_dragged:
-            # Taken back to one whose check was not finished.
+            # Undo led to a draft whose check was not finished.
             self._draft = draft
             self._anew.start()
         self.progressed.emit()
@@ -190,9 +190,9 @@ class ValidationRunner(QObject):
         self._take(replace(self._draft, findings=Findings(refused=(str(error),)), is_checked=True))
 
     def _take(self, checked: PendingCommand) -> None:
-        """Put what was found into the draft on the board."""
+        """Put the findings into the draft on the board."""
         if checked != self._draft:
-            # From here on it is this one that is looked at.
+            # From here on this draft is the one being checked.
             self._draft = checked
             self._board.renew(checked)
         self._end(checked)
@@ -213,16 +213,16 @@ class ValidationRunner(QObject):
         self._afresh = self._is_put = False
 
 
-# --- Its way from where its robot is ---
+# --- The way of the draft from its robot ---
 
 MOVED_M = 0.5
-"""Metres that a robot moves before the way from where it is is found again."""
+"""Metres that a robot moves before the way from its position is found again."""
 OUTDATED_M = 2.0
-"""Metres beside its robot above which a way is not sent."""
+"""Distance in metres from its robot above which a way is not sent."""
 ASK_EVERY = 0.25
-"""Seconds between two questions for the way of a robot that moves."""
+"""Seconds between two queries for the way of a robot that moves."""
 DRIVEN_TO = (CONE, ROUTE)
-"""Kinds of drafts that are driven to from where the robot is."""
+"""Kinds of drafts that are driven to from the robot's position."""
 ASKS = ("asks", "asks and cones")
 TAKES_CONES = ("cones", "asks and cones")
 
@@ -235,15 +235,15 @@ class _TargetQuery(NamedTuple):
 
 
 class TargetRoutes(QObject):
-    """Keeps the way to the cone target or route on ``board`` as it is driven from where its robot is now.
+    """Keeps the way to the cone target or route on ``board`` up to date with the position of its robot.
 
-    To a target along the roads where the site has some, by the gateway's router; straight where there are
-    none, where no way leads there, where the robot can be told none, and where the operator chose that. To
-    the beginning of a route it is straight.
+    To a target the way is along the roads where the site has some, by the gateway's router; straight where
+    there are none, where no way leads there, where the robot accepts no path, and where the operator chose
+    that. To the beginning of a route it is straight.
     """
 
     found = pyqtSignal(object)
-    """The way of a target that is not on the map any more, but was sent before it was known: the Draft."""
+    """The way of a target that is off the map, but was sent before its way was known: the Draft."""
 
     def __init__(
         self,
@@ -259,26 +259,26 @@ class TargetRoutes(QObject):
         self._prefix, self._numbers = f"target-way-{id(self)}-", itertools.count(1)
         self._pending: _TargetQuery | None = None
         self._beside: dict[_TargetQuery, PendingCommand] = {}
-        """Questions for the ways of targets that go out when they are known."""
+        """Queries for the ways of targets that are sent when they are known."""
         self._requested_at = -math.inf
         self._is_amending = False
         board.changed.connect(self.watch)
 
     def set_command(self, draft: PendingCommand) -> None:
-        """Make ``draft`` the one on the map, with its way as far as that is known, and have it checked.
+        """Set ``draft`` as the one on the map, with its way as far as that is known, and have it checked.
 
         :raises FleetError: when there is no site or a layer cannot be read; what was on the map stays then.
         """
         self._checks.set_command(self._begun(draft))
 
     def is_outdated(self, draft: PendingCommand) -> bool:
-        """Tell whether a draft's robot is not where its way begins any more."""
+        """Return whether the draft's robot has left the beginning of its way."""
         place = _robot_position(self._state.report_of(draft.robot))
         line = draft.way.line
         return bool(line) and place is not None and math.dist(place, line[0]) > OUTDATED_M
 
     def seek_beside(self, draft: PendingCommand) -> None:
-        """Find the way of a target that is no more on the map; ``found`` tells of it."""
+        """Find the way of a target that is off the map; signal it with ``found``."""
         query = self._ask(draft)
         if query is None:
             refused = Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())
@@ -287,21 +287,21 @@ class TargetRoutes(QObject):
             self._beside[query] = draft
 
     def withdraw(self) -> list[PendingCommand]:
-        """Seek no way any more of targets that are not on the map; return them."""
+        """Stop seeking ways of targets that are not on the map; return them."""
         drafts, self._beside = list(self._beside.values()), {}
         return drafts
 
     def watch(self) -> None:
-        """Find the way of the target on the map where it is not known, or no longer as it was."""
+        """Find the way of the target on the map where it is not known, or has changed."""
         self._give_up_beside()
         draft = self._board.draft
         if self._is_amending or draft is None or draft.kind not in DRIVEN_TO or self._board.is_dragged:
             return
         if self._checks.has_order:
-            # What was looked at is what is sent.
+            # The draft that was checked is the one that is sent.
             return
         if draft.kind == ROUTE and self._checks.is_under_way:
-            # Begun again for each half metre, a long check would never end.
+            # Restarted at each half metre, a long check would never end.
             return
         if draft.way.kind is ApproachKind.SOUGHT:
             self._seek(draft)
@@ -311,13 +311,13 @@ class TargetRoutes(QObject):
                 ApproachKind.PATH,
                 ApproachKind.ON_REQUEST,
             ):
-                # The one before stays on the map until the other is known.
+                # The previous way stays on the map until the new one is known.
                 self._seek(draft)
             else:
                 self._amend(fresh)
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in the answer to a question for a target's way; false when it is one to something else."""
+        """Handle the answer to a query for a target's way; false when it belongs to another request."""
         if not answer.order.key.startswith(self._prefix):
             return False
         beside = next((query for query in self._beside if query.key == answer.order.key), None)
@@ -335,7 +335,7 @@ class TargetRoutes(QObject):
         return True
 
     def _begun(self, draft: PendingCommand) -> PendingCommand:
-        """Return a draft with its way as far as it is known at once; another kind of draft as it is."""
+        """Return a draft with the way known at once; another kind of draft unchanged."""
         if draft.kind not in DRIVEN_TO:
             return draft
         report = self._state.report_of(draft.robot)
@@ -354,7 +354,7 @@ class TargetRoutes(QObject):
         if place is None:
             return False
         if not way.line:
-            # What was refused is asked for again when the operator sets the target again.
+            # A refused query is sent again when the operator sets the target again.
             return way.kind is ApproachKind.UNKNOWN and not way.refusal
         return math.dist(place, way.line[0]) > MOVED_M or way.declared != (report and report.paths)
 
@@ -375,12 +375,12 @@ class TargetRoutes(QObject):
             self._amend(replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_target_unanswered())))
 
     def _ask(self, draft: PendingCommand) -> _TargetQuery | None:
-        """Ask for the way of a target; return None where that cannot be asked."""
+        """Query the way of a target; return None where that is impossible."""
         goal, now = draft.points[0], self._clock.steady()
         place = _robot_position(self._state.report_of(draft.robot))
         if place is None:
             return None
-        # By its place and not by the robot: of that a newer question, for the way to the mouse, would have
+        # By place and not by robot: a newer query of the same robot, for the way to the mouse, would make
         # the gateway refuse this one.
         request = GetRoute(*goal, start=place)
         key = f"{self._prefix}{next(self._numbers)}"
@@ -404,7 +404,7 @@ class TargetRoutes(QObject):
         declared = None if report is None else report.paths
         route, why = route_in(answer)
         if route is None and declared == "asks":
-            # It asks the same router, and is told the same.
+            # The robot queries the same router, and gets the same way.
             return replace(draft, way=Approach(ApproachKind.UNKNOWN, refusal=_no_route(why)))
         if route is None or route.note or len(route.points) < 2:
             if place is None:
@@ -421,7 +421,7 @@ class TargetRoutes(QObject):
         return replace(draft, way=way)
 
     def _amend(self, draft: PendingCommand) -> None:
-        """Put a draft with another way in place of the present one, and have it checked."""
+        """Replace the present draft by one with another way, and have it checked."""
         self._is_amending = True
         try:
             self._checks.amend(replace(draft, is_checked=False))

@@ -1,4 +1,4 @@
-"""What the desk asks the gateway to be told of, and to find, where there are too many robots to know each."""
+"""The desk's subscription to a part of the fleet, and its searches, where there are too many robots."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ from .request_tracker import RequestSender
 Bounds = tuple[float, float, float, float]
 
 VIEWS_UNTIL = 0.8 * VIEWS_FROM
-"""Robots below which the desk is told of every one again."""
+"""Number of robots below which the desk receives all of them again."""
 LEAST_REST_S = 0.3
-"""between two subscriptions of a canvas that moves."""
+"""Seconds between two subscriptions of a canvas that moves."""
 BUFFER = 0.25
-"""The part of the canvas's width and height that the view is larger at each side."""
+"""Fraction of the canvas's width and height by which the view is larger at each side."""
 TOO_LARGE = 2.5
-"""times as wide or high as the canvas: then the view is asked for anew, with finer cells."""
+"""Factor of the canvas's size beyond which the view is requested again, with finer cells."""
 MOST_ALARMED = 200
 MOST_SELECTED = 200
 EDGE = tuple(itertools.product((0.0, 0.25, 0.5, 0.75, 1.0), repeat=2))
-"""Where the canvas is looked at: its edges may be bent in the site frame."""
+"""Points at which the canvas is sampled: its edges may be curved in the site frame."""
 
 
 class FoundRobot(NamedTuple):
-    """A robot that the gateway found; ``heard`` is when it was heard last, on the monotonic clock."""
+    """A robot that the gateway found; ``heard`` is when it was last heard, on the monotonic clock."""
 
     name: str
     state: RobotState
@@ -55,13 +55,13 @@ class FoundRobot(NamedTuple):
 
 
 class RobotSearch(QObject):
-    """Has the gateway find robots by a part of their names, while the desk is not told of every one.
+    """Has the gateway find robots by a part of their names, while the desk does not receive all of them.
 
-    ``what`` tells it from other searches.
+    ``what`` distinguishes it from other searches.
     """
 
     answered = pyqtSignal()
-    """Which robots there are, or that the gateway does not say, is known of the text that was asked for."""
+    """The search for the requested text has a result, or the gateway gives none."""
 
     def __init__(self, what: str, state: FleetState, sender: RequestSender, parent: QObject | None = None):
         super().__init__(parent)
@@ -69,19 +69,19 @@ class RobotSearch(QObject):
         self._numbers = itertools.count(1)
         self._text = ""
         self._asked_for = ("", "")
-        """The text that was asked for last, and the key of that request."""
+        """The text that was requested last, and the key of that request."""
         self._asked_at = -LEAST_REST_S
         self._answer: tuple[str, tuple[FoundRobot, ...]] = ("", ())
         """The text that was answered last, and the robots."""
         self._page: tuple[FoundRobot, ...] = ()
-        """The robots that were found so far of what was asked for."""
+        """The robots found so far for the requested text."""
 
     def search(self, text: str) -> None:
-        """Find robots with ``text`` in their names; none where that can be in no name."""
+        """Find robots with ``text`` in their names; none where no name can contain it."""
         self._text = text if _can_be_in_name(text) else ""
 
     def found(self, text: str) -> tuple[FoundRobot, ...]:
-        """Return the robots that a search for ``text`` found, none while that is not answered."""
+        """Return the robots that a search for ``text`` found, empty while that is not answered."""
         return self._answer[1] if text and self._answer[0] == text else ()
 
     @property
@@ -90,7 +90,7 @@ class RobotSearch(QObject):
         return tuple(robot.name for robot in self.found(self._text))
 
     def awaits(self, text: str) -> bool:
-        """Tell whether there may be robots with ``text`` in their names of whom nothing is known yet."""
+        """Return whether unknown robots may have ``text`` in their names."""
         return self._is_of_use and _can_be_in_name(text) and self._answer[0] != text
 
     @property
@@ -99,9 +99,9 @@ class RobotSearch(QObject):
         return state.robots.fleet is not None and state.link.phase is ConnectionPhase.CONNECTED
 
     def renew(self) -> None:
-        """Ask for what is searched for, unless that was asked for; called all the time."""
+        """Send the search unless it was sent; called periodically."""
         if not self._is_of_use:
-            # It is asked anew on the next link; what was found stays until then, unless all are known.
+            # It is sent again on the next link; the results stay until then, unless all robots are known.
             self._asked_for = ("", "")
             if self._state.robots.fleet is None:
                 self._answer = ("", ())
@@ -126,22 +126,22 @@ class RobotSearch(QObject):
             self._asked_for = ("", "")
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in what was found; false when it is the answer to something else."""
+        """Handle a search result; return false when the answer belongs to another request."""
         if not answer.order.key.startswith(self._key):
             return False
         text, key = self._asked_for
         if answer.order.key != key:
             return True
         if answer.result is None:
-            # Refused, as where too much was asked in a second: it is asked again.
+            # Refused, for example for too many requests in a second: it is sent again.
             self._asked_for = ("", "")
             return True
         result, is_first = answer.result, not self._page
         more = _found_robots(result.get("robots", []), self._state.clock.steady())
         self._page = tuple({robot.name: robot for robot in (*self._page, *more)}.values())
         if is_first and result.get("count", 0) > len(self._page) > 0 and self._page[-1].name < text.lower():
-            # The gateway tells of the first by name: the very one may come after them, as 17 does after 1017,
-            # and in another case. Small letters come last.
+            # The gateway returns the first by name: an exact match may come after them, as 17 does after
+            # 1017, and in another case. Small letters come last.
             self._ask(FindRobots(text, whole=True))
             return True
         self._answer = text, self._page
@@ -154,7 +154,7 @@ def _found_robots(robots: list[dict[str, Any]], now: float) -> tuple[FoundRobot,
         found = [FoundRobot(one["robot"], RobotState(one["state"]), now - one["age"]) for one in robots]
         return tuple(one for one in found if is_robot_name(one.name))
     except (KeyError, TypeError, ValueError):
-        # Not as a gateway tells of robots: nothing is known of them.
+        # Not a gateway's report of robots: nothing is known of them.
         return ()
 
 
@@ -163,9 +163,9 @@ def _can_be_in_name(text: str) -> bool:
 
 
 class ViewSubscription(QObject):
-    """Asks for the robots in the canvas, with those selected, drafted for, alarmed, searched for or named.
+    """Subscribes to robots in the canvas, and those selected, drafted for, alarmed, searched for or named.
 
-    Nothing is asked for where the fleet is small, or the gateway knows no views: all robots come then.
+    Nothing is requested where the fleet is small, or the gateway knows no views: all robots come then.
     """
 
     def __init__(
@@ -192,26 +192,26 @@ class ViewSubscription(QObject):
         """The canvas's extent in the map, and in the site frame."""
 
     def select(self, robots: Iterable[str]) -> None:
-        """Be told of these robots wherever they are."""
+        """Receive these robots wherever they are."""
         self._selected = tuple(robots)[-MOST_SELECTED:]
 
     def watch_alarms(self, robots: Iterable[str], limits: AlarmLimits) -> None:
-        """Be told of these robots, which have alarms, and of all that get some by ``limits``."""
+        """Receive these robots, which have alarms, and all that get some by ``limits``."""
         self._alarmed, self._limits = tuple(itertools.islice(robots, MOST_ALARMED)), limits
 
     def watch_named(self, robots: Iterable[str]) -> None:
-        """Be told of these robots, which expressions name, as far as there is room beside all others."""
+        """Receive these robots, which expressions name, as far as there is room beside all others."""
         self._named = tuple(robots)
 
     def search(self, text: str) -> None:
-        """Be told of robots with ``text`` in their names wherever they are, as many as a search finds.
+        """Receive robots with ``text`` in their names wherever they are, as many as a search finds.
 
-        Of several words, which may be of something else, it is the longest.
+        Of several words, which may refer to something else, the longest is used.
         """
         self._search.search(max(text.split(), key=len, default=""))
 
     def renew(self) -> None:
-        """Ask for what the canvas shows now, unless that is what was asked for; called all the time."""
+        """Subscribe to what the canvas shows now, unless that is current; called periodically."""
         self._search.renew()
         site = self._state.site
         if site is None or self._state.link.phase is not ConnectionPhase.CONNECTED:
@@ -230,16 +230,16 @@ class ViewSubscription(QObject):
             self._subscribe(view)
 
     def accept_answer(self, answer: RequestResult) -> bool:
-        """Take in what a search found; false when it is the answer to something else."""
+        """Handle a search result; return false when the answer belongs to another request."""
         return self._search.accept_answer(answer)
 
     def _wanted(self, site: Bounds) -> View | None:
-        """Return the view to ask for, None where what was asked for will do."""
+        """Return the view to request, None where the current one will do."""
         canvas = self._in_site(site)
         draft = self._drafts.draft
         drafted = () if draft is None else (draft.robot,)
         wanted = (*drafted, *self._selected, *self._search.names, *self._alarmed, *self._named)
-        # A gateway refuses the whole view for a name that can be no robot's.
+        # A gateway refuses the whole view for one invalid robot name.
         always = dict.fromkeys(filter(is_robot_name, wanted))
         told = View(canvas, list(always)[: positions.MOST_ALWAYS], alarms=self._limits)
         if self._asked is None or not _will_do(self._asked.bounds, canvas):
@@ -248,7 +248,7 @@ class ViewSubscription(QObject):
         return None if renewed == self._asked else renewed
 
     def _in_site(self, site: Bounds) -> Bounds:
-        """Return what of the site, and a little around it, the canvas shows."""
+        """Return the part of the site, and a margin around it, that the canvas shows."""
         extent = self._canvas.extent()
         if self._seen is None or self._seen[0] != extent:
             self._seen = extent, _shown(self._placed(extent, site), _grown(site))
@@ -263,7 +263,7 @@ class ViewSubscription(QObject):
                 for x, y in EDGE
             ]
         except MapTransformError:
-            # The canvas shows more of the world than the site's CRS can say.
+            # The canvas shows more of the world than the site's CRS can express.
             return site
         xs, ys = [x for x, _ in points], [y for _, y in points]
         return min(xs), min(ys), max(xs), max(ys)
@@ -276,7 +276,7 @@ class ViewSubscription(QObject):
         try:
             self._sender.submit(request)
         except FleetError:
-            # The link has just gone: it is asked for again on the next one.
+            # The link has just gone: it is requested again on the next one.
             self._asked = None
 
 
@@ -288,17 +288,17 @@ def _grown(bounds: Bounds) -> Bounds:
 
 
 def _shown(canvas: Bounds, site: Bounds) -> Bounds:
-    """Return what both have; a metre of the site's corner where the canvas shows nothing of it."""
+    """Return the intersection; a metre of the site's corner where the canvas shows nothing of it."""
     x_min, y_min = max(canvas[0], site[0]), max(canvas[1], site[1])
     x_max, y_max = min(canvas[2], site[2]), min(canvas[3], site[3])
     if x_min < x_max and y_min < y_max:
         return x_min, y_min, x_max, y_max
-    # Beside the site nobody is seen: a metre of its corner holds as many.
+    # Off the site there are no robots: a metre of its corner will do.
     return site[0], site[1], site[0] + 1.0, site[1] + 1.0
 
 
 def _will_do(asked: Bounds, canvas: Bounds) -> bool:
-    """Tell whether a view that was asked for holds the canvas, and is not much larger."""
+    """Return whether a requested view contains the canvas, and is not much larger."""
     holds = (
         asked[0] <= canvas[0] and asked[1] <= canvas[1] and asked[2] >= canvas[2] and asked[3] >= canvas[3]
     )
