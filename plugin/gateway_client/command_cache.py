@@ -1,4 +1,4 @@
-"""Commands: decoded, as last reported, as text, and how far robots are from their paths."""
+"""Commands: decoding, cache of the last reports, texts, and distances of robots from their paths."""
 
 from __future__ import annotations
 
@@ -18,11 +18,11 @@ from .state_words import COMMAND_STATES
 
 MOST_COMMANDS = 2000
 DRIVE_OPERATIONS = (SetPosEnd.__name__, SetPath.__name__)
-"""Operations that lead a robot somewhere; the others are done where it stands."""
+"""Operations that lead a robot to a place; the others are carried out where it stands."""
 
 
 class PathPoints(Sequence[tuple[float, float]]):
-    """Points that never change, x and y in metres in the site frame; numpy takes them as an (n, 2) array."""
+    """Immutable points, x and y in metres in the site frame; numpy reads them as an (n, 2) array."""
 
     __slots__ = ("_points",)
 
@@ -50,7 +50,7 @@ class PathPoints(Sequence[tuple[float, float]]):
 
 
 def pack_points(points: object) -> object:
-    """Return a path's points as :class:`PathPoints`; what is no list of pairs of numbers as it came."""
+    """Return a path's points as :class:`PathPoints`; anything but a list of pairs of numbers unchanged."""
     if not isinstance(points, list):
         return points
     try:
@@ -65,7 +65,7 @@ def pack_points(points: object) -> object:
 def command_in(values: dict[str, Any]) -> CommandReport:
     """Return the command that a gateway sent as JSON.
 
-    A path along roads has hundreds of points, which would take 90 kB.
+    A path along roads has hundreds of points, which would take 90 kB as lists.
     """
     report = command_report(values)
     if report.op != SetPath.__name__ or "points" not in report.params:
@@ -76,14 +76,14 @@ def command_in(values: dict[str, Any]) -> CommandReport:
 
 
 def commands_in(result: dict[str, Any]) -> list[CommandReport]:
-    """Return the reports in an answer; oldest first, since get_commands answers with the newest first."""
+    """Return the reports in an answer, oldest first; get_commands answers with the newest first."""
     if "commands" in result:
         return [command_in(values) for values in reversed(result["commands"])]
     return [command_in(result)] if "command" in result and "op" in result else []
 
 
 class CommandCache:
-    """Commands by id. Whatever order they are told in, the newest of a robot is the one asked for last."""
+    """Commands by id. In whatever order they arrive, a robot's newest is the one requested last."""
 
     def __init__(self) -> None:
         self._reports: dict[str, CommandReport] = {}
@@ -100,9 +100,9 @@ class CommandCache:
         return iter(self._reports.values())
 
     def merge(self, reports: Iterable[CommandReport]) -> list[CommandReport]:
-        """Take in reports and return those that told something new.
+        """Apply reports and return those with new information.
 
-        A report with fewer steps than what is known was overtaken on its way and is passed over.
+        A report with fewer steps than the known one was overtaken on its way and is ignored.
         """
         changed = []
         late = False
@@ -118,7 +118,7 @@ class CommandCache:
         if not changed:
             return []
         if late:
-            # What was asked for before this desk came is told after what came since.
+            # Commands requested before this desk connected arrive after those requested since.
             self._reports = dict(sorted(self._reports.items(), key=lambda item: requested_at(item[1])))
         self._forget_oldest()
         self._look_through()
@@ -135,15 +135,15 @@ class CommandCache:
         return self._reports.get(command)
 
     def under_way(self) -> list[CommandReport]:
-        """Return what robots are doing: of each the newest target or path that is not finished."""
+        """Return the commands under way: of each robot the newest target or path that is not finished."""
         return list(self._under_way.values())
 
     def task_of(self, robot: str) -> CommandReport | None:
-        """Return what ``robot`` is doing, None if nothing is known of it."""
+        """Return the current command of ``robot``, None if none is known."""
         return self._under_way.get(robot)
 
     def reached_by(self, robot: str) -> CommandReport | None:
-        """Return the target or path that ``robot`` reached last, None if nothing is known of one."""
+        """Return the target or path that ``robot`` reached last, None if none is known."""
         return self._reached.get(robot)
 
     def of(self, robot: str, most: int) -> list[CommandReport]:
@@ -173,12 +173,12 @@ class CommandCache:
 
 
 def requested_at(report: CommandReport) -> float:
-    """Return when a command was asked for, seconds since 1970; 0 where that was not told."""
+    """Return when a command was requested, seconds since 1970; 0 where that is not reported."""
     return report.steps[0].at if report.steps else 0.0
 
 
 def command_in_words(report: CommandReport) -> str:
-    """Return what a command asks for, as in ``cone at 12.30, 40.00``."""
+    """Return the purpose of a command, as in ``cone at 12.30, 40.00``."""
     if report.op == SetPosEnd.__name__:
         x, y = _metres(report.params.get("x")), _metres(report.params.get("y"))
         if report.params.get("cone"):
@@ -192,14 +192,14 @@ def command_in_words(report: CommandReport) -> str:
 
 
 def state_word(op: str, state: CommandState) -> str:
-    """Return a state of a command in a word: an abort leads nowhere, and is done where others are reached."""
+    """Return a word for a state of a command: an abort leads nowhere, it is done where others are reached."""
     if state is CommandState.REACHED and op not in DRIVE_OPERATIONS:
         return tr("done")
     return COMMAND_STATES[state]
 
 
 def command_state_in_words(report: CommandReport) -> str:
-    """Return how far a command has come, and why where that was told, as in ``failed: battery empty``."""
+    """Return the progress of a command, with the reason if reported, as in ``failed: battery empty``."""
     word = state_word(report.op, report.state)
     if word == tr("done"):
         return word
@@ -208,7 +208,7 @@ def command_state_in_words(report: CommandReport) -> str:
 
 
 def place_of(report: CommandReport) -> tuple[float, float] | None:
-    """Return where a command leads to, metres in the site frame; None for one that leads nowhere."""
+    """Return the goal of a command, metres in the site frame; None for one that leads nowhere."""
     if report.op == SetPath.__name__:
         points = report.params.get("points") or [(None, None)]
         x, y = points[-1][:2]
@@ -220,7 +220,7 @@ def place_of(report: CommandReport) -> tuple[float, float] | None:
 
 
 def is_cone_put_down(report: CommandReport) -> bool:
-    """Tell whether a robot reached a target, straight or along a path, with a cone for it."""
+    """Return whether a robot reached a target, straight or along a path, to put down a cone."""
     is_cone = report.op in DRIVE_OPERATIONS and report.params.get("cone") is True
     return is_cone and report.state is CommandState.REACHED
 
@@ -230,22 +230,22 @@ def _metres(value: object) -> str:
 
 
 ON_PATH_M = 1.0
-"""Metres beside a path within which a robot has come to it."""
+"""Distance in metres within which a robot has come to its path."""
 AWAY_M = 1.0
-"""Metres by which a robot has to go away from a path's first point to have passed it."""
+"""Metres by which a robot must move away from a path's first point to have passed it."""
 
 
 @dataclass
 class PathApproach:
-    """How a robot comes to its path: ``nearest`` is metres to its first point, the least."""
+    """The approach of a robot to its path: ``nearest`` is the least distance to its first point, metres."""
 
     nearest: float = math.inf
     is_over: bool = False
 
     def go_on(self, off: float, to_first: float) -> None:
-        """Take in where the robot is: metres beside the path and to its first point.
+        """Apply the robot's position: metres beside the path and to its first point.
 
-        One that never comes near passes the first point all the same: it goes away from that again.
+        A robot that never comes near still passes the first point, when it moves away from it again.
         """
         self.is_over = self.is_over or off <= ON_PATH_M or to_first > self.nearest + AWAY_M
         self.nearest = min(self.nearest, to_first)
@@ -255,18 +255,18 @@ Floats = npt.NDArray[np.float64]
 
 
 class PathDeviations:
-    """Remembers of each robot whether it has come to its path: the way there is nobody's to prescribe."""
+    """Remembers of each robot whether it has come to its path: its way there is not prescribed."""
 
     def __init__(self, commands: CommandCache):
         self._commands = commands
         self._ways: dict[str, tuple[str, PathApproach]] = {}
-        """By robot, the command whose path it is to drive, and how it comes to that."""
+        """By robot, the command whose path it drives, and its approach to that."""
 
     def of(self, robot: str, xy: tuple[float, float] | None) -> float | None:
-        """Return metres beside the path that ``robot`` drives, else from the target that it reached last.
+        """Return the distance from the path that ``robot`` drives, else from the target reached last, metres.
 
-        ``xy`` is where it is, in the site frame. None where it has neither, or is on its way to a target or
-        to the first point of its path: it cannot be beside what it was not given.
+        ``xy`` is its position in the site frame. None where it has neither, or is on its way to a target or
+        to the first point of its path: that way is not prescribed.
         """
         task = self._commands.task_of(robot)
         if task is None:
@@ -284,13 +284,13 @@ class PathDeviations:
         return off if way.is_over else None
 
     def forget(self, robots: Iterable[str]) -> None:
-        """Remember nothing of ``robots``, which were removed."""
+        """Forget ``robots``, which were removed."""
         for robot in robots:
             self._ways.pop(robot, None)
 
 
 def distance_to_line(points: Floats, at: Floats) -> float:
-    """Return how far (2,) ``at`` is from the line through (n, 2) ``points``, n > 0."""
+    """Return the distance of (2,) ``at`` from the line through (n, 2) ``points``, n > 0."""
     if len(points) == 1:
         return float(np.hypot(*(points[0] - at)))
     start, step = points[:-1], np.diff(points, axis=0)

@@ -23,17 +23,17 @@ from .robot_states import table_from_frame
 CLOSE_WITHIN = 0.2
 LARGEST_MESSAGE = 64 * 2**20
 MOST_WAITING = 1
-"""Messages that wait to be read: more would be old news by then, where a gateway that waits has newer."""
+"""Messages that may wait to be read: more would be outdated, where the gateway would send newer ones."""
 AWAKE_EVERY = 1.0
 ASLEEP_AFTER = 8.0
-"""Seconds: what waited in this computer for longer would be taken for new."""
+"""Seconds: messages that waited in this computer for longer would be taken for new."""
 
 
 class GatewayClient:
-    """The link to a fleet, for as long as :meth:`run` runs. All methods belong to its event loop.
+    """The link to a fleet, while :meth:`run` runs. All methods must be called in its event loop.
 
-    It is opened to the gateway at ``url``; when that does not answer, to another one that a gateway has told
-    of, now or in an earlier session (``known``). One that refuses keeps the desk from no other.
+    It is opened to the gateway at ``url``; when that does not answer, to another one that a gateway has
+    reported, now or in an earlier session (``known``). One that refuses does not stop the others being tried.
     """
 
     def __init__(
@@ -62,7 +62,7 @@ class GatewayClient:
         return self._addresses.current
 
     async def run(self) -> None:
-        """Connect and stay connected until cancelled, or until trying again cannot help."""
+        """Connect and stay connected until cancelled, or until another attempt cannot help."""
         reason = ""
         try:
             while True:
@@ -79,7 +79,7 @@ class GatewayClient:
             self._protocol.end()
 
     def _has_refused(self, failure: GatewayLinkError) -> bool:
-        """Note that a gateway refuses for good; say so and return true where there is no other to try."""
+        """Record and report that a gateway refuses for good; return true where there is no other to try."""
         self._addresses.refused()
         self._refusals[self._url] = failure
         if not (failure.everywhere or self._addresses.all_refuse):
@@ -90,7 +90,7 @@ class GatewayClient:
         return True
 
     def _because(self, failure: GatewayLinkError) -> str:
-        """Return why there is no link: the newest failure, and who refuses for good beside that."""
+        """Return why there is no link: the newest failure, and which gateway refuses for good besides."""
         if failure.everywhere:
             return str(failure)
         return " ".join(dict.fromkeys([str(failure), *map(str, self._refusals.values())]))
@@ -126,7 +126,7 @@ class GatewayClient:
         finally:
             if socket is not None:
                 # Where closing takes too long while we are cancelled, asyncio of some Pythons (3.11.2)
-                # has the library take the one for the other and leave the socket open.
+                # makes the library confuse the two and leave the socket open.
                 socket.transport.abort()
 
     def _connect(self) -> Any:
@@ -140,7 +140,7 @@ class GatewayClient:
         }
         version = self._library.version.version
         if int(version.split(".")[0]) >= 15:
-            # A gateway stands in the site's own network, where a proxy for the web does not lead.
+            # A gateway is in the site's own network, which a web proxy does not reach.
             options["proxy"] = None
         return self._library.connect(self._url, **options)
 
@@ -183,9 +183,9 @@ class GatewayClient:
             self._receive(frame)
 
     def _receive(self, frame: str | bytes) -> None:
-        """Take in where robots are, which is binary, or a text of the conversation.
+        """Receive robot positions, which are binary, or a text of the conversation.
 
-        :raises GatewayLinkError: when it is not what a gateway sends, or there can be no link.
+        :raises GatewayLinkError: when a gateway would not send it, or there can be no link.
         """
         if isinstance(frame, str):
             self._send_all(self._protocol.receive(frame))
@@ -196,7 +196,7 @@ class GatewayClient:
             raise connection_status.misunderstood(self._url, frame, error) from error
 
     def _instead(self) -> str:
-        """Return which gateway answers in place of the one that the operator gave; empty where that does."""
+        """Return which gateway answers in place of the one that the operator gave; empty if that one does."""
         if self._addresses.is_given:
             return ""
         given, name = self._addresses.given, self._protocol.names.get
@@ -213,7 +213,7 @@ class GatewayClient:
             self._awake_at = steady_time()
 
     def _check_awake(self) -> None:
-        """Raise LinkError when this computer has slept: what comes in now was sent before or meanwhile."""
+        """Raise LinkError when this computer has slept: messages received now are old."""
         asleep = steady_time() - self._awake_at
         if asleep > ASLEEP_AFTER:
             raise GatewayLinkError(
@@ -238,9 +238,9 @@ CANCEL_WITHIN = 0.3
 
 
 class ConnectionThread(QObject):
-    """The link to a gateway as the window sees it. No method waits for the network.
+    """The link to a gateway as seen by the window. No method waits for the network.
 
-    Nothing is signalled message by message: a timer of the window calls :meth:`collect_updates`.
+    There are no signals per message: a timer of the window calls :meth:`collect_updates`.
     """
 
     def __init__(self, parent: QObject | None = None):
@@ -249,20 +249,20 @@ class ConnectionThread(QObject):
         self._ending: list[_Worker] = []
         self._buffer = UpdateBuffer()
         self.rate = 10.0
-        """How many times a second positions are asked for at most."""
+        """Greatest rate at which positions are requested, per second."""
 
     def set_rate(self, rate: float) -> None:
-        """Have links that are opened from now on ask for positions so many times a second at most."""
+        """Set the greatest rate of positions per second for links opened from now on."""
         self.rate = rate
 
     @property
     def is_open(self) -> bool:
-        """Whether a link is wanted, be it up or not."""
+        """Whether a link is wanted, whether or not it is up."""
         return self._worker is not None
 
     @property
     def is_ending(self) -> bool:
-        """Whether a link that was given up still has its thread."""
+        """Whether the thread of a link that was given up is still running."""
         return bool(self._ending)
 
     def open(
@@ -274,9 +274,9 @@ class ConnectionThread(QObject):
     ) -> None:
         """Connect to the gateway at ``url`` and stay connected until :meth:`close`.
 
-        Where it does not answer, to another one of the fleet: those that are ``known``, and those it tells.
+        Where it does not answer, to another gateway of the fleet: those ``known``, and those it reports.
 
-        :raises AddressError: when the URL cannot be a gateway's, or the token or the CA file not be used.
+        :raises AddressError: when the URL is invalid for a gateway, or the token or the CA file is unusable.
         :raises LibraryMissingError: when there is no WebSocket library.
         """
         url = connection_status.check_address(url)
@@ -291,7 +291,7 @@ class ConnectionThread(QObject):
         self._worker.start()
 
     def close(self) -> None:
-        """Give up the link; its thread ends by itself within a moment."""
+        """Give up the link; its thread ends by itself shortly afterwards."""
         if self._worker is None:
             return
         self._worker.ask_to_stop()
@@ -300,7 +300,7 @@ class ConnectionThread(QObject):
         self._forget_ended()
 
     def submit(self, order: OperatorRequest) -> None:
-        """Hand an order to the worker thread.
+        """Hand a request to the worker thread.
 
         :raises NotSentError: when no link is wanted.
         """
@@ -308,11 +308,11 @@ class ConnectionThread(QObject):
             raise NotSentError(tr("The desk is not connected to a gateway. Press Connect first."))
 
     def collect_updates(self) -> StateUpdate:
-        """Return what arrived since the last call."""
+        """Return the updates received since the last call."""
         self._forget_ended()
         update = self._buffer.collect()
         if self._worker is None:
-            # The worker that is ending may still have said that it will try again.
+            # The worker that is ending may still have announced another attempt.
             update.link = ConnectionStatus(ConnectionPhase.CLOSED)
         return update
 
@@ -342,7 +342,7 @@ class _Worker(QThread):
         self._stopping = False
 
     def submit(self, order: OperatorRequest) -> bool:
-        """Hand ``order`` to the client; false when the worker has ended or is about to."""
+        """Hand ``order`` to the client; false when the worker has ended or is about to end."""
         with self._lock:
             if self._stopping:
                 return False
@@ -360,7 +360,7 @@ class _Worker(QThread):
                 self._loop.call_soon_threadsafe(self._task.cancel)
 
     def run(self) -> None:
-        # An exception that leaves QThread.run ends the process outside QGIS and is lost inside it.
+        # An exception that leaves QThread.run ends the process outside QGIS and is lost inside QGIS.
         try:
             self._run_loop()
         except Exception as error:
@@ -396,11 +396,11 @@ class _Worker(QThread):
 
 
 def _end_tasks(loop: asyncio.AbstractEventLoop) -> None:
-    """Cancel what a library left running, such as the pings of a link that would not close."""
+    """Cancel tasks that a library left running, such as the pings of a link that would not close."""
     left = asyncio.all_tasks(loop)
     for task in left:
         task.cancel()
     if left:
         loop.run_until_complete(asyncio.wait(left, timeout=CANCEL_WITHIN))
-    # A link that was cut off closes its socket in the loop's next round, and there would be none.
+    # A link that was cut off closes its socket in the next round of the loop, which would never come.
     loop.run_until_complete(asyncio.sleep(0))

@@ -1,4 +1,4 @@
-"""Link to the gateway: URL, operator's credentials, status, role, and failures as text."""
+"""Status of the link to the gateway: URL, operator's credentials, role, and failures as text."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from ..ui.language import tr
 
 DEFAULT_URL = "ws://127.0.0.1:8765/desk"
 DESK_PATH, ROBOTS_PATHS = "/desk", ("/robot", "/link")
-"""The gateway's paths; a proxy may have put others in front of them."""
+"""Paths of the gateway; a proxy may have put others in front of them."""
 
 
 @dataclass(frozen=True)
 class OperatorCredentials:
-    """The operator's token, and the file (PEM) of the authority that the gateway's certificate is from.
+    """The operator's token, and the CA file (PEM) for the gateway's certificate.
 
-    Both are empty where none is needed; without a file the authorities of the system are trusted.
+    Both are empty where not needed; without a file the authorities of the system are trusted.
     """
 
     token: str = field(default="", repr=False)
     ca_file: str = ""
 
     def options(self, url: str) -> dict[str, Any]:
-        """Return what ``websockets`` is to connect to ``url`` with; raises AddressError."""
+        """Return the options for ``websockets`` to connect to ``url``; raises AddressError."""
         self._check_token(url)
         options: dict[str, Any] = {}
         if self.token:
@@ -42,7 +42,7 @@ class OperatorCredentials:
         return options
 
     def check(self, url: str) -> None:
-        """Raise AddressError when ``url`` cannot be connected to with this."""
+        """Raise AddressError when these credentials cannot be used with ``url``."""
         self._check_token(url)
         if urlsplit(url).scheme == "wss":
             self._context()
@@ -79,7 +79,7 @@ class OperatorCredentials:
 
 
 def check_address(url: str) -> str:
-    """Return ``url`` without blanks around it if it can be a gateway's, else raise AddressError."""
+    """Return ``url`` stripped if it is valid for a gateway, else raise AddressError."""
     url = url.strip()
     example = tr("Write it like {default_url}.", default_url=DEFAULT_URL)
     if not url:
@@ -137,7 +137,7 @@ ROLES = {
 
 
 def role_in_words(role: str) -> str:
-    """Return a role by its name on the wire; one that is not known here as it is."""
+    """Return the display name of a role given by its name on the wire; an unknown one unchanged."""
     return next((words for known, words in ROLES.items() if known.value == role), role)
 
 
@@ -153,11 +153,11 @@ class ConnectionPhase(str, Enum):
 
 @dataclass(frozen=True)
 class ConnectionStatus:
-    """The link's stage, why it is not connected, and when the next attempt is due (monotonic clock).
+    """The stage of the link, why it is down, and when the next attempt is due (monotonic clock).
 
-    While connected, ``operator`` and ``role`` are who the desk is to the gateway; a role that is changed
-    meanwhile is not told. ``wants_token`` is true when it takes another token or CA file to connect.
-    ``instead`` says where the desk is while another gateway answers than the one that the operator gave.
+    While connected, ``operator`` and ``role`` are the desk's account at the gateway; a role that is changed
+    meanwhile is not reported. ``wants_token`` is true when connecting takes another token or CA file.
+    ``instead`` names the gateway that answers where it is not the one that the operator gave.
     """
 
     phase: ConnectionPhase
@@ -170,7 +170,7 @@ class ConnectionStatus:
 
     @property
     def who(self) -> str:
-        """Who the desk is to the gateway, as people read it: ``Ada, supervisor``."""
+        """The desk's account at the gateway, for display: ``Ada, supervisor``."""
         return ", ".join(filter(None, (self.operator, role_in_words(self.role))))
 
     def wait(self, now: float) -> float:
@@ -181,17 +181,17 @@ class ConnectionStatus:
 RESTARTS = 1012
 REVOKED = 4003
 ENDED = 4004
-"""Close codes of the gateway: it ends; the token does not hold any more; a supervisor ended the session."""
+"""Close codes of the gateway: shutting down; token no longer valid; session ended by a supervisor."""
 TOO_LARGE = 1009
-"""The close code of WebSocket for a message that is larger than the other side takes."""
+"""The WebSocket close code for a message larger than the other side accepts."""
 _UNKNOWN_AUTHORITY = {18, 19, 20, 21}
 _OTHER_NAME = {62, 64}
 _NOT_YET_VALID, _EXPIRED = 9, 10
-"""OpenSSL's numbers of what is wrong with a certificate (X509_V_ERR_...)."""
+"""OpenSSL's error numbers for a certificate (X509_V_ERR_...)."""
 
 
 def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkError | None:
-    """Return what a failed or ended link means, in the operator's words; None when it is not known.
+    """Return a failed or ended link explained to the operator; None when the cause is not known.
 
     ``exceptions`` is the module of the websockets package in use.
     """
@@ -221,11 +221,11 @@ def explain(error: Exception, url: str, exceptions: ModuleType) -> GatewayLinkEr
 
 
 MISREAD = (ValueError, KeyError, TypeError, AttributeError)
-"""What reading raises where something is not what a gateway sends."""
+"""Exceptions raised by reading a message that a gateway would not send."""
 
 
 def misunderstood(url: str, frame: str | bytes, error: Exception) -> GatewayLinkError:
-    """Return what it means that a ``frame`` could not be read, in the operator's words."""
+    """Return an error for the operator: a ``frame`` could not be read."""
     shown = f"{len(frame)} bytes" if isinstance(frame, bytes) else frame
     return GatewayLinkError(
         tr(
@@ -375,7 +375,7 @@ def _bad_certificate(error: ssl.SSLCertVerificationError, place: str) -> Gateway
 
 
 def _reason_in(response: Any) -> str:
-    """Return the gateway's own words, which are one line of plain text."""
+    """Return the gateway's own reason, a line of plain text."""
     if not str(response.headers.get("Content-Type", "")).startswith("text/plain"):
         return ""
     text = bytes(response.body or b"").decode("utf-8", "replace").strip()
@@ -395,7 +395,7 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> GatewayLi
             )
         )
     if isinstance(error, ConnectionRefusedError) or f"[Errno {errno.ECONNREFUSED}]" in str(error):
-        # Of a host with several addresses asyncio names each failure in words alone.
+        # For a host with several addresses asyncio reports each failure only as text.
         return GatewayLinkError(
             tr(
                 "Nothing listens at {place}. Start the gateway (robot-bridge serve --site ...) or correct "
@@ -427,7 +427,7 @@ def _network_failure(error: Exception, place: str, *, secure: bool) -> GatewayLi
             tr(
                 "{place} cannot be reached: {reason}. Check network and URL.",
                 place=place,
-                # What asyncio writes in its place names the call and not what was wrong.
+                # Otherwise asyncio's text names the call and not the cause.
                 reason=os.strerror(error.errno) if error.errno else error,
             )
         )

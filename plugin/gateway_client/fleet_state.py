@@ -26,11 +26,11 @@ from .command_cache import CommandCache
 from .connection_status import ConnectionPhase, ConnectionStatus
 from .robot_states import RobotStates, RobotTable, RobotView
 
-# --- What the operator asked for, and what became of it ---
+# --- Requests of the operator, and their results ---
 
 
 class RequestGround(NamedTuple):
-    """What the places and names in a request are of: the frame of a site, and the gateway's database."""
+    """The context of places and names in a request: the frame of a site, and the gateway's database."""
 
     crs: str
     origin: tuple[float, float]
@@ -39,23 +39,23 @@ class RequestGround(NamedTuple):
 
     @classmethod
     def of(cls, site: SiteReport, database: str) -> RequestGround:
-        """Return the ground of a gateway that serves ``site``; an older one names no database."""
+        """Return the context for a gateway that serves ``site``; an older one names no database."""
         return cls(site.crs, tuple(site.origin), site.rotation, database)
 
     def is_same(self, other: RequestGround) -> bool:
-        """Tell whether the same numbers are the same place, and the same names the same robots."""
+        """Return whether equal numbers mean the same place, and equal names the same robots."""
         is_same_fleet = not (self.database and other.database) or self.database == other.database
         return is_same_fleet and self[:-1] == other[:-1]
 
 
 @dataclass(frozen=True)
 class OperatorRequest:
-    """One thing that the operator asked for, with one button pressed once.
+    """One request of the operator, made by pressing one button once.
 
-    ``key`` stays the same however often the order has to be repeated; for ``send`` it is the command's id,
-    which lets the gateway recognise a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is
-    for what is right however late it comes, as an emergency stop is. ``ground`` is what the window knew of
-    the gateway when it was asked; None for what is right at every gateway.
+    ``key`` stays the same however often the request must be repeated; for ``send`` it is the command's id,
+    by which the gateway recognises a repetition. ``requested_at`` is on the monotonic clock. ``lasting`` is
+    for requests that are valid however late they arrive, like an emergency stop. ``ground`` is the context
+    known to the window at the time of the request; None for requests valid at every gateway.
     """
 
     key: str
@@ -68,10 +68,10 @@ class OperatorRequest:
 
 @dataclass(frozen=True)
 class RequestResult:
-    """What became of an order: the gateway's ``result``, or ``error`` in words for the operator.
+    """The outcome of a request: the gateway's ``result``, or ``error`` as text for the operator.
 
-    ``outdated`` is true when it was refused because what it changes has changed since it was looked at.
-    ``overridable`` is all that speaks against it where it was refused, and would be done with an override.
+    ``outdated`` is true when it was refused because its object has changed since it was read.
+    ``overridable`` is all that speaks against it where it was refused, but can be done with an override.
     """
 
     order: OperatorRequest
@@ -84,20 +84,20 @@ class RequestResult:
 # --- The store ---
 
 MOST_COMMANDS = 1000
-"""Commands that wait for the window."""
+"""Commands that may wait for the window."""
 KEYS = {"commands": "command", "queues": "robot", "placed_cones": "placement", "observations": "observation"}
-"""Topics of which the newest of each thing counts: the field that names the thing."""
+"""Topics of which only the newest report of each object is kept: the field that names the object."""
 
 
 @dataclass
 class StateUpdate:
-    """What arrived since the window collected it last.
+    """Updates that arrived since the window last collected them.
 
-    Only the newest of each thing is kept, so that a window that is busy for a while costs no memory and then
-    paints what is true now. ``site`` is set when a gateway said which site it serves; ``greeting_of`` names
-    its database where that was the first word on a link, empty where it does not say: it may be another
-    gateway than before. With ``are_all_queues`` there are no others, and with ``is_driving``, which says
-    whether the gateway drives cone plans, no other plans.
+    Only the newest of each object is kept, so that a window that is busy for a while costs no memory and
+    then paints the current state. ``site`` is set when a gateway reported which site it serves;
+    ``greeting_of`` names its database where that was the first message on a link, empty where it does not:
+    it may be another gateway than before. With ``are_all_queues`` there are no others, and with
+    ``is_driving``, which is whether the gateway drives cone plans, no other plans.
     """
 
     link: ConnectionStatus
@@ -122,10 +122,10 @@ class StateUpdate:
     gateways: FleetGateways | None = None
     answers: list[RequestResult] = field(default_factory=list)
     is_heard: bool = False
-    """Whether the gateway said any of this: that the link is down it did not."""
+    """Whether the gateway sent any of this, unlike a report that the link is down."""
 
     def add(self, **reports: Any) -> None:
-        """Take in reports by their topics."""
+        """Add reports by their topics."""
         self.is_heard |= bool(reports.keys() - {"link"})
         if reports.pop("are_all_queues", False):
             self.queues.clear()
@@ -149,7 +149,7 @@ class StateUpdate:
                 setattr(self, topic, report)
 
     def _add_robots(self, table: RobotTable) -> None:
-        # Where the window keeps up there is nothing yet, and the table is merged once: by the store.
+        # Where the window keeps up there is nothing yet, and the table is merged only once, by the store.
         if self.robots.tells_nothing:
             self.robots = table
         else:
@@ -159,7 +159,7 @@ class StateUpdate:
         known = getattr(self, topic)
         for report in reports:
             key = getattr(report, KEYS[topic])
-            # What changed last is at the end.
+            # The one that changed last is at the end.
             known.pop(key, None)
             known[key] = report
         while topic == "commands" and len(known) > MOST_COMMANDS:
@@ -167,7 +167,7 @@ class StateUpdate:
 
 
 class UpdateBuffer:
-    """The update that the connection's thread fills and the window collects; safe to use from both."""
+    """The update that the connection's thread fills and the window collects; thread-safe."""
 
     def __init__(self) -> None:
         self._lock = threading.Lock()
@@ -182,28 +182,28 @@ class UpdateBuffer:
             self._update.add(**reports)
 
     def add_answer(self, answer: RequestResult) -> None:
-        """Add what became of a request; every one of them is kept."""
+        """Add the outcome of a request; every one of them is kept."""
         with self._lock:
             self._update.answers.append(answer)
 
     def collect(self) -> StateUpdate:
-        """Return all that arrived since the last call and begin again; the link's state stays."""
+        """Return all updates since the last call and start afresh; the link's state stays."""
         with self._lock:
             update, self._update = self._update, StateUpdate(self._update.link)
         return update
 
 
 class UpdateSource(Protocol):
-    """Where a store collects its updates: the connection's thread."""
+    """A source from which a store collects its updates: the connection's thread."""
 
     def collect_updates(self) -> StateUpdate:
-        """Return what arrived since the last call, without waiting."""
+        """Return the updates since the last call, without waiting."""
 
 
 LATE_S = 0.1
-"""Seconds after which what was collected is not passed on without a look for what is newer."""
+"""Age in seconds from which collected updates are not applied without polling for newer ones."""
 CONFLICTS_SILENT_AFTER = 10.0
-"""Seconds without a word of them after which conflicts are not known any more."""
+"""Seconds without a report after which conflicts are not known any more."""
 
 
 class FleetState(QObject):
@@ -214,29 +214,29 @@ class FleetState(QObject):
     """
 
     updated = pyqtSignal()
-    """A twentieth of a second went by: positions, ages and countdowns may have changed."""
+    """Emitted every twentieth of a second: positions, ages and countdowns may have changed."""
     merged = pyqtSignal()
-    """An update was taken in; before ``updated``, in the same piece of work as the topics' signals."""
+    """An update was applied; before ``updated``, in the same event as the topics' signals."""
     link_changed = pyqtSignal()
     site_changed = pyqtSignal()
     about_to_forget = pyqtSignal()
-    """The gateway's robots are others than before: what is known of those is forgotten next."""
+    """The gateway's robots have been replaced: knowledge of the former ones is about to be forgotten."""
     forgotten = pyqtSignal()
-    """What was known of other robots is forgotten; ``site`` is still the one before."""
+    """Knowledge of other robots has been forgotten; ``site`` is still the former one."""
     replaced = pyqtSignal(str)
-    """Another site or database is served than before: the text, which must not go unseen."""
+    """Another site or database is served than before: the text, which must be seen by the operator."""
     robots_removed = pyqtSignal(object)
     """Robots are gone or out of view, and others have moved up into their rows: the RemovedRobots."""
     commands_changed = pyqtSignal(list)
-    """The CommandReports that told something new."""
+    """The CommandReports with new information."""
     queues_changed = pyqtSignal(list)
-    """The robots of whose queues something new is known."""
+    """The robots whose queues have changed."""
     plans_changed = pyqtSignal(list)
-    """The names of the cone plans of which something new is known."""
+    """The names of the cone plans that have changed."""
     placed_cones_changed = pyqtSignal(list)
-    """The numbers of the placed cones of which something new is known."""
+    """The numbers of the placed cones that have changed."""
     observations_changed = pyqtSignal(list)
-    """The numbers of the observations of which something new is known."""
+    """The numbers of the observations that have changed."""
     closures_changed = pyqtSignal()
     conflicts_changed = pyqtSignal()
     replanned = pyqtSignal(object)
@@ -244,11 +244,11 @@ class FleetState(QObject):
     suspensions_changed = pyqtSignal()
     links_changed = pyqtSignal()
     gateways_changed = pyqtSignal(object)
-    """Where else the fleet is reached was told: the FleetGateways."""
+    """Other addresses of the fleet were reported: the FleetGateways."""
     emergency_changed = pyqtSignal()
-    """The gateway said how an emergency stop stands."""
+    """The gateway reported the state of an emergency stop."""
     answered = pyqtSignal(object)
-    """What became of a request: the RequestResult."""
+    """The outcome of a request: the RequestResult."""
 
     def __init__(self, source: UpdateSource, clock: Clock, parent: QObject | None = None):
         super().__init__(parent)
@@ -270,11 +270,11 @@ class FleetState(QObject):
         self.links = Links()
         self.emergency: EmergencyReport | None = None
         self.heard_at = self.clock.steady()
-        """when the gateway said anything last, by the steady clock."""
+        """Time of the gateway's last message, by the steady clock."""
         self._conflicts_at = -CONFLICTS_SILENT_AFTER
         self._url, self._is_other_gateway = "", False
         self._database = ""
-        """What tells the gateway's database from every other; empty where it does not say."""
+        """Identifies the gateway's database; empty where the gateway does not name it."""
         self._is_running = self._is_collected = False
         self._collected_at = self._due = clock.steady()
         self._timer = QTimer(self)
@@ -283,18 +283,18 @@ class FleetState(QObject):
 
     @property
     def url(self) -> str:
-        """The address of the gateway whose reports these are; empty before the first."""
+        """The address of the gateway that sent these reports; empty before the first."""
         return self._url
 
     @property
     def ground(self) -> RequestGround | None:
-        """What places and names are of that the window shows; None before the first gateway said so."""
+        """The context of the places and names that the window shows; None before a gateway reported it."""
         return None if self.site is None else RequestGround.of(self.site, self._database)
 
     def start(self, url: str) -> None:
-        """Collect from now on what the gateway at ``url`` reports.
+        """Start collecting the reports of the gateway at ``url``.
 
-        What another one reported is forgotten when this one says which site it serves.
+        Reports of another one are forgotten when this one reports which site it serves.
         """
         self._is_other_gateway = self._is_other_gateway or url != self._url
         self._url = url
@@ -302,21 +302,21 @@ class FleetState(QObject):
         self.pull()
 
     def stop(self) -> None:
-        """Collect nothing more."""
+        """Stop collecting."""
         self._is_running = self._is_collected = False
         self._timer.stop()
 
     def pull(self) -> None:
-        """Collect now; ``updated`` follows in a piece of work of its own."""
+        """Collect now; ``updated`` follows in an event of its own."""
         try:
             self._collect()
         finally:
-            # Whatever an update raises, the next one is collected.
+            # Even if an update raises, the next one is collected.
             self._is_collected = True
             self._timer.start(0)
 
     def robot(self, name: str) -> RobotView | None:
-        """Return robot ``name`` as it stands now, None if it is not known."""
+        """Return the present view of robot ``name``, None if it is not known."""
         return self.robots.view(name, self.clock.steady())
 
     def report_of(self, name: str) -> RobotReport | None:
@@ -334,7 +334,7 @@ class FleetState(QObject):
             self._due = max(now, self._due + PULL_EVERY_MS / 1000)
             self._timer.start(round((self._due - now) * 1000))
         if now - self._collected_at > LATE_S:
-            # The window stood still meanwhile: what it shows first is what is so now.
+            # The window was blocked meanwhile: it must show the current state first.
             self._collect()
         self.updated.emit()
 
@@ -343,13 +343,13 @@ class FleetState(QObject):
         self.merge(self._source.collect_updates())
 
     def merge(self, update: StateUpdate) -> None:
-        """Take in an update, and emit the signal of each topic that it tells something new of."""
+        """Apply an update, and emit the signal of each topic that has changed."""
         if update.is_heard:
             self.heard_at = self.clock.steady()
         try:
             self._merge_reports(update)
         finally:
-            # Whatever a report raises: what became of a stop or an abort is known.
+            # Even if a report raises, the outcome of a stop or an abort is known.
             for answer in update.answers:
                 self.answered.emit(answer)
             self._merge_notices(update)
@@ -389,7 +389,7 @@ class FleetState(QObject):
         gone = self.robots.merge(table)
         if not len(gone.rows):
             return
-        # What those out of view do goes on.
+        # The activity of robots out of view continues.
         self.queues.forget(gone.names)
         self.robots_removed.emit(gone)
         if gone.names:
@@ -403,7 +403,7 @@ class FleetState(QObject):
             self._conflicts_at = self.clock.steady()
             self._set_conflicts(update.conflicts)
         elif self.clock.steady() - self._conflicts_at > CONFLICTS_SILENT_AFTER:
-            # A gateway tells of them every second for as long as there are any.
+            # A gateway reports them every second for as long as there are any.
             self._set_conflicts(Conflicts(self.conflicts.t))
         for robot in update.replanned:
             self.replanned.emit(robot)
@@ -428,7 +428,7 @@ class FleetState(QObject):
             self.emergency_changed.emit()
 
     def merge_site(self, site: SiteReport, greeting_of: str | None = None) -> None:
-        """Take in which site is served; ``greeting_of`` as in :class:`StateUpdate`."""
+        """Apply the site that is served; ``greeting_of`` as in :class:`StateUpdate`."""
         before, is_elsewhere = self.site, self._is_other_gateway
         is_other_database = bool(greeting_of and self._database and greeting_of != self._database)
         self._database = greeting_of or self._database
@@ -446,10 +446,10 @@ class FleetState(QObject):
         self.site_changed.emit()
 
     def _is_another(self, site: SiteReport, *, is_greeting: bool) -> bool:
-        """Tell whether other robots are on ``site`` than on the one before.
+        """Return whether the robots on ``site`` are others than those before.
 
-        Two gateways may serve one site, for practice and for work, each with robots of its own. Chosen while
-        the link is up, a site is served to the same robots: commands, queues and an emergency stop go on.
+        Two gateways may serve one site, for practice and for work, each with its own robots. A site chosen
+        while the link is up is served to the same robots: commands, queues and an emergency stop continue.
         """
         was = self.site
         if was is None or self._is_other_gateway or (is_greeting and site.id != was.id):
@@ -474,9 +474,9 @@ class FleetState(QObject):
 
 
 def _replacement(before: SiteReport | None, site: SiteReport, is_other_database: bool) -> str:
-    """Return what to tell of a site that is served in place of another; empty for nothing.
+    """Return the message about a site that replaces another; empty for none.
 
-    Nobody at this desk asked for it, and it comes with alarms that would hide what goes by itself.
+    Nobody at this desk requested it, and it comes with alarms that would hide short-lived messages.
     """
     if before is not None and site.id != before.id:
         return tr(

@@ -1,4 +1,4 @@
-"""The desk's JSON-RPC 2.0 conversation with the gateway: text in, text out, no socket."""
+"""The desk's JSON-RPC 2.0 conversation with the gateway: text in, text out, without a socket."""
 
 from __future__ import annotations
 
@@ -27,10 +27,10 @@ from .report_caches import observations_in, placements_in, plan_in, plans_in, qu
 from .robot_rows import table_from_rows
 
 UNKNOWN_METHOD, WRONG_PARAMETERS = -32601, -32602
-"""Error codes of JSON-RPC: robots' addresses know no greeting, and links' addresses another one."""
+"""Error codes of JSON-RPC: robots' endpoints know no greeting, and links' endpoints another one."""
 OUTDATED = -32006
 OVERRIDABLE = -32007
-"""The error code of a change to what is not as it was seen; the newer state comes with it."""
+"""The error code of a change to an object that has changed since it was read; the newer state is included."""
 
 NEWEST_COUNTS = {
     "emergency": safety.emergency_report,
@@ -41,7 +41,7 @@ NEWEST_COUNTS = {
     "closures": roads.closures_report,
     "conflicts": roads.conflicts_report,
 }
-"""Notifications of which only the newest counts, each a topic of its name: what decodes it."""
+"""Notifications of which only the newest counts, each a topic of the same name, and their decoders."""
 EACH_COUNTS = {
     "command": ("commands", command_in),
     "queue": ("queues", queue_report),
@@ -50,27 +50,26 @@ EACH_COUNTS = {
     "observation": ("observations", records.observation_report),
     "replanned": ("replanned", roads.replanned_robot),
 }
-"""Notifications of one thing among many: the topic, and what decodes it."""
+"""Notifications about one object among many: the topic, and its decoder."""
 
 VIEWS_FROM = 5000
-"""With more robots than these the desk is told of those in its view, with fewer of every one."""
+"""Number of robots above which the desk receives those in its view only."""
 ALL_QUEUES = "every queue"
-"""The key of what asks for all queues when a link begins."""
+"""The key of the request for all queues at the beginning of a link."""
 ALL_PLANS = "every plan"
-"""The key of what asks for all cone plans when a link begins; older gateways know no such request."""
+"""The key of the request for all cone plans at the beginning of a link; older gateways lack it."""
 
 
 REPEAT_WITHIN = 30.0
-"""Seconds in which an order is sent, or repeated, on another link than it was asked for on, and begun."""
+"""Seconds within which a request may be sent, or repeated, on a later link, and be begun there."""
 
 
 class RequestOutbox:
-    """Keeps orders over the loss of a link, so that each is repeated until answered and then never again.
+    """Keeps requests over the loss of a link, so that each is repeated until answered and then never again.
 
-    A robot must not drive off because of something that was asked for long ago: an order older than
-    ``repeat_within`` seconds is not repeated but handed back as not known to have arrived, unless it lasts.
-    Nor must it drive to the numbers of another site's frame: what was asked for on another ground is handed
-    back as well.
+    A robot must not drive off because of an old request: one older than ``repeat_within`` seconds is not
+    repeated but handed back as not known to have arrived, unless it is lasting. Nor must a robot drive to
+    numbers of another site's frame: a request made in another context (``ground``) is handed back as well.
     """
 
     def __init__(self, repeat_within: float = REPEAT_WITHIN):
@@ -84,18 +83,18 @@ class RequestOutbox:
         return key in self._waiting
 
     def add(self, order: OperatorRequest) -> bool:
-        """Keep ``order`` until it is answered; false when the same order waits already."""
+        """Keep ``order`` until it is answered; false when the same request waits already."""
         if order.key in self._waiting:
             return False
         self._waiting[order.key] = order
         return True
 
     def answered(self, key: str) -> OperatorRequest | None:
-        """Take out the order that was answered; None when it was answered before."""
+        """Remove and return the request that was answered; None when it was answered before."""
         return self._waiting.pop(key, None)
 
     def renew(self, now: float) -> tuple[list[OperatorRequest], list[OperatorRequest]]:
-        """Return the orders to send on a new link, oldest first, and those that are too old, taken out."""
+        """Return the requests to send on a new link, oldest first, and those too old, which are removed."""
         limit = now - self._repeat_within
         too_old = [o for o in self._waiting.values() if o.requested_at < limit and not o.lasting]
         for order in too_old:
@@ -103,14 +102,14 @@ class RequestOutbox:
         return list(self._waiting.values()), too_old
 
     def without_ground(self, ground: RequestGround) -> list[OperatorRequest]:
-        """Take out the orders that were asked for on another ground than ``ground``, and return them."""
+        """Remove and return the requests that were made in another context than ``ground``."""
         strange = [one for one in self._waiting.values() if not _holds_on(one, ground)]
         for order in strange:
             del self._waiting[order.key]
         return strange
 
     def largest(self) -> tuple[OperatorRequest | None, int]:
-        """Take out the largest order that still waits, and return it with its bytes; a stop is never it."""
+        """Remove the largest waiting request, and return it with its size in bytes; never a stop."""
         sizes = {key: len(json.dumps(one.params)) for key, one in self._waiting.items() if not one.lasting}
         if not sizes:
             return None, 0
@@ -118,7 +117,7 @@ class RequestOutbox:
         return self._waiting.pop(key), sizes[key]
 
     def clear(self) -> list[OperatorRequest]:
-        """Take out every order that still waits and return them."""
+        """Remove and return all waiting requests."""
         left = list(self._waiting.values())
         self._waiting.clear()
         return left
@@ -129,12 +128,12 @@ def _holds_on(order: OperatorRequest, ground: RequestGround) -> bool:
 
 
 class GatewayProtocol:
-    """One link after the other with a gateway of one fleet: hello, subscription, orders and answers.
+    """A sequence of links with gateways of one fleet: hello, subscription, requests and answers.
 
-    What is learnt goes to the buffer, and to ``addresses`` where else the fleet is reached. Orders wait in
-    the outbox until a gateway answered them, across links; each is sent once on each link. The gateways of a
-    fleet share its database, and know by their ids those that another has done. ``database`` tells the fleet
-    whose addresses were known before the first link, if any were.
+    Reports are added to the buffer, and the fleet's other addresses to ``addresses``. Requests wait in the
+    outbox until a gateway has answered them, across links; each is sent once on each link. The gateways of a
+    fleet share its database, and know by their ids those that another has done. ``database`` identifies the
+    fleet whose addresses were known before the first link, if any were.
     """
 
     def __init__(
@@ -156,15 +155,15 @@ class GatewayProtocol:
         self._ids = itertools.count(1)
         self._pending: dict[int, OperatorRequest] = {}
         self._gateway_ahead: float | None = None
-        """Seconds by which the gateway's clock for deadlines is ahead of the own; None where it has none."""
+        """Seconds by which the gateway's clock for deadlines is ahead of ours; None where it has none."""
         self._ground: RequestGround | None = None
-        """What places and names are of at the gateway; None as long as none has greeted."""
+        """The context of places and names at the gateway; None until one has greeted."""
         self._view: dict[str, Any] | None = None
-        """The view that the window wants to be told of, None for every robot."""
+        """The view that the window wants to receive, None for every robot."""
         self._knows_views = False
         self.ready = False
         self.operator, self.role = "", ""
-        """Who this desk is to the gateway, and in which role; empty as long as that is not known."""
+        """The desk's account and role at the gateway; empty until known."""
         self.names: dict[str, str] = {}
         """The names of gateways that have greeted this desk, by their URLs, where several serve the fleet."""
 
@@ -177,21 +176,21 @@ class GatewayProtocol:
         self._pending.clear()
         self._gateway_ahead = None
         self.ready = False
-        # A name that the gateway would refuse must not keep its operator away.
+        # A name that the gateway would refuse must not lock out the operator.
         name = one_line(self._operator.strip(), LONGEST_OPERATOR)
         return [self._request(OperatorRequest("hello", Hello.method, to_json(Hello(name))))]
 
     def submit(self, order: OperatorRequest) -> list[str]:
-        """Return the texts to send now for a new order: none while the link is not ready.
+        """Return the texts to send now for a new request: none while the link is not ready.
 
-        A subscription holds from then on, on later links as well; a gateway that knows no views gets none.
+        A subscription remains in force, also on later links; a gateway that knows no views gets none.
         """
         if order.method == Subscribe.method:
             self._view = order.params.get("view")
             return [self._subscription()] if self.ready and self._knows_views else []
         if not self._outbox.add(order) or not self.ready:
             return []
-        # The window may not know yet which gateway has greeted since it last looked.
+        # The window may not know yet which gateway has greeted since its last poll.
         self._hand_back_strange()
         return [self._request(order)] if order.key in self._outbox else []
 
@@ -200,7 +199,7 @@ class GatewayProtocol:
         self.ready = False
 
     def hand_back_largest(self) -> None:
-        """Hand back the largest order: the gateway ended the link over its size, and would do so again."""
+        """Hand back the largest request: the gateway ended the link over its size, and would do so again."""
         order, size = self._outbox.largest()
         if order is not None:
             text = tr(
@@ -211,12 +210,12 @@ class GatewayProtocol:
             self._buffer.add_answer(RequestResult(order, error=text))
 
     def _hand_back_strange(self) -> None:
-        """Hand back what was asked for on another ground than the gateway's: its places are others here."""
+        """Hand back requests made in another context than the gateway's: their places are others here."""
         for order in self._outbox.without_ground(self._ground):
             self._buffer.add_answer(RequestResult(order, error=_other_ground()))
 
     def end(self) -> None:
-        """Hand back every order that was not answered: nobody will ask for an answer any more."""
+        """Hand back every unanswered request: nobody will repeat it any more."""
         for order in self._outbox.clear():
             self._buffer.add_answer(
                 RequestResult(
@@ -229,12 +228,12 @@ class GatewayProtocol:
             )
 
     def receive(self, text: str) -> list[str]:
-        """Take in one text from the gateway and return the texts to send in turn.
+        """Receive one text from the gateway and return the texts to send in reply.
 
-        :raises GatewayLinkError: when it is not what a gateway sends, or there can be no link.
+        :raises GatewayLinkError: when a gateway would not send it, or there can be no link.
         """
         try:
-            # Numbers that are none are named by what reads them.
+            # NaN and infinities are reported by the code that reads them.
             check_bounds(text, DOCUMENT)
             message = json.loads(text)
             if not isinstance(message, dict):
@@ -274,7 +273,7 @@ class GatewayProtocol:
         elif method in EACH_COUNTS:
             topic, decode = EACH_COUNTS[method]
             self._buffer.add(**{topic: [decode(params)]})
-        # Another notification is of a newer gateway and nothing that this desk asked for.
+        # Another notification belongs to a newer gateway and was not requested by this desk.
 
     def _answered(self, message: dict[str, Any]) -> list[str]:
         order = self._pending.pop(message.get("id", 0), None)
@@ -364,29 +363,29 @@ class GatewayProtocol:
         return [self._subscription(), *(self._request(order) for order in (*first, *orders))]
 
     def _choose_view(self, result: dict[str, Any]) -> None:
-        """Begin with a view where there are many robots; the window then says what it shows of them."""
+        """Start with a view where there are many robots; the window then requests the one that it shows."""
         robots = result.get("robots")
         self._knows_views = isinstance(robots, int)
         if self._view is None and self._knows_views and robots > VIEWS_FROM:
             self._view = to_json(View(tuple(result["site"]["bounds"])))
 
     def _set_clock(self, values: dict[str, Any]) -> None:
-        """Know the gateway's clock for deadlines; what it said was a moment ago, so that none is too late."""
+        """Set the offset of the gateway's clock for deadlines; a reading is a moment old, so none is late."""
         now = values.get("now")
         if now is not None:
             _check_number("the gateway's clock", now)
             self._gateway_ahead = now - self._clock.steady()
 
     def _learn(self, told: object) -> None:
-        """Know where else the fleet is reached, and have that kept for the next session."""
+        """Learn other addresses of the fleet, and have them kept for the next session."""
         self._addresses.learn(told)
         others = tuple(one for one in self._addresses.known if one != self._addresses.given)
         self._buffer.add(gateways=FleetGateways(self._database, others))
 
     def _check_fleet(self, database: str) -> None:
-        """Raise LinkError for a gateway that another one told of, and that serves another fleet by now.
+        """Raise LinkError for a gateway that another one reported, and that now serves another fleet.
 
-        The one that the operator gave may have another database than before: that is shown.
+        The one that the operator gave may have another database than before: that is shown instead.
         """
         if not self._addresses.is_given and database != self._database:
             raise GatewayLinkError(
@@ -437,7 +436,7 @@ class GatewayProtocol:
 
 
 def checked_site(site: SiteReport) -> SiteReport:
-    """Return ``site`` if its numbers are finite numbers, else raise ValueError naming the field."""
+    """Return ``site`` if its numbers are finite, else raise ValueError naming the field."""
     numbers = (*site.origin, *site.bounds, site.rotation, site.stale_after, site.lost_after)
     for value in numbers:
         _check_number(f"a number of site {site.id}", value)
@@ -462,14 +461,14 @@ def _code(message: dict[str, Any]) -> Any:
 
 
 def _data(message: dict[str, Any]) -> dict[str, Any]:
-    """Return what came with an error besides its text."""
+    """Return the data of an error besides its text."""
     error = message["error"]
     data = error.get("data") if isinstance(error, dict) else None
     return data if isinstance(data, dict) else {}
 
 
 def _found(message: dict[str, Any]) -> tuple[str, ...]:
-    """Return what speaks against a request that can be overridden."""
+    """Return the findings against a request that can be overridden."""
     return tuple(str(text) for text in message["error"]["data"]["found"])
 
 

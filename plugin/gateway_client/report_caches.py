@@ -1,4 +1,4 @@
-"""Queues, cone plans, placed cones, observations, geofence and nearness: decoded, and as last reported."""
+"""Caches of queues, cone plans, placed cones, observations, geofence and nearness, and their decoders."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from ..ui.language import tr
 
 
 class QueueCache:
-    """The newest report of each queue, by its robot."""
+    """The newest report of each queue, by robot."""
 
     def __init__(self) -> None:
         self.queues: dict[str, QueueReport] = {}
@@ -35,9 +35,9 @@ class QueueCache:
         return len(self.queues)
 
     def merge(self, reports: Mapping[str, QueueReport], *, are_all: bool = False) -> list[str]:
-        """Take in reports by their robots and return the robots of whose queues they tell something new.
+        """Apply reports by robot and return the robots whose queues have changed.
 
-        Queues that are not among them are forgotten where they ``are_all``.
+        With ``are_all``, queues that are not among them are forgotten.
         """
         gone = self.queues.keys() - reports.keys() if are_all else set()
         for robot in gone:
@@ -47,28 +47,28 @@ class QueueCache:
         return [*gone, *new]
 
     def forget(self, robots: Iterable[str]) -> None:
-        """Forget the queues of robots that are there no more."""
+        """Forget the queues of robots that no longer exist."""
         for robot in robots:
             self.queues.pop(robot, None)
 
     def get(self, robot: str) -> QueueReport | None:
-        """Return a robot's queue, None for one that has none."""
+        """Return a robot's queue, None if it has none."""
         return self.queues.get(robot)
 
     def revision(self, robot: str) -> int:
-        """Return the revision that an edit of a robot's queue has to name: 0 where it has none yet."""
+        """Return the revision that an edit of a robot's queue must name: 0 where it has none yet."""
         report = self.queues.get(robot)
         return 0 if report is None else report.revision
 
     def clear(self) -> None:
-        """Forget everything: it is another site's."""
+        """Forget everything: it belongs to another site."""
         self.queues.clear()
 
 
 def queues_in(values: dict[str, Any]) -> list[QueueReport]:
-    """Return the queues in an answer, or in what comes with a refusal.
+    """Return the queues in an answer, or in the data of a refusal.
 
-    :raises KeyError: for what names itself a queue and is none; ValueError and TypeError likewise.
+    :raises KeyError: for an invalid queue; ValueError and TypeError likewise.
     """
     if {"robot", "revision", "tasks", "robot_state"} <= values.keys():
         return [queue_report(values)]
@@ -78,15 +78,15 @@ def queues_in(values: dict[str, Any]) -> list[QueueReport]:
 PLAN_ENDS = (PlanState.FINISHED, PlanState.CLEARED)
 MOST_ENDED_PLANS = 10
 MOST_STOPS = 20_000
-"""of one plan; a gateway drives 5000 cones in one, with stores between them."""
+"""Stops kept of one plan; a gateway drives 5000 cones in one, with stores between them."""
 
 
 @dataclass(frozen=True)
 class KnownPlan:
-    """A cone plan as the gateway reported it last.
+    """The last report of a cone plan.
 
-    ``document`` is what its robots drive by, ``proposal`` what is proposed of what is left; both as they were
-    at the plan's revision ``whole_at``, which is -1 before they came.
+    ``document`` is what its robots drive by, ``proposal`` is proposed for the remainder; both as they were
+    at the plan's revision ``whole_at``, which is -1 before they arrived.
     """
 
     report: PlanReport
@@ -106,12 +106,12 @@ class KnownPlan:
 
     @property
     def is_whole(self) -> bool:
-        """Whether its documents are those of what was reported last."""
+        """Whether its documents belong to the last report."""
         return self.whole_at == self.report.revision
 
 
 def newer_plan(known: KnownPlan | None, reported: KnownPlan) -> KnownPlan:
-    """Return what is known of a plan once ``reported`` came, which may have been overtaken on its way."""
+    """Return the plan as known after ``reported`` arrived, which may have been overtaken on its way."""
     if known is None:
         return reported
     if reported.report.revision < known.report.revision:
@@ -120,12 +120,12 @@ def newer_plan(known: KnownPlan | None, reported: KnownPlan) -> KnownPlan:
 
 
 class PlanCache:
-    """The newest report of each cone plan, by its name; of those that ended only some."""
+    """The newest report of each cone plan, by name; of those that ended only some."""
 
     def __init__(self) -> None:
         self._plans: dict[str, KnownPlan] = {}
         self.is_driving: bool | None = None
-        """Whether this gateway drives cone plans, None before it has said so."""
+        """Whether this gateway drives cone plans, None before it has reported that."""
 
     def __iter__(self) -> Iterator[KnownPlan]:
         return iter(self._plans.values())
@@ -141,9 +141,9 @@ class PlanCache:
         )
 
     def merge(self, reported: Mapping[str, KnownPlan], is_driving: bool | None = None) -> list[str]:
-        """Take in plans by their names and return those of which they tell something new.
+        """Apply plans by name and return those that have changed.
 
-        With ``is_driving``, which begins a link, there are no others.
+        With ``is_driving``, which is sent at the beginning of a link, there are no others.
         """
         gone: list[str] = []
         if is_driving is not None:
@@ -167,7 +167,7 @@ class PlanCache:
         return [*gone, *new]
 
     def clear(self) -> None:
-        """Forget everything: it is another site's."""
+        """Forget everything: it belongs to another site."""
         self._plans.clear()
         self.is_driving = None
 
@@ -175,7 +175,7 @@ class PlanCache:
 def plan_in(values: dict[str, Any]) -> KnownPlan:
     """Return the plan that a gateway sent as JSON.
 
-    :raises KeyError: for what is none; ValueError and TypeError likewise.
+    :raises KeyError: for an invalid plan; ValueError and TypeError likewise.
     """
     if len(values.get("stops") or ()) > MOST_STOPS:
         raise ValueError(f"plan {values['plan']!r} has more than {MOST_STOPS} stops")
@@ -191,18 +191,18 @@ def plan_in(values: dict[str, Any]) -> KnownPlan:
 
 
 def plans_in(values: dict[str, Any]) -> list[KnownPlan]:
-    """Return the plans in an answer, or in what comes with a refusal; raises as :func:`plan_in`."""
+    """Return the plans in an answer, or in the data of a refusal; raises as :func:`plan_in`."""
     if {"plan", "revision", "state", "submitted_by"} <= values.keys():
         return [plan_in(values)]
     return [plan_in(one) for one in values.get("plans") or ()]
 
 
 MOST_PLACEMENTS = 20_000
-"""cones that are kept; a gateway reports at most ``messages.records.MOST_PLACEMENTS`` at once."""
+"""Cones that are kept; a gateway reports at most ``messages.records.MOST_PLACEMENTS`` at once."""
 
 
 class PlacedConeCache:
-    """The newest report of each placed cone, by its number; of very many the newest."""
+    """The newest report of each placed cone, by number; if there are very many, the newest only."""
 
     def __init__(self) -> None:
         self._reports: dict[int, PlacementReport] = {}
@@ -214,7 +214,7 @@ class PlacedConeCache:
         return len(self._reports)
 
     def merge(self, reports: Mapping[int, PlacementReport]) -> list[int]:
-        """Take in reports and return the numbers of the cones of which they tell something new."""
+        """Apply reports and return the numbers of the cones that have changed."""
         new = [number for number, one in reports.items() if self._reports.get(number) != one]
         self._reports.update(reports)
         for number in sorted(self._reports)[: max(0, len(self._reports) - MOST_PLACEMENTS)]:
@@ -222,21 +222,21 @@ class PlacedConeCache:
         return new
 
     def clear(self) -> None:
-        """Forget everything: it is another site's."""
+        """Forget everything: it belongs to another site."""
         self._reports.clear()
 
 
 def placements_in(values: dict[str, Any]) -> list[PlacementReport]:
-    """Return the placed cones in an answer; raises KeyError or TypeError for what names itself one."""
+    """Return the placed cones in an answer; raises KeyError or TypeError for an invalid one."""
     return [placement_report(placement) for placement in values.get("placements") or ()]
 
 
 MOST_REVIEWED = 1000
-"""Reviewed ones that are kept; those that wait for their review are all kept."""
+"""Reviewed ones that are kept; those waiting for review are all kept."""
 
 
 class ObservationCache:
-    """The newest report of each observation, by its number."""
+    """The newest report of each observation, by number."""
 
     def __init__(self) -> None:
         self._reports: dict[int, ObservationReport] = {}
@@ -249,11 +249,11 @@ class ObservationCache:
 
     @property
     def pending(self) -> int:
-        """How many wait for their review."""
+        """The number of those waiting for review."""
         return sum(is_pending(report) for report in self._reports.values())
 
     def merge(self, reports: Mapping[int, ObservationReport]) -> list[int]:
-        """Take in reports and return the numbers of those of which they tell something new."""
+        """Apply reports and return the numbers of those that have changed."""
         new = [number for number, one in reports.items() if self._reports.get(number) != one]
         self._reports.update(reports)
         if new:
@@ -267,23 +267,23 @@ class ObservationCache:
         return self._reports.get(number)
 
     def ordered(self) -> list[ObservationReport]:
-        """Return all, those that wait first, of these the newest first."""
+        """Return all, those waiting first, of these the newest first."""
         return sorted(self._reports.values(), key=lambda one: (not is_pending(one), -one.observation))
 
     def clear(self) -> None:
-        """Forget everything: it is another site's."""
+        """Forget everything: it belongs to another site."""
         self._reports.clear()
 
 
 def is_pending(report: ObservationReport) -> bool:
-    """Tell whether nobody has reviewed an observation yet."""
+    """Return whether an observation has not been reviewed yet."""
     return report.state is ObservationState.PENDING
 
 
 def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
     """Return the observations in an answer.
 
-    :raises KeyError: for what names itself one and is none; ValueError and TypeError likewise.
+    :raises KeyError: for an invalid one; ValueError and TypeError likewise.
     """
     if {"observation", "op", "object", "state"} <= values.keys():
         return [observation_report(values)]
@@ -291,12 +291,12 @@ def observations_in(values: dict[str, Any]) -> list[ObservationReport]:
 
 
 GEOFENCE_SILENT_AFTER = 10.0
-"""Seconds without a word after which nothing is known: a gateway tells of them every few seconds."""
+"""Seconds without a report after which nothing is known: a gateway sends one every few seconds."""
 NAMED = 3
 
 
 class GeofenceState:
-    """Keeps the newest report, for as long as it counts by ``clock``."""
+    """Keeps the newest geofence report, for as long as it counts by ``clock``."""
 
     def __init__(self, clock: Clock):
         self._clock = clock
@@ -304,20 +304,20 @@ class GeofenceState:
         self._since = clock.steady()
 
     def update(self, report: Geofence) -> None:
-        """Take in what the gateway told."""
+        """Apply a report of the gateway."""
         self._report, self._since = report, self._clock.steady()
 
     def begin_link(self) -> None:
-        """Wait for the first word on a new link; what was told on the one before holds until then."""
+        """Wait for the first report on a new link; that of the previous link holds until then."""
         self._since = self._clock.steady()
 
     def clear(self) -> None:
-        """Forget everything, and wait for the first word of another gateway."""
+        """Forget everything, and wait for the first report of another gateway."""
         self._report, self._since = None, self._clock.steady()
 
     @property
     def is_silent(self) -> bool:
-        """Whether the gateway has not told of them for so long that nothing is known."""
+        """Whether the last report is so old that nothing is known."""
         return self._clock.steady() - self._since > GEOFENCE_SILENT_AFTER
 
     @property
@@ -326,7 +326,7 @@ class GeofenceState:
         return [] if self._report is None or self.is_silent else self._report.alarms
 
     def why_not(self) -> str:
-        """Return what is not watched and why, empty when everything is or nothing was to be heard yet."""
+        """Return what is not watched and why, empty when everything is or no report was due yet."""
         if self.is_silent:
             return tr(
                 "Keepouts and obstacles are not watched: the gateway tells nothing of them. It may be older "
@@ -367,11 +367,11 @@ def _more(report: Geofence) -> str:
 
 
 NEARNESS_SILENT_AFTER = 5.0
-"""Seconds without a word after which nobody is near: as long as somebody is, it is told every second."""
+"""Seconds without a report after which nobody is near: it is sent every second while somebody is."""
 
 
 class NearnessState:
-    """Keeps the newest report, for as long as it counts by ``clock``."""
+    """Keeps the newest nearness report, for as long as it counts by ``clock``."""
 
     def __init__(self, clock: Clock):
         self._clock = clock
@@ -379,7 +379,7 @@ class NearnessState:
         self._since = clock.steady()
 
     def update(self, report: Nearness) -> None:
-        """Take in what the gateway told."""
+        """Apply a report of the gateway."""
         self._report, self._since = report, self._clock.steady()
 
     def clear(self) -> None:
@@ -388,7 +388,7 @@ class NearnessState:
 
     @property
     def alarms(self) -> list[NearnessAlarm]:
-        """Who is near which robot now, or will be soon."""
+        """Pairs of robots that are near each other now, or will be soon."""
         report = self._current()
         return [] if report is None else report.alarms
 

@@ -1,4 +1,4 @@
-"""The robots of a message that tells each as a JSON object, made a table."""
+"""Conversion of messages with one JSON object per robot to a table."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ def table_from_rows(
 ) -> RobotTable:
     """Return the reports of one message, all of which arrived at ``received``.
 
-    Its ``params`` tell which robots are there no more.
+    Its ``params`` name the robots that no longer exist.
 
-    :raises ValueError: when a number is none, or not finite, or a text is none; it names it and the robot.
+    :raises ValueError: naming the value and the robot, when a number is not finite or a text is none.
     :raises KeyError: when a report lacks its robot, state, age or link.
     """
-    # What is told twice counts as told last, in the place where it was told first.
+    # Of duplicates the last one counts, in the place of the first.
     rows = list({values["robot"]: values for values in rows}.values())
     names = [values["robot"] for values in rows]
     if not all(isinstance(name, str) for name in names):
@@ -53,7 +53,7 @@ def _numbers_of(name: str, names: list[str], values: list[Any]) -> npt.NDArray[n
 
 
 def _as_numbers(values: list[Any], *, may_miss: bool) -> npt.NDArray[np.float64] | None:
-    """Return finite numbers, and NaN for None where they may miss; None when anything else is among them."""
+    """Return finite numbers, NaN for None if ``may_miss``; None when there is anything else among them."""
     kinds = set(map(type, values))
     if not kinds <= {float, int, type(None)}:
         return None
@@ -67,11 +67,11 @@ def _as_numbers(values: list[Any], *, may_miss: bool) -> npt.NDArray[np.float64]
 
 
 def _places_of(name: str, names: list[str], values: list[Any], words: dict[str | None, float]) -> list[float]:
-    """Return the place of each text among ``words``, which grow by those that are new."""
+    """Return the index of each text in ``words``, to which new ones are added."""
     for robot, value in zip(names, values, strict=True):
         if not isinstance(value, str) and (value is not None or name in positions.POSITION_ALWAYS):
             raise ValueError(f"{name} of robot {robot} is {value!r}, not a text")
-    # None is among them as well, so that a new word's place is one less than how many there are.
+    # None is a key as well, so that a new word's index is one less than the length.
     return [words.setdefault(value, len(words) - 1) for value in values]
 
 

@@ -1,4 +1,4 @@
-"""Robots as last reported: a table filled by messages, and how far it can be trusted as time goes on."""
+"""Robots as last reported: a table filled by messages, and the robots' state as time passes."""
 
 from __future__ import annotations
 
@@ -16,30 +16,30 @@ from ...robot_bridge.core.messages.positions import FleetView, RobotReport, flee
 from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 
-# Ten thousand robots ten times a second are too many to make an object of each. A snapshot becomes columns on
+# Ten thousand robots ten times a second are too many for an object each. A snapshot becomes columns on
 # the thread of the connection; the window works on whole columns and makes a report only of the robot that
-# somebody looks at.
+# is selected.
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 STATE_CODES = {state.value: code for code, state in enumerate(STATES)}
 UNSURE = len(STATES)
-"""The look of a robot that is fresh and may not be where it is shown; of others it is the code of their
-state."""
+"""The display state of a robot that is fresh and may not be where it is shown; of others it is the code of
+their state."""
 LOOKS = (*range(len(STATES)), UNSURE)
 WORDED = tuple(name for name in positions.POSITION_TEXTS if name != "state")
 COLUMNS = (*positions.POSITION_NUMBERS, *WORDED, "state", "stopped", "received")
 """``state`` is an index into :data:`STATES`, ``received`` is on the monotonic clock, those of :data:`WORDED`
-are indices into the words of the table; NaN is what is not known."""
+are indices into the words of the table; NaN stands for unknown."""
 AT = {name: column for column, name in enumerate(COLUMNS)}
 SPARE_WORDS = 1000
-"""Words beyond two for each robot before those are forgotten that no robot says any more."""
+"""Words beyond two for each robot before those that no robot uses any more are forgotten."""
 _TEXTS_AT = [AT[name] for name in WORDED]
 
 Numbers = npt.NDArray[np.float64]
 
 
 class RemovedRobots(NamedTuple):
-    """Robots that are there no more, those that are out of view, and (n,) the rows that all these had."""
+    """Robots that no longer exist, those that are out of view, and (n,) the rows that all these had."""
 
     names: frozenset[str]
     rows: npt.NDArray[np.intp]
@@ -47,17 +47,17 @@ class RemovedRobots(NamedTuple):
 
     @property
     def all_names(self) -> frozenset[str]:
-        """Those of whom nothing is known from now on, whether they are there or not."""
+        """Those of which nothing is known from now on, whether or not they exist."""
         return self.names | self.untracked
 
 
 class RobotTable:
-    """The newest that was told of each robot, one row each. A robot keeps its row until one is removed.
+    """The newest values of each robot, one row each. A robot keeps its row until one is removed.
 
     ``names`` has the n names, no two the same; ``numbers`` is (len(COLUMNS), n); ``words`` are the texts that
-    it points at. All are the table's own from then on. With ``everything`` there are no other robots;
-    ``removed`` are gone for good. With ``view`` they are those of a view: others than ``everything`` are out
-    of it, as ``untracked`` are.
+    it refers to. The table takes ownership of all of them. With ``everything`` there are no other robots;
+    ``removed`` are gone for good. With ``view`` they are those of a view: with ``everything`` all others are
+    out of it, as ``untracked`` are.
     """
 
     def __init__(
@@ -87,18 +87,18 @@ class RobotTable:
 
     @property
     def tells_nothing(self) -> bool:
-        """Whether there is nothing in it."""
+        """Whether it is empty."""
         return not (self.names or self.removed or self.untracked or self.everything or self.view)
 
     def gone_by(self, newer: RobotTable) -> list[int]:
-        """Return the rows of the robots that are there no more or out of view, as ``newer`` tells."""
+        """Return the rows of the robots that by ``newer`` no longer exist or are out of view."""
         if newer.everything:
             return [row for row, name in enumerate(self.names) if name not in newer]
         gone = newer.removed | newer.untracked
         return sorted(row for name in gone if (row := self.row(name)) is not None)
 
     def drop(self, rows: Collection[int]) -> None:
-        """Take robots out; those below them move up."""
+        """Remove robots; those below them move up."""
         kept = np.delete(np.arange(len(self)), list(rows))
         self.names = [self.names[row] for row in kept.tolist()]
         self._numbers = self._numbers[:, kept]
@@ -109,17 +109,17 @@ class RobotTable:
         return self._numbers[AT[name], : len(self.names)]
 
     def texts(self, name: str) -> tuple[Numbers, list[str]]:
-        """Return one of :data:`WORDED` as (n,) places in the words, NaN where none, and the words."""
+        """Return one of :data:`WORDED` as (n,) indices of words, NaN where none, and the words."""
         return self.column(name), self._words
 
     def row(self, name: str) -> int | None:
-        """Return the row of robot ``name``, None if nothing was told of it."""
+        """Return the row of robot ``name``, None if nothing is known of it."""
         return self._rows.get(name)
 
     def row_values(self, row: int) -> dict[str, Any]:
-        """Return what was told last of the robot in ``row``: what its report holds, as JSON values."""
+        """Return the last values of the robot in ``row``: the fields of its report, as JSON values."""
         values = zip(COLUMNS, self._numbers[:, row].tolist(), strict=True)
-        # NaN is the one value that is not equal to itself.
+        # NaN is the only value that is not equal to itself.
         found: dict[str, Any] = {name: value for name, value in values if value == value}
         for name in WORDED:
             if name in found:
@@ -131,13 +131,13 @@ class RobotTable:
         return found
 
     def report(self, row: int) -> RobotReport:
-        """Return what was told last of the robot in ``row``."""
+        """Return the last report of the robot in ``row``."""
         return robot_report(self.row_values(row))
 
     def merge(self, newer: RobotTable) -> RemovedRobots:
-        """Take over what is in ``newer``, which is used up, unless it arrived before what is known.
+        """Take over the rows of ``newer``, which is used up, unless it arrived before the known ones.
 
-        Return the robots that are there no more, or out of view.
+        Return the robots that no longer exist, or are out of view.
         """
         rows = self.gone_by(newer)
         names = frozenset(self.names[row] for row in rows)
@@ -148,16 +148,16 @@ class RobotTable:
         self.view = newer.view if newer.everything or newer.view else self.view
         self.everything |= newer.everything
         self.removed |= newer.removed
-        # In place: who pans over a large fleet leaves many names behind.
+        # In place: panning over a large fleet leaves many names behind.
         self.untracked |= newer.untracked
         for away in (self.removed, self.untracked):
-            # To look for ten thousand names in nothing takes as long as all else here.
+            # Searching ten thousand names in an empty table takes as long as all else here.
             if away:
                 away.difference_update(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
         self._say_in_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
-            # Everything again, as when all robots drive: no need to look for each one's row.
+            # The same robots again, as when all drive: no need to search each one's row.
             self._numbers = numbers
         else:
             rows = self._rows_of(newer.names)
@@ -168,18 +168,18 @@ class RobotTable:
         return gone
 
     def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
-        """Make places in ``words`` places in this table's own, which grow by those that are new."""
+        """Convert indices of ``words`` to indices of this table's own, to which new ones are added."""
         own = [self._places.setdefault(word, len(self._places)) for word in words]
         self._words += list(self._places)[len(self._words) :]
-        # A gateway that tells of the same robots again does so in the same words.
+        # A gateway that reports the same robots again uses the same words.
         if own != list(range(len(own))):
-            # What is not known points at the last one, which is none.
+            # Unknown values refer to the last one, which is NaN.
             known = np.array([*own, np.nan])
             places = _places(numbers[_TEXTS_AT], len(words))
             numbers[_TEXTS_AT] = known.take(places)
 
     def _forget_words(self) -> None:
-        """Keep the words that some robot says."""
+        """Keep the words that some robot uses."""
         texts = self._numbers[_TEXTS_AT, : len(self)]
         used = np.unique(texts[np.isfinite(texts)]).astype(np.intp)
         words, self._words, self._places = self._words, [], {}
@@ -203,7 +203,7 @@ class RobotTable:
 
 
 def _places(places: Numbers, unknown: int) -> npt.NDArray[np.intp]:
-    """Return places in the words, ``unknown`` where none is known."""
+    """Return indices of words, ``unknown`` where there is none."""
     # np.nan_to_num takes several times as long.
     return np.where(np.isnan(places), unknown, places).astype(np.intp)
 
@@ -212,9 +212,9 @@ def _places(places: Numbers, unknown: int) -> npt.NDArray[np.intp]:
 
 
 def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
-    """Return who is gone, by a message, and what is known of the others, as :class:`RobotTable` has them.
+    """Return the robots removed by a message, and the view of the others, as :class:`RobotTable` takes them.
 
-    An older gateway tells nothing of that. Raises ValueError where they are not what they have to be.
+    An older gateway sends none of that. Raises ValueError where they are invalid.
     """
     everything = params.get("everything", False)
     if not isinstance(everything, bool):
@@ -225,7 +225,7 @@ def removed_robots(params: dict[str, Any]) -> dict[str, Any]:
 
 
 def check_texts(name: str, values: Any) -> list[str]:
-    """Return ``values``, a list of texts; raises ValueError, with its ``name``, for anything else."""
+    """Return ``values``, a list of texts; raises ValueError with its ``name`` for anything else."""
     if not isinstance(values, list) or not set(map(type, values)) <= {str}:
         raise ValueError(f"{name} is not a list of texts")
     return values
@@ -237,7 +237,7 @@ _KNOWN = {*positions.POSITION_NUMBERS, *positions.POSITION_FLAGS, *positions.POS
 def table_from_frame(frame: bytes, received: float) -> RobotTable:
     """Return the robots in one binary frame, all of which arrived at ``received``.
 
-    :raises ValueError: when it is not such a frame, or something in it is not what it has to be.
+    :raises ValueError: when it is not such a frame, or something in it is invalid.
     :raises KeyError: when the head lacks something.
     """
     params, robots, columns, words, table = split_frame(frame)
@@ -256,17 +256,17 @@ def table_from_frame(frame: bytes, received: float) -> RobotTable:
 
 
 def _states(words: list[str]) -> list[float]:
-    """Return which of STATES each word is, NaN for one that is none."""
+    """Return the index of each word in STATES, NaN for an unknown one."""
     return [STATE_CODES.get(word, np.nan) for word in words]
 
 
 def _check_column(name: str, column: npt.NDArray[np.float64], robots: list[str], words: int) -> None:
-    """Raise ValueError unless everything in ``column`` can be what it has to be."""
+    """Raise ValueError unless all values in ``column`` are valid."""
     wrong = np.isinf(column)
     if name in positions.POSITION_ALWAYS:
         wrong |= np.isnan(column)
     if name in positions.POSITION_TEXTS:
-        # What is NaN compares false.
+        # NaN compares false.
         wrong |= (column < 0) | (column >= words) | (column > np.floor(column))
     if wrong.any():
         row = int(wrong.argmax())
@@ -277,11 +277,11 @@ def _check_column(name: str, column: npt.NDArray[np.float64], robots: list[str],
 
 _NUMBER = re.compile(r"[0-9]+")
 _DIGITS = 20
-"""To so many digits numbers within names are compared as numbers."""
+"""Number of digits up to which numbers within names are compared as numbers."""
 
 
 def name_order(name: str) -> str:
-    """Return what ``name`` is sorted by; no two names have the same."""
+    """Return the sort key of ``name``; no two names have the same."""
     filled = _NUMBER.sub(lambda number: number[0].zfill(_DIGITS), name.casefold())
     return f"{filled}\0{name}"
 
@@ -291,7 +291,7 @@ _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
 
 @dataclass(frozen=True)
 class RobotView:
-    """One robot at one moment: what was told of it last, its state now and its age in seconds now."""
+    """One robot at one moment: its last values, its state now and its age in seconds now."""
 
     name: str
     values: dict[str, Any]
@@ -305,7 +305,7 @@ class RobotView:
 
     @property
     def has_pose(self) -> bool:
-        """Whether the robot ever said where it is."""
+        """Whether the robot has ever reported its position."""
         return self.values.get("x") is not None and self.values.get("y") is not None
 
     @property
@@ -315,15 +315,15 @@ class RobotView:
 
     @property
     def shown_as(self) -> int:
-        """How it is shown: index into :data:`STATES`, or :data:`UNSURE`."""
+        """Its display state: index into :data:`STATES`, or :data:`UNSURE`."""
         return UNSURE if self.is_doubted and self.state is RobotState.FRESH else STATES.index(self.state)
 
 
 @dataclass(frozen=True)
 class RobotArrays:
-    """The robots at one moment, as arrays of one row each; a robot keeps its row in one arrangement.
+    """The robots at one moment, as arrays with one row each; a robot keeps its row in one arrangement.
 
-    ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres a
+    ``xy`` (n, 2) metres in the site frame, ``theta`` (n,) radians in the site frame, ``v`` (n,) metres per
     second, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
     ``age`` (n,) seconds since the last message; ``doubted`` (n,) whether it may not be where ``xy`` is.
     """
@@ -339,17 +339,16 @@ class RobotArrays:
 
     @cached_property
     def shown_as(self) -> npt.NDArray[np.intp]:
-        """(n,) how each is shown: index into :data:`STATES`, or :data:`UNSURE`."""
+        """(n,) display state of each: index into :data:`STATES`, or :data:`UNSURE`."""
         if not self.doubted.any():
             return self.state
         return np.where(self.doubted & (self.state == _FRESH), UNSURE, self.state)
 
 
 class RobotStates:
-    """The newest sighting of every robot, aged by this computer's own clock.
+    """The newest values of every robot, aged by this computer's own clock.
 
-    A gateway that falls silent says nothing about its robots any more: they turn stale and lost here all
-    the same, and stay on the map.
+    When a gateway falls silent, its robots turn stale and lost here all the same, and stay on the map.
     """
 
     def __init__(self, stale_after: float = 3.0, lost_after: float = 10.0):
@@ -358,33 +357,33 @@ class RobotStates:
         self.generation = 0
         """Counts how often everything was forgotten: rows of another generation are other robots."""
         self.arrangement = 0
-        """Counts how often rows became other robots': all were forgotten, or one was removed."""
+        """Counts how often rows were assigned to other robots: all were forgotten, or one was removed."""
         self.revision = 0
-        """Counts how often something was taken in."""
+        """Counts the updates applied."""
         self.fleet: FleetView | None = None
-        """The fleet as a whole, where the desk is told of the robots in its view; None where of every one."""
+        """The fleet as a whole, where the desk receives the robots in its view only; None otherwise."""
         self._seen = RobotTable()
         self._names: list[str] = []
         self._by_name: list[int] = []
         self._orders: list[str] = []
-        """What the robots are sorted by, by row."""
+        """The sort keys of the robots, by row."""
 
     def __len__(self) -> int:
         return len(self._seen)
 
     @property
     def count(self) -> int:
-        """How many robots there are, those out of view among them."""
+        """Number of robots, including those out of view."""
         return len(self._seen) if self.fleet is None else self.fleet.robots
 
     def set_limits(self, stale_after: float, lost_after: float) -> None:
-        """Have robots count as stale and as lost after so many seconds without a message."""
+        """Set the seconds without a message after which robots count as stale and as lost."""
         self.stale_after, self.lost_after = stale_after, lost_after
 
     def merge(self, sightings: RobotTable) -> RemovedRobots:
-        """Take in newer sightings; one that arrived before what is known is passed over.
+        """Apply newer values; those that arrived before the known ones are ignored.
 
-        Return the robots that are there no more, or out of view.
+        Return the robots that no longer exist, or are out of view.
         """
         if sightings.tells_nothing:
             return RemovedRobots(frozenset(), np.empty(0, dtype=np.intp))
@@ -393,7 +392,7 @@ class RobotStates:
             self.fleet = sightings.view
         self.revision += 1
         if len(gone.rows):
-            # To find again what thousands are sorted by takes longer than all else, and robots leave views
+            # Computing the sort keys of thousands again takes longer than all else, and robots leave views
             # all the time.
             rows = set(gone.rows.tolist())
             self._orders = [order for row, order in enumerate(self._orders) if row not in rows]
@@ -415,12 +414,12 @@ class RobotStates:
         return self._seen.row(name)
 
     def view(self, name: str, now: float) -> RobotView | None:
-        """Return robot ``name`` as it is to be shown at ``now`` (monotonic clock), None if not known."""
+        """Return robot ``name`` as displayed at ``now`` (monotonic clock), None if not known."""
         row = self._seen.row(name)
         return None if row is None else self.views(now, [row])[0]
 
     def views(self, now: float, rows: list[int] | None = None) -> list[RobotView]:
-        """Return the robots in ``rows``, or every one by name, as they are to be shown at ``now``."""
+        """Return the robots in ``rows``, or every one by name, as displayed at ``now``."""
         rows = self.by_name() if rows is None else rows
         state, age = self._aged(now, rows)
         return [
@@ -429,7 +428,7 @@ class RobotStates:
         ]
 
     def arrays(self, now: float, rows: slice = slice(None)) -> RobotArrays:
-        """Return the robots in ``rows`` at ``now``; NaN is the place of one that never said where it is."""
+        """Return the robots in ``rows`` at ``now``; the position is NaN where never reported."""
         seen = self._seen
         state, age = self._aged(now, rows)
         x = seen.column("x")[rows]
@@ -447,31 +446,31 @@ class RobotStates:
         )
 
     def column(self, name: str) -> Numbers:
-        """Return (n,) of one of :data:`COLUMNS` of every robot, NaN where nothing was told."""
+        """Return one of :data:`COLUMNS`, (n,), of every robot, NaN where not reported."""
         return self._seen.column(name).copy()
 
     def texts(self, name: str, rows: slice = slice(None)) -> list[str]:
-        """Return what the robots in ``rows`` told last as the text ``name``, empty where nothing."""
+        """Return the last text ``name`` of the robots in ``rows``, empty where there is none."""
         places, words = self._seen.texts(name)
-        # What is not known points behind the last word.
+        # Unknown values refer to the entry behind the last word.
         found = [*words, ""]
         at = _places(places[rows], len(words))
         return [found[place] for place in at.tolist()]
 
     def says(self, name: str, word: str) -> npt.NDArray[np.bool_]:
-        """Tell which robots' text ``name`` holds ``word``, in lower case; the empty word is in any text."""
+        """Return which robots' text ``name`` contains ``word``, in lower case; all contain the empty word."""
         places, words = self._seen.texts(name)
-        # What is not known points behind the last word.
+        # Unknown values refer to the entry behind the last word.
         holds = np.array([bool(text) and word in text.casefold() for text in words] + [False])
         return holds[_places(places, len(words))]
 
     def only_seen(self) -> npt.NDArray[np.bool_]:
-        """Tell which robots said that they take no commands."""
+        """Return which robots have declared that they accept no commands."""
         places, words = self._seen.texts("abilities")
         return places == words.index("") if "" in words else np.zeros(len(places), dtype=bool)
 
     def doubts(self) -> dict[int, str]:
-        """Return by row why robots may not be where they are shown, of those that may not."""
+        """Return by row the reasons why robots may not be where they are shown."""
         places, words = self._seen.texts("doubt")
         rows = np.flatnonzero(places == places)
         found = places[rows].astype(np.intp).tolist()
@@ -483,11 +482,11 @@ class RobotStates:
         return {names[row] for row in self.doubts()}
 
     def row_values(self, row: int) -> dict[str, Any]:
-        """Return what was told last of the robot in ``row``, as it came."""
+        """Return the last values of the robot in ``row``, as received."""
         return self._seen.row_values(row)
 
     def _all_names(self) -> list[str]:
-        """Return every name by row: the same list until there are more of them."""
+        """Return every name by row: the same list object until there are more of them."""
         if len(self._names) != len(self._seen):
             self._names = list(self._seen.names)
         return self._names
@@ -501,12 +500,12 @@ class RobotStates:
         return self._by_name
 
     def _aged(self, now: float, rows: list[int] | slice) -> tuple[npt.NDArray[np.intp], Numbers]:
-        """Return states and ages, as ``gateway.model.robot_columns.liveness`` says of a robot that is not
+        """Return states and ages, as ``gateway.model.robot_columns.liveness`` does for a robot that is not
         expected to be silent."""
         age = self._seen.column("age")[rows] + np.maximum(0.0, now - self._seen.column("received")[rows])
         state = self._seen.column("state")[rows].astype(np.intp)
         silent = np.flatnonzero(~(age < self.stale_after))
         reported, here = state[silent], np.where(age[silent] < self.lost_after, _STALE, _LOST)
-        # The gateway knows more than the age tells: which robots said that they would be silent.
+        # The gateway knows more than the age: which robots have announced that they would be silent.
         state[silent] = np.where((reported == _LOST) | (reported == _OFFLINE), reported, here)
         return state, age

@@ -40,11 +40,11 @@ MEETINGS = {
     "following": tr("following"),
     "standing": tr("standing"),
 }
-"""How two robots come into each other's way, by the kind of a ConflictReport."""
+"""How two robots will be in each other's way, by the kind of a ConflictReport."""
 
 
 def part_in_words(robots: RobotStates) -> str:
-    """Return of how many of all robots the desk is told; empty where of every one."""
+    """Return how many of all robots the desk receives; empty where it receives every one."""
     if robots.fleet is None:
         return ""
     return tr(
@@ -60,7 +60,7 @@ def longest_word(words: Iterable[str]) -> str:
 
 
 def look_in_words(look: int) -> str:
-    """Return the word for how a robot is shown: its state, or that it may be elsewhere."""
+    """Return the word for a display state: the robot's state, or that it may be elsewhere."""
     return tr("unsure") if look == UNSURE else ROBOT_STATES[STATES[look]]
 
 
@@ -78,7 +78,7 @@ TASK_KINDS = {
 
 
 def task_in_words(task: TaskReport) -> str:
-    """Return what is done where, as in ``place cone K7 at 12.30, 40.00``."""
+    """Return action and place of a task, as in ``place cone K7 at 12.30, 40.00``."""
     name = f" {task.label or task.cone}" if task.label or task.cone else ""
     way = tr(", a path of {path_points} points", path_points=task.path_points) if task.path_points else ""
     return tr(
@@ -92,13 +92,13 @@ def task_in_words(task: TaskReport) -> str:
 
 
 def task_state_in_words(task: TaskReport) -> str:
-    """Return how far a task is, and why where there is something to say."""
+    """Return the progress of a task, and the reason where there is one."""
     text = TASK_STATES[task.state]
     return f"{text}: {task.reason}" if task.reason else text
 
 
 def queue_in_words(queue: QueueReport) -> str:
-    """Return whether a queue goes on, and who paused it when and why."""
+    """Return whether a queue continues, and who paused it when and why."""
     count = tr_count(len(queue.tasks), "1 task", "%n tasks")
     if queue.state is QueueState.PAUSED:
         when = f", {time_of_day(queue.at)}" if queue.at is not None else ""
@@ -122,7 +122,7 @@ def queue_in_words(queue: QueueReport) -> str:
 
 
 def last_ended_in_words(queue: QueueReport) -> str:
-    """Return what ended last; empty where nothing did."""
+    """Return the task that ended last; empty where none did."""
     if not queue.ended:
         return ""
     task = queue.ended[0]
