@@ -34,47 +34,47 @@ from ..ui.tables import TimeColumn, ZoomMenu, shrink_view, write_csv
 from .command_log_model import CSV_HEAD, PAGE, CommandChoice, CommandFilter, LogModel, csv_rows, summary
 
 OLDER = 1000
-"""Commands that are asked for at once."""
+"""Commands requested at once."""
 MOST_REQUESTS = 20
-"""Robots that are asked for one by one; of more of them the commands of all are."""
+"""Robots that are queried one by one; for more of them the commands of all are."""
 
 
 @dataclass
 class HistoryRequest:
-    """One press of the button: the commands ``known`` by then, and what its ``waiting`` answers told."""
+    """One press of the button: the commands ``known`` by then, and the results of its ``waiting`` queries."""
 
     known: frozenset[str]
     requested_at: float
-    """Monotonic seconds."""
+    """On the monotonic clock, seconds."""
     waiting: int = 0
     came: int = 0
-    """Commands that were not known and are in the book now."""
+    """Number of commands that were new to the cache."""
     ends_here: bool = False
     """Whether there may be older ones that the log does not reach."""
     is_refused: bool = False
     is_overdue: bool = False
-    """Whether it was told that the gateway does not answer."""
+    """Whether it was reported that the gateway does not answer."""
 
 
 class OlderCommands(QObject):
-    """Asks for the newest commands of robots, among which are older ones than the desk was told by itself."""
+    """Requests the newest commands of robots, including those from before this desk connected."""
 
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
         self._wishes: dict[str, HistoryRequest] = {}
-        """By the keys of the questions that are not answered yet."""
+        """By the keys of the queries that are not answered yet."""
         desk.orders.answered.connect(self._answered)
         desk.state.updated.connect(self._watch)
         desk.state.site_changed.connect(self._site_changed)
 
     def ask(self, robots: frozenset[str] | None) -> None:
-        """Ask for the commands of ``robots``, None for all."""
+        """Request the commands of ``robots``, None for all."""
         wish = HistoryRequest(
             frozenset(report.command for report in self._desk.state.commands), self._desk.clock.steady()
         )
         try:
-            # Of very many robots the newest commands of all will do: the log holds no more.
+            # For very many robots the newest commands of all will do: the log holds no more.
             for robot in sorted(robots) if robots and len(robots) <= MOST_REQUESTS else [None]:
                 self._wishes[self._desk.orders.inquire(GetCommands(robot, OLDER), lasting=True)] = wish
                 wish.waiting += 1
@@ -82,7 +82,7 @@ class OlderCommands(QObject):
             wish.is_refused = True
             self._desk.warning.emit(str(error))
             return
-        # What is asked once more need not be told of twice, should the gateway answer after all.
+        # A repeated request is not reported twice, should the gateway answer after all.
         self._wishes = {key: one for key, one in self._wishes.items() if not one.is_overdue}
 
     def _answered(self, answer: RequestResult) -> None:
@@ -100,7 +100,7 @@ class OlderCommands(QObject):
             self._desk.info.emit(_in_words(wish))
 
     def _watch(self) -> None:
-        """Say so of a wish that waits for its answers too long, be it that the link is lost."""
+        """Report a request that waits too long for its answers, even if the link is lost."""
         now = self._desk.clock.steady()
         late = {
             id(wish): wish
@@ -119,18 +119,18 @@ class OlderCommands(QObject):
 
     def _site_changed(self) -> None:
         if len(self._desk.state.commands) == 0:
-            # Another gateway's robots are here now: what was asked of the one before is nobody's wish.
+            # The link leads to other robots now: requests to the gateway before are dropped.
             self._wishes.clear()
 
     def _look_at(self, notices: list[str], wish: HistoryRequest) -> None:
-        # The book has taken them in by now, and let go of the oldest where it was full.
+        # The cache has stored them by now, and dropped the oldest where it was full.
         kept = [command for command in notices if command in self._desk.state.commands]
         wish.came += sum(command not in wish.known for command in kept)
         wish.ends_here = wish.ends_here or len(notices) >= OLDER or len(kept) < len(notices)
 
 
 def _commands_in(answer: RequestResult) -> list[str]:
-    """Return the ids in an answer; the wire has read its commands before."""
+    """Return the ids in an answer; its commands were decoded before."""
     return [values["command"] for values in (answer.result or {}).get("commands", ())]
 
 
@@ -162,10 +162,10 @@ FILE = file_topic("command_log")
 
 
 class CommandLog(QWidget):
-    """Newest command on top; the newest one lies open until the next comes."""
+    """The log, newest command on top; the newest one is expanded until the next comes."""
 
     place_requested = pyqtSignal(float, float)
-    """Where a command leads to, metres in the site frame."""
+    """The goal of a command, metres in the site frame."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(parent)
@@ -196,11 +196,11 @@ class CommandLog(QWidget):
         self._allow()
 
     def refresh(self, *_what: object) -> None:
-        """List again what the filters keep."""
+        """List the commands again by the filters."""
         self._model.show_all(self._desk.state.commands, self.filter())
 
     def filter(self) -> CommandFilter:
-        """Return what the fields above the log say."""
+        """Return the filter set in the fields above the log."""
         whose = self._robots.currentIndex()
         robots = None if whose == 0 else frozenset({self._robots.currentText()})
         if whose == 1:
@@ -208,7 +208,7 @@ class CommandLog(QWidget):
         return CommandFilter(robots, list(CommandChoice)[self._which.currentIndex()])
 
     def export(self, path: str) -> None:
-        """Write what is listed, every step of it, to ``path`` and say so."""
+        """Write the listed commands with every step to ``path`` and report it."""
         self._desk.messages.end(FILE)
         try:
             count = write_csv(path, CSV_HEAD, csv_rows(self._model.shown))
@@ -225,7 +225,7 @@ class CommandLog(QWidget):
         )
 
     def ask_for_older(self) -> None:
-        """Ask the gateway for what was asked for before this desk came."""
+        """Request commands from before this desk connected."""
         self._older.ask(self.filter().robots)
 
     def _lay_out(self) -> None:
@@ -286,7 +286,7 @@ class CommandLog(QWidget):
         self._times.make_room((requested_at(shown[-1]) if shown else None) or None)
 
     def _let_go_of_old(self) -> None:
-        """Keep the view short while nobody looks at older commands: it lays out each row at each new one."""
+        """Shorten the view while no older commands are viewed: it lays out each row at each new one."""
         current = self.view.currentIndex()
         chosen = current.parent() if current.parent().isValid() else current
         if self.view.verticalScrollBar().value() == 0 and chosen.row() < PAGE:

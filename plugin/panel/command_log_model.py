@@ -54,13 +54,13 @@ class CommandChoice(str, Enum):
 
 @dataclass(frozen=True)
 class CommandFilter:
-    """Commands of these ``robots`` (None: of all) that are as ``which`` says."""
+    """A filter: commands of these ``robots`` (None: of all) that match ``which``."""
 
     robots: frozenset[str] | None = None
     which: CommandChoice = CommandChoice.ALL
 
     def keeps(self, report: CommandReport) -> bool:
-        """Tell whether a command is listed."""
+        """Return whether a command is listed."""
         if self.robots is not None and report.robot not in self.robots:
             return False
         if self.which is CommandChoice.OPEN:
@@ -69,7 +69,7 @@ class CommandFilter:
 
 
 def cells(report: CommandReport) -> tuple[str, str, str, str]:
-    """Return a command's row: time, what, state, and how far off or why or by whom."""
+    """Return a command's row: time, command, state, and deviation, reason or operator."""
     first = report.steps[0].at if report.steps else None
     return (
         short_time(first),
@@ -80,14 +80,14 @@ def cells(report: CommandReport) -> tuple[str, str, str, str]:
 
 
 def step_cells(step: CommandStep, report: CommandReport) -> tuple[str, str, str, str]:
-    """Return a step's row: time, by whom and why, state, and how far off."""
+    """Return a step's row: time, operator and reason, state, and deviation."""
     off = _off(report) if step.state is CommandState.REACHED else ""
     because = f": {step.reason}" if step.reason else ""
     return short_time(step.at), tr("by {by}", by=step.by) + because, state_word(report.op, step.state), off
 
 
 def summary(reports: Iterable[CommandReport]) -> str:
-    """Return how many commands are open, as in ``3 open: 1 queued, 2 acknowledged``."""
+    """Return the number of open commands, as in ``3 open: 1 queued, 2 acknowledged``."""
     states = [report.state for report in reports if report.state.is_open]
     if not states:
         return tr("None open")
@@ -125,7 +125,7 @@ def _details(report: CommandReport) -> str:
 
 
 def _off(report: CommandReport) -> str:
-    """Return how far from its target a robot stands; an abort has no target."""
+    """Return the distance of a robot from its target; an abort has no target."""
     if report.deviation is None or report.op == Abort.__name__:
         return ""
     return tr("{metres:.2f} m off", metres=report.deviation)
@@ -143,22 +143,22 @@ ANSWERED_ROLES = frozenset(
         Qt.ItemDataRole.FontRole,
     }
 )
-"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
+"""The item roles that this model supports; a view queries as many others for each cell that it paints."""
 PAGE = 200
-"""Commands that a view is told of at first, and each time that it comes to the end of those."""
+"""Commands that a view gets at first, and each time that it reaches the end of those."""
 MERGED = 500
-"""New commands that are sorted in one by one; of more of them all are listed again."""
+"""New commands that are sorted in one by one; with more of them all are listed again."""
 
 
 class LogModel(QAbstractItemModel):
-    """Lists what ``filter`` keeps. Of a step, the index holds the number of its command.
+    """Lists the commands that pass ``filter``. For a step, the index holds the number of its command.
 
-    A view lays out every row that it is told of, whenever one is added: it is told of the newest, and of
+    A view lays out every row of the model whenever one is added: it gets the newest, and
     older ones when it asks for more.
     """
 
     added = pyqtSignal()
-    """Commands came that were not listed before."""
+    """Commands arrived that were not listed before."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -166,9 +166,9 @@ class LogModel(QAbstractItemModel):
         self._filter = CommandFilter()
         self._shown: list[CommandReport] = []
         self._row_count = 0
-        """How many of those a view is told of."""
+        """The number of those that a view gets."""
         self._rows: dict[str, int] | None = {}
-        """The row of each command; None where it has to be counted again."""
+        """The row of each command; None where it must be computed again."""
         self._next_number = count(1)
         self._numbers: dict[str, int] = {}
         self._by_number: dict[int, str] = {}
@@ -177,11 +177,11 @@ class LogModel(QAbstractItemModel):
         self._bold.setBold(True)
 
     def follow(self, state: FleetState) -> None:
-        """List from now on what ``state`` learns of commands."""
+        """List commands from now on as they change in ``state``."""
         self._known = state.commands
         state.commands_changed.connect(self._take_in)
 
-    # --- what Qt asks ---
+    # --- Interface to Qt ---
 
     def index(self, row: int, column: int, parent: QModelIndex | None = None) -> QModelIndex:
         if not self.hasIndex(row, column, parent or QModelIndex()):
@@ -242,11 +242,11 @@ class LogModel(QAbstractItemModel):
             return self._bold if role == Qt.ItemDataRole.FontRole else for_letters(COMMAND_COLOURS[state])
         return None
 
-    # --- what it shows ---
+    # --- Content ---
 
     @property
     def filter(self) -> CommandFilter:
-        """What is listed."""
+        """The current filter."""
         return self._filter
 
     @property
@@ -255,22 +255,22 @@ class LogModel(QAbstractItemModel):
         return self._shown
 
     def show_all(self, reports: Iterable[CommandReport], filter: CommandFilter) -> None:
-        """Show those of ``reports`` that the filter keeps, and no others."""
+        """Show those of ``reports`` that pass the filter, and no others."""
         self.beginResetModel()
         self._filter = filter
         kept = [report for report in reports if filter.keeps(report)]
-        # Of one time those that were told last come first.
+        # Of equal times those that arrived last come first.
         kept.sort(key=requested_at)
         self._shown = kept[::-1]
         self._row_count = min(PAGE, len(kept))
         self._rows = None
-        # No index outlives this, so no number is needed any more: they would add up over a shift.
+        # No index outlives this, so all numbers are dropped: they would add up over a shift.
         self._numbers.clear()
         self._by_number.clear()
         self.endResetModel()
 
     def merge(self, reports: Iterable[CommandReport]) -> list[str]:
-        """Take in new reports and return the commands that were not listed before."""
+        """Apply new reports and return the commands that were not listed before."""
         new, gone = [], []
         for report in reports:
             row = self.row_of(report.command)
@@ -284,20 +284,20 @@ class LogModel(QAbstractItemModel):
         return [report.command for report in new]
 
     def keep(self, commands: Container[str]) -> None:
-        """List none that is not among ``commands`` any more."""
+        """Remove commands that are not among ``commands``."""
         for row in reversed(range(len(self._shown))):
             if self._shown[row].command not in commands:
                 self._remove(row)
 
     def shorten(self) -> None:
-        """Tell a view of the first page only, as long as it has not asked for more than comes in a while."""
+        """Give a view the first page only, unless it has asked for more than arrives in a while."""
         if self._row_count > 2 * PAGE:
             self.beginRemoveRows(QModelIndex(), PAGE, self._row_count - 1)
             self._row_count = PAGE
             self.endRemoveRows()
 
     def report_at(self, index: QModelIndex) -> CommandReport | None:
-        """Return the command of a row, be it its own or that of a step."""
+        """Return the command of a row, which may be a step's."""
         if not index.isValid():
             return None
         row = index.row() if index.internalId() == 0 else self.parent(index).row()
@@ -310,7 +310,7 @@ class LogModel(QAbstractItemModel):
         return self._rows.get(command)
 
     def _take_in(self, reports: list[CommandReport]) -> None:
-        """Add what is new, and bring what is known up to date."""
+        """Add new commands, and update known ones."""
         if len(reports) > MERGED:
             self.show_all(self._known, self._filter)
         elif self.merge(reports):
@@ -318,14 +318,14 @@ class LogModel(QAbstractItemModel):
             self.added.emit()
 
     def _insert(self, reports: list[CommandReport]) -> None:
-        # Newest first, and of one time those that were told last.
+        # Newest first, and of equal times those that arrived last.
         newest_first = sorted(reports, key=requested_at)[::-1]
         places = [
             bisect.bisect_left(self._shown, -requested_at(report), key=lambda known: -requested_at(known))
             for report in newest_first
         ]
         end = len(newest_first)
-        # From the oldest on, so that the places of the others stay theirs.
+        # From the oldest on, so that the positions of the others remain valid.
         for place, run in groupby(reversed(places)):
             begin = end - len(list(run))
             self._insert_at(place, newest_first[begin:end])

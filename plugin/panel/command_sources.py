@@ -1,4 +1,4 @@
-"""Pending commands made of typed coordinates and of features selected in a layer."""
+"""Pending commands made from typed coordinates and from features selected in a layer."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ WGS84 = "EPSG:4326"
 
 
 class CoordinatesDialog(QDialog):
-    """Stays open: each press of the button, or Enter, sets the place; nothing here sends anything."""
+    """Stays open: each press of the button, or Enter, sets the place; this dialog never sends anything."""
 
     chosen = pyqtSignal(float, float)
     """A place in the site frame."""
@@ -73,7 +73,7 @@ class CoordinatesDialog(QDialog):
         self._set = QPushButton(tr("Set on the map"))
         self._set.setObjectName("fleet_coordinates_set")
         self._lay_out()
-        # Only within the dialog: Enter would be another button's once that had the keyboard.
+        # Only within the dialog: otherwise Enter would press another button once that had the focus.
         self._set.setDefault(True)
         self._text.textChanged.connect(self._read)
         self._crs.crsChanged.connect(self._read)
@@ -82,7 +82,7 @@ class CoordinatesDialog(QDialog):
         self._read()
 
     def ask(self) -> None:
-        """Come to the front, with what was written last in hand: what is typed takes its place."""
+        """Raise the dialog with its text selected, so that typing replaces it."""
         self.show()
         self.raise_()
         self.activateWindow()
@@ -114,9 +114,9 @@ class CoordinatesDialog(QDialog):
         self._set.setEnabled(self._place is not None)
 
     def _in_words(self) -> str:
-        """Read what is entered and return where that is.
+        """Read the coordinates entered and return a description of the place.
 
-        :raises FleetError: when it is no place, or there is no site yet.
+        :raises FleetError: when they are no place, or there is no site yet.
         """
         crs = self._crs.crs()
         site_crs = self._desk.site_to_canvas.transform().site_crs
@@ -146,11 +146,11 @@ NAME_FIELDS = ("id", "name", "label")
 
 
 class LayerCommandError(FleetError):
-    """A layer holds nothing that a draft could be made of."""
+    """A layer contains nothing that a draft could be made of."""
 
 
 def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> Steps[PendingCommand]:
-    """Make an unchecked draft for the selected robot of what is selected in ``layer``, or of all of it.
+    """Make an unchecked draft for the selected robot of the features selected in ``layer``, or of all.
 
     One point is a cone target, several points are several of them, one line is a route.
 
@@ -181,14 +181,14 @@ def command_from_layer(layer: QgsVectorLayer | None, desk: FleetController) -> S
 
 
 class LayerFacts(NamedTuple):
-    """What is known of a layer that may be gone when its features have been read."""
+    """Facts about a layer that may be gone when its features have been read."""
 
     name: str
     crs: QgsCoordinateReferenceSystem
 
 
 class _FeatureReader:
-    """Reads the features with the ids in ``chosen``, or as many of a layer as a queue takes; counts all."""
+    """Reads the features with the ids in ``chosen``, or as many of a layer as a queue accepts; counts all."""
 
     def __init__(self, layer: QgsVectorLayer, chosen: Sequence[int]):
         self._source = QgsVectorLayerFeatureSource(layer)
@@ -241,9 +241,9 @@ def _features(layer: QgsVectorLayer, name: str) -> Steps[list[QgsFeature]]:
 
 
 def _age(feature: QgsFeature) -> tuple[bool, int]:
-    """Return what tells older features from newer ones: QGIS hands over selected ones in any order.
+    """Return a key that sorts features by age: QGIS returns selected ones in any order.
 
-    Those that are not saved yet have numbers below zero, counted downwards.
+    Those not saved yet have numbers below zero, counted downwards.
     """
     return feature.id() < 0, abs(feature.id())
 
@@ -253,7 +253,7 @@ def _targets(
 ) -> PendingCommand:
     places, names = [], []
     for feature in features:
-        # Named, since its vertices do not keep it alive.
+        # Held in a variable, since its vertices do not keep it alive.
         geometry = _moved(feature, layer, desk)
         for vertex in geometry.vertices():
             places.append((vertex.x(), vertex.y()))

@@ -1,4 +1,4 @@
-"""Conflicts between robots, and the ways to resolve them."""
+"""Conflicts between robots, and their possible resolutions."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ from ..ui.tables import shrink_view
 Pair = tuple[str, str]
 
 ASK_EVERY = 3.0
-"""Seconds: robots drive on, and what was possible is so no longer."""
+"""Seconds: robots drive on, and an option may vanish."""
 ANSWERED_WITHIN = 10.0
-"""Seconds after which another question is asked, though the last one was not answered."""
+"""Seconds after which another query is sent, though the last one was not answered."""
 
 
 class ResolutionQuery(QObject):
-    """Asks for one pair at a time. What is known of a pair is forgotten when another one is watched."""
+    """Queries one pair at a time. The options of a pair are forgotten when another one is watched."""
 
     changed = pyqtSignal()
 
@@ -53,12 +53,12 @@ class ResolutionQuery(QObject):
         self._key: str | None = None
         self._requested_at = 0.0
         self.why_not = ""
-        """Why it is not known what the robots can do; empty where it is known or was just asked."""
+        """Why the options are unknown; empty where they are known or were just queried."""
         state.updated.connect(self._ask_again)
         requests.answered.connect(self._answered)
 
     def watch(self, pair: Pair | None, kind: str = "") -> None:
-        """Ask about ``pair`` from now on, None for no pair; at once where they meet in another way."""
+        """Query ``pair`` from now on, None for no pair; at once where the kind of conflict has changed."""
         if pair == self._pair:
             if kind != self._kind:
                 self._kind = kind
@@ -70,7 +70,7 @@ class ResolutionQuery(QObject):
         self.changed.emit()
 
     def way(self, robot: str, how: str) -> WayOut | None:
-        """Return what a robot can do: ``how`` is ``give way`` or ``aside``; None where that is not known."""
+        """Return an option of a robot: ``how`` is ``give way`` or ``aside``; None where that is not known."""
         return self._ways.get((robot, how))
 
     def _ask_again(self) -> None:
@@ -109,7 +109,7 @@ class ResolutionQuery(QObject):
 
 
 OVER_MS = 3000
-"""For so long the row of a conflict that is over stays, disabled: what is below it does not move up under
+"""Time for which the row of an ended conflict stays, disabled: rows below it do not move up under
 the mouse."""
 PAIR = Qt.ItemDataRole.UserRole
 NONE = tr("No robot is in another one's way.")
@@ -119,16 +119,16 @@ NOT_KNOWN_YET = tr("the gateway is being asked")
 
 
 class ConflictPanel(QWidget):
-    """A row for each conflict, and the buttons for the one that is chosen: a line for each of both robots.
+    """A row for each conflict, and buttons for the selected one: a column for each of both robots.
 
-    What a robot cannot do is disabled, with the reason as its tip and as a text; the buttons never move.
+    An option that is not available is disabled, with the reason as its tip and as a text; buttons never move.
 
     A conflict keeps its row until it is over, whatever becomes more urgent meanwhile, and the buttons are
-    never another conflict's than the operator chose: the first one is chosen by itself where there was none.
+    always for the conflict that the operator chose; the first one is chosen automatically where none was.
     """
 
     counted = pyqtSignal(int)
-    """How many conflicts there are now."""
+    """The number of conflicts."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(parent)
@@ -158,7 +158,7 @@ class ConflictPanel(QWidget):
         return None if item is None else self._conflicts.get(item.data(PAIR))
 
     def texts(self) -> list[str]:
-        """Return what stands in the rows."""
+        """Return the texts of the rows."""
         return [self._list.item(row).text() for row in range(self._list.count())]
 
     def _lay_out(self) -> None:
@@ -181,7 +181,7 @@ class ConflictPanel(QWidget):
 
     def hideEvent(self, event: QHideEvent) -> None:
         super().hideEvent(event)
-        # Nobody looks: the gateway need not compute it.
+        # The panel is not visible: the gateway need not compute it.
         self._ways.watch(None)
 
     def _button(self, pressed: Callable[[], None]) -> ElidedButton:
@@ -193,7 +193,7 @@ class ConflictPanel(QWidget):
         roads = self._desk.state.conflicts
         self._conflicts = {}
         for one in roads.conflicts:
-            # Of two between the same robots the sooner one, which comes first.
+            # If the same robots have two conflicts, take the sooner one, which comes first.
             self._conflicts.setdefault(_pair_of(one), one)
         self._drop_waiting()
         listed = self._renew_rows()
@@ -211,7 +211,7 @@ class ConflictPanel(QWidget):
         self.counted.emit(len(self._conflicts))
 
     def _renew_rows(self) -> set[Pair]:
-        """Bring the rows of conflicts up to date, and return their pairs."""
+        """Update the rows of conflicts, and return their pairs."""
         listed = set()
         for item in self._items():
             pair = item.data(PAIR)
@@ -229,7 +229,7 @@ class ConflictPanel(QWidget):
         return listed
 
     def _drop_over(self) -> None:
-        """Take away the rows of conflicts that are over."""
+        """Remove the rows of conflicts that are over."""
         for item in self._items():
             if item.data(PAIR) not in self._conflicts:
                 self._list.takeItem(self._list.row(item))
@@ -285,7 +285,7 @@ class ConflictPanel(QWidget):
                 tr("Stop {robot}", robot=robot),
                 tr("{robot} is paused: it stands, and keeps what it is doing for later", robot=robot),
             )
-        # Both columns may lack the same thing.
+        # Both columns may have the same reason.
         self._reasons.setText("\n".join(dict.fromkeys(reason for reason in reasons if reason)))
 
     def _disable(self, column: int) -> None:
@@ -299,7 +299,7 @@ class ConflictPanel(QWidget):
             buttons[column].set_words(text, CHOOSE_FIRST)
 
     def _show_give_way(self, column: int, robot: str, other: str) -> str:
-        """Show whether a robot can give way; return why not. Not known, it is asked by being pressed."""
+        """Show whether a robot can give way; return why not. If unknown, pressing the button asks for it."""
         way = self._ways.way(robot, GIVE_WAY)
         tip = tr(
             "{robot} waits for {other} or takes another way, whichever gets it there sooner",
@@ -348,9 +348,9 @@ class ConflictPanel(QWidget):
 
 
 def _pair_of(conflict: ConflictReport) -> Pair:
-    """Return the robots by name: which of them is told first changes with how they meet.
+    """Return the robots by name: the order in reports changes with the kind of conflict.
 
-    Told so, the buttons of one would be the other's from one moment to the next.
+    In that order, the buttons of one robot would suddenly become the other's.
     """
     first, second = sorted((conflict.robot, conflict.other))
     return first, second

@@ -43,7 +43,7 @@ BY_CONNECTION = tr("of the connection's authentication; enter another one for th
 
 
 class AccessFields(QWidget):
-    """Token, whether QGIS keeps it, and CA file. The token itself goes into no settings file."""
+    """Token, whether QGIS stores it, and CA file. The token itself is written to no settings file."""
 
     entered = pyqtSignal()
     """Enter was pressed in a field."""
@@ -73,7 +73,7 @@ class AccessFields(QWidget):
         self._lay_out()
 
     def show_kept(self, url: str) -> None:
-        """Show whether QGIS keeps a token for the gateway at ``url``."""
+        """Show whether QGIS stores a token for the gateway at ``url``."""
         kept = self._store.has(url)
         hint = BY_CONNECTION if self._auth else KEPT if kept else NONE_KEPT
         self._token.setPlaceholderText(hint)
@@ -81,20 +81,20 @@ class AccessFields(QWidget):
         self._keep.setChecked(kept or (self._keep.isChecked() and bool(self._token.text())))
 
     def use(self, auth: str, ca_file: str | None = None) -> None:
-        """Take the token out of the authentication configuration ``auth``; ``ca_file`` where one is given."""
+        """Use the token in the authentication configuration ``auth``; ``ca_file`` where one is given."""
         self._auth = auth
         self._token.clear()
         if ca_file is not None:
             self._ca.setFilePath(ca_file)
 
     def ca_file(self) -> str:
-        """Return the CA file's name as it stands in the field."""
+        """Return the CA file's name in the field."""
         return self._ca.filePath().strip()
 
     def credentials(self, url: str) -> OperatorCredentials:
-        """Return what stands in the fields; where no token does, the one that QGIS keeps.
+        """Return the credentials in the fields; without a token there, the one that QGIS stores.
 
-        :raises TokenStoreError: when QGIS does not give it.
+        :raises TokenStoreError: when QGIS does not return it.
         """
         token = self._token.text().strip()
         if not token and self._auth:
@@ -104,16 +104,16 @@ class AccessFields(QWidget):
         return OperatorCredentials(token, self.ca_file())
 
     def remember(self, url: str, operator: str = "") -> None:
-        """Keep the CA file's name, and the token where that is wanted; forget it where it is not.
+        """Store the CA file's name, and the token if wanted; otherwise delete it.
 
-        :raises TokenStoreError: when QGIS does not keep it.
+        :raises TokenStoreError: when QGIS does not store it.
         """
         settings = QgsSettings()
         if self.ca_file() != (settings.value(CA_KEY) or ""):
             settings.setValue(CA_KEY, self.ca_file())
         token = self._token.text().strip()
         if self._auth:
-            # The connection's own; another token typed over it is for this time.
+            # The connection's own token stays; another one typed over it is for this session.
             return
         if not self._keep.isChecked():
             self._store.forget(url)
@@ -140,7 +140,7 @@ NONE_CHOSEN = tr("Connections that are kept under a name")
 
 
 class ConnectionMenu(QObject):
-    """Owns the button; ``chosen`` tells the connection that the operator picked."""
+    """Owns the button; ``chosen`` signals the connection that the operator picked."""
 
     chosen = pyqtSignal(object)
 
@@ -167,20 +167,20 @@ class ConnectionMenu(QObject):
         self.button.setToolTip(tr("Connection: {name}", name=name) if name else NONE_CHOSEN)
 
     def hold(self, held: bool) -> None:
-        """Let no other connection be picked, as while one is open."""
+        """Disable the choice of another connection, as while one is open."""
         self._is_held = held
 
     def offer(self, action: QAction) -> None:
-        """List an action of the gateway's beneath the connections."""
+        """Add an action of the gateway below the connections."""
         self._more.append(action)
 
     def withdraw(self, action: QAction) -> None:
-        """List an action no longer."""
+        """Remove an action from the list."""
         self._more.remove(action)
         self.menu.removeAction(action)
 
     def fill(self) -> None:
-        """List the connections as they are kept now."""
+        """List the stored connections."""
         self.menu.clear()
         for one in self._connections.all():
             entry = self.menu.addAction(one.name.replace("&", "&&"))
@@ -222,11 +222,11 @@ MARKS = {
 
 
 class ConnectionPanel(QWidget):
-    """A line that tells the link's state with its reason, with the button; URL and operator beneath it.
+    """A line with the link's state and its reason, and the button; URL and operator beneath it.
 
-    While there is a link the fields are folded away: nothing can be changed in them, and the robots need the
-    room. A link that broke leaves them so, until the operator disconnects or the gateway refuses. The line is
-    as high whatever it says, and the fields are at the panel's end: no button moves.
+    While there is a link the fields are folded away: they cannot be edited, and the robots need the space.
+    After a link broke they stay folded, until the operator disconnects or the gateway refuses. The line has
+    the same height whatever its text, and the fields are at the panel's end: no button moves.
     """
 
     def __init__(self, connect: QAction, parent: QWidget | None = None):
@@ -259,22 +259,22 @@ class ConnectionPanel(QWidget):
         self._show_access()
 
     def url(self) -> str:
-        """Return the URL as it stands in the field."""
+        """Return the URL in the field."""
         return self._url.text().strip()
 
     def operator(self) -> str:
-        """Return the operator's name as it stands in the field."""
+        """Return the operator's name in the field."""
         return self._operator.text().strip()
 
     def credentials(self) -> OperatorCredentials:
-        """Return token and CA file; QGIS may ask for its master password to give the token that it keeps.
+        """Return token and CA file; QGIS may ask for its master password to return the token it stores.
 
-        :raises FleetError: when it does not give it.
+        :raises FleetError: when it does not return it.
         """
         return self._access.credentials(self.url())
 
     def use(self, connection: GatewayConnection) -> None:
-        """Write a named connection into the fields; nothing is opened."""
+        """Write a named connection into the fields without opening it."""
         self._url.setText(connection.url)
         if connection.operator:
             self._operator.setText(connection.operator)
@@ -284,9 +284,9 @@ class ConnectionPanel(QWidget):
         self._show_access()
 
     def remember(self) -> None:
-        """Keep URL, operator and CA file for the next session, and the token where that is wanted.
+        """Store URL, operator and CA file for the next session, and the token if wanted.
 
-        :raises FleetError: when QGIS does not keep the token.
+        :raises FleetError: when QGIS does not store the token.
         """
         settings = QgsSettings()
         settings.setValue(URL_KEY, self.url())
@@ -295,7 +295,7 @@ class ConnectionPanel(QWidget):
         self._access.remember(self.url(), self.operator())
 
     def show_link(self, link: ConnectionStatus, site: SiteReport | None, now: float) -> None:
-        """Show how the link stands at ``now`` (monotonic clock)."""
+        """Show the state of the link at ``now`` (monotonic clock)."""
         text = _in_words(link, site, now)
         if text != self._state.text():
             self._state.setText(text)
@@ -312,12 +312,12 @@ class ConnectionPanel(QWidget):
         self._shown = link
 
     def height_with_fields(self) -> int:
-        """Return the pixels of height that all of it takes, folded or not."""
+        """Return the panel's height in pixels with the fields, whether they are folded or not."""
         parts = (self._line.sizeHint(), self._gateway.sizeHint(), self._access.sizeHint())
         return sum(part.height() for part in parts) + (len(parts) - 1) * GAP
 
     def height_without_fields(self) -> int:
-        """Return the pixels of height that it takes while there is a link."""
+        """Return the panel's height in pixels while there is a link."""
         return self._line.sizeHint().height()
 
     def _fold(self, folded: bool) -> None:
@@ -325,7 +325,7 @@ class ConnectionPanel(QWidget):
             return
         held = QApplication.focusWidget()
         if folded and held is not None and self._fields.isAncestorOf(held):
-            # Else the next in line would have the keyboard, which is the button that ends the link.
+            # Else the next widget would get the focus, which is the button that ends the link.
             self._state.label.setFocus()
         self._fields.setHidden(folded)
 
@@ -334,7 +334,7 @@ class ConnectionPanel(QWidget):
         return "\n".join([*which, *filter(None, (link.instead, link.reason))])
 
     def connection(self) -> GatewayConnection:
-        """Return what the fields say, as a connection that has no name yet."""
+        """Return the content of the fields as a connection without a name."""
         return GatewayConnection("", self.url(), self.operator(), self._access.ca_file())
 
     def _url_changed(self) -> None:
@@ -355,7 +355,7 @@ class ConnectionPanel(QWidget):
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setHorizontalSpacing(6)
         grid.setVerticalSpacing(GAP)
-        # The one letter leads into the panel; the others would be those of QGIS's menus in some language.
+        # One access key leads into the panel; others would collide with QGIS's menus in some languages.
         for row, (text, field) in enumerate(((tr("&Gateway"), self._url), (tr("Operator"), self._operator))):
             label = QLabel(text)
             label.setBuddy(field)
@@ -377,7 +377,7 @@ class ConnectionPanel(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 0, 0, 0)
         rows.setSpacing(GAP)
-        # In this order the keyboard goes through them; the line comes first on screen.
+        # The tab order; the line is first on screen.
         rows.addWidget(self._fields)
         rows.insertWidget(0, self._line)
 

@@ -1,4 +1,4 @@
-"""Dock of the fleet, and how its parts share the height."""
+"""The Fleet dock, and the division of its height among its parts."""
 
 from __future__ import annotations
 
@@ -35,16 +35,16 @@ from .robot_table import RobotPanel, RobotTableView
 GAP = 4
 """Pixels between two parts."""
 SHARE = 0.45
-"""Of the height that nothing needs, the upper part's, until the operator moves the splitter."""
+"""The upper part's share of the surplus height, until the operator moves the splitter."""
 
 
 class LinkAndRobots(QWidget):
-    """The link, and the robots beneath it; needs one height whether the link's fields are folded or not."""
+    """The link, and the robots beneath it; its height is the same with the link's fields folded or not."""
 
     def __init__(self, link: ConnectionPanel, table: RobotTableView):
         super().__init__()
         self._link, self._table = link, table
-        # It gives way to the fields to the last pixel.
+        # It shrinks for the fields down to the last pixel.
         table.setMinimumHeight(0)
         table.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
         rows = QVBoxLayout(self)
@@ -63,9 +63,9 @@ class LinkAndRobots(QWidget):
 
 
 class ListsWithReserve(QWidget):
-    """The lists at the bottom, with room for the ``banner`` that is shown beneath them while it is hidden.
+    """The lists at the bottom, with space reserved for the ``banner`` beneath them while that is hidden.
 
-    The banner lies outside, where nothing is scrolled: it takes its room from here.
+    The banner lies outside the scrolled area: it takes its space from here.
     """
 
     def __init__(self, lists: QWidget, banner: EmergencyBanner):
@@ -85,12 +85,12 @@ class ListsWithReserve(QWidget):
 
     @property
     def reserve(self) -> int:
-        """Pixels of height that are kept for the banner; none while it is shown."""
+        """Height in pixels reserved for the banner; none while it is shown."""
         return self._banner.sizeHint().height() + GAP if self._banner.isHidden() else 0
 
 
 class SharingSplitter(QSplitter):
-    """Two parts that share the height of a window that is made higher; the lower one alone gives way."""
+    """A splitter of two parts that share additional height of the window; only the lower one shrinks."""
 
     def __init__(self, upper: QWidget, lists: ListsWithReserve):
         super().__init__(Qt.Orientation.Vertical)
@@ -113,7 +113,7 @@ class SharingSplitter(QSplitter):
         return self.widget(0).minimumSizeHint().height()
 
     def _free(self) -> int:
-        """Pixels of height that neither part needs; as many while the banner is shown."""
+        """Surplus height in pixels; the same while the banner is shown."""
         needs = self._least() + self._lists.minimumSizeHint().height() + self.handleWidth()
         return max(0, self.height() - needs)
 
@@ -121,7 +121,7 @@ class SharingSplitter(QSplitter):
         self._share = (self.sizes()[0] - self._least()) / max(1, self._free())
 
 
-# The keyboard's place is a frame of two lines: the style's own, one faint line, is lost on these colours.
+# The focus frame is two lines wide: the style's own faint line is hardly visible on these colours.
 STOP_STYLE = (
     "QPushButton { background: #C62828; color: white; font-weight: bold; border: 1px solid #8E0000;"
     " border-radius: 4px; padding: 7px; }"
@@ -138,15 +138,15 @@ EMERGENCY_STYLE = (
 )
 
 LEAST_WIDTH = 404
-"""Pixels of its parts, however few their words need."""
+"""Width in pixels of its parts at least, however short their texts."""
 
 
 class FleetDock(QgsDockWidget):
-    """As narrow as it can be made, it still shows all of its parts uncut.
+    """The dock, which shows all of its parts uncut even at its least width.
 
     No button in it moves while its window and its splitter are left alone, whatever is reported or shown.
-    What comes and goes takes its room from a list: the fields of a gateway from the robot table, the banner
-    of an emergency stop from the end of the lists at the bottom.
+    Widgets that come and go take their space from a list: the fields of a gateway from the robot table, the
+    banner of an emergency stop from the end of the lists at the bottom.
     """
 
     def __init__(
@@ -181,13 +181,13 @@ class FleetDock(QgsDockWidget):
         rows = QVBoxLayout(body)
         rows.setContentsMargins(6, 6, 6, 6)
         rows.setSpacing(GAP)
-        # A least width of the widget would stand in place of what its words need, where that is more.
+        # A minimum width of the widget would override that of its texts, where that is more.
         rows.addStrut(LEAST_WIDTH)
-        # The banner and the buttons that stop robots are outside of it: they are seen on every screen.
+        # The banner and the buttons that stop robots are outside of it: they are visible on every screen.
         rows.addWidget(ShrinkableScrollArea(split), 1)
         rows.addWidget(self.banner)
         stops = QHBoxLayout()
-        # First: of a window that is broader than its screen the right end is not seen.
+        # First: of a window wider than its screen the right end is not visible.
         stops.addWidget(_stop_button(actions.emergency, EMERGENCY_STYLE))
         stops.addWidget(_stop_button(actions.abort_all, STOP_STYLE))
         rows.addLayout(stops)
@@ -236,7 +236,7 @@ def _tools(actions: Actions) -> QGridLayout:
 
 
 def tool_button(action: QAction) -> QToolButton:
-    """Return a button as wide as its column that does what ``action`` does."""
+    """Return a button for ``action``, as wide as its column."""
     button = QToolButton()
     button.setObjectName(f"{action.objectName()}_button")
     button.setDefaultAction(action)

@@ -1,4 +1,4 @@
-"""Emergency stop: banner, key, and the dialog that clears it."""
+"""Emergency stop: banner, shortcut, and the dialog that clears it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from ..ui.steady_widgets import ScrollingText
 
 
 class EmergencyKey(QObject):
-    """Lends ``action`` to every dialog that blocks its window: Qt gives a blocked window's keys to nobody."""
+    """Adds ``action`` to every dialog that blocks its window: Qt disables a blocked window's shortcuts."""
 
     def __init__(self, action: QAction, parent: QObject):
         super().__init__(parent)
@@ -23,7 +23,7 @@ class EmergencyKey(QObject):
         QgsApplication.instance().focusWindowChanged.connect(self._lend)
 
     def remove(self) -> None:
-        """Lend the key to no more dialogs."""
+        """Stop adding the action to dialogs."""
         QgsApplication.instance().focusWindowChanged.disconnect(self._lend)
 
     def _lend(self) -> None:
@@ -35,26 +35,26 @@ class EmergencyKey(QObject):
 STYLE = (
     "QFrame#fleet_emergency_banner { background: #B00020; border: 2px solid #FFC400; border-radius: 4px; }"
     "QLabel { color: white; background: transparent; }"
-    # QGIS's dark themes give every widget a ground of its own.
+    # QGIS's dark themes give every widget its own background.
     "QScrollArea, QScrollArea > QWidget { background: transparent; }"
 )
 MOST_NAMES = 6
 LINES = 3
-"""Lines that are seen at once."""
+"""Lines that are visible at once."""
 SILENT_AFTER = 4.0
-"""Seconds after which what a gateway said of a stop is not what holds now: it repeats that every second."""
+"""Seconds after which a gateway's report of a stop is outdated: it is repeated every second."""
 
 
 class EmergencyBanner(QFrame):
-    """Hidden as long as all is well. What stands in it is what the gateway said, never what is hoped for.
+    """Hidden while there is no stop. It shows only what the gateway has reported.
 
-    It is as high whatever it says.
+    Its height is the same whatever its text.
     """
 
     toggled = pyqtSignal()
-    """It came or went."""
+    """It was shown or hidden."""
     changed = pyqtSignal(str)
-    """What stands in it, whenever that may be another text."""
+    """Its text, whenever that may have changed."""
 
     def __init__(self, desk: FleetController, clear: QAction, parent: QWidget | None = None):
         super().__init__(parent)
@@ -80,11 +80,11 @@ class EmergencyBanner(QFrame):
         self.refresh()
 
     def text(self) -> str:
-        """Return what stands in it."""
+        """Return its text."""
         return self._text.text()
 
     def refresh(self) -> None:
-        """Show how things stand."""
+        """Show the current state."""
         report = self._desk.state.emergency
         in_force = report is not None and report.in_force
         pending = self._desk.orders.awaits_stop
@@ -98,7 +98,7 @@ class EmergencyBanner(QFrame):
             self.toggled.emit()
 
     def _silence(self) -> int | None:
-        """Return for how many seconds the gateway has said nothing, None while it speaks."""
+        """Return the seconds for which the gateway has been silent, None while it is not."""
         state = self._desk.state
         silence = state.clock.steady() - state.heard_at
         is_silent = silence > SILENT_AFTER or state.link.phase is not ConnectionPhase.CONNECTED
@@ -110,9 +110,9 @@ class EmergencyBanner(QFrame):
 
 
 def in_words(report: EmergencyReport | None, pending: bool, silence: int | None) -> str:
-    """Return the state of a stop: asked for and not confirmed, or in force, and by whom.
+    """Return the state of a stop: requested and not confirmed, or in force, and by whom.
 
-    ``silence`` is for how many seconds the gateway has said nothing, None while it speaks.
+    ``silence`` is the seconds for which the gateway has been silent, None while it is not.
     """
     lines = []
     if pending:
@@ -141,7 +141,7 @@ def in_words(report: EmergencyReport | None, pending: bool, silence: int | None)
             )
         )
         if silence is not None:
-            # Above the counts, which are what is read first.
+            # Above the counts, which are read first.
             lines.append(
                 tr(
                     "The gateway has said nothing for {seconds} s: robots may move. It said last:",
@@ -177,7 +177,7 @@ def _counts(report: EmergencyReport) -> list[str]:
             names = ", ".join(first_of(at.missing, MOST_NAMES, at.of - at.reached))
             lines.append(tr("NOT REACHED: gateways {names}. Watch their robots", names=names))
     if report.waiting:
-        # The gateway names some fifty at most, and counts all of them.
+        # The gateway names fifty or so at most, and counts all of them.
         silent = report.robots - report.acknowledged - len(report.refused)
         names = ", ".join(first_of(report.waiting, MOST_NAMES, silent))
         lines.append(tr("No answer from {names}", names=names))
@@ -196,9 +196,9 @@ LONGEST_REASON = 500
 
 
 class ClearDialog(QuestionDialog):
-    """Shows how the stop stands and asks for a reason; ``confirmed`` tells the stop's id and the reason.
+    """Shows the state of the stop and asks for a reason; ``confirmed`` signals the stop's id and the reason.
 
-    It goes on showing that while it is open: robots may begin to move meanwhile.
+    The state is updated while it is open: robots may begin to move meanwhile.
     """
 
     confirmed = pyqtSignal(str, str)
@@ -227,6 +227,6 @@ class ClearDialog(QuestionDialog):
         self.accepted.connect(lambda: self.confirmed.emit(stop, reason.text().strip()))
 
     def show_state(self, text: str) -> None:
-        """Show how the stop stands by now; what was shown last stays where it is in force no more."""
+        """Show the present state of the stop; the last one stays shown where it is no longer in force."""
         if text:
             self._state.setText(text)

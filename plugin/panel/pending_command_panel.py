@@ -30,15 +30,15 @@ from .queue import QueueEdits
 NOTHING = tr("Select a robot, choose Cone target or Draw route, and click on the map.")
 
 LINES = 3
-"""Lines of the draft in words that are seen at once."""
+"""Lines of the draft's text that are visible at once."""
 REMARK_MS = 60_000
-"""How long a remark stands there: of a command, its newest state stands there longer."""
+"""Time for which a remark is shown: for a command, its newest state is shown longer."""
 GAP = 4
 """Pixels between two parts."""
 
 
 class PendingCommandPanel(QWidget):
-    """The draft in words; the last thing that happened when there is no draft. Its buttons never move."""
+    """The draft in words; the last event when there is no draft. Its buttons never move."""
 
     def __init__(self, desk: FleetController, actions: Actions, parent: QWidget | None = None):
         super().__init__(parent)
@@ -48,7 +48,7 @@ class PendingCommandPanel(QWidget):
         self._old.setSingleShot(True)
         self._old.timeout.connect(lambda: self._show_remark("", None))
         self._kept: tuple[str, str] | None = None
-        """The command that the remark is about, and what it is in words."""
+        """The command that the remark is about, and its text."""
         self._text = ScrollingText("fleet_draft_text", LINES, NOTHING, framed=True)
         self._lay_out(actions)
         desk.drafts.changed.connect(self._show)
@@ -61,7 +61,7 @@ class PendingCommandPanel(QWidget):
         desk.state.site_changed.connect(lambda: self._show_hint(""))
 
     def _lay_out(self, actions: Actions) -> None:
-        # The arrows are known from every program; with words they made the panel too broad.
+        # The arrows are familiar; with words they made the panel too wide.
         changes = [_button(one, words=False) for one in (actions.undo, actions.redo, actions.reverse)]
         beside = QVBoxLayout()
         beside.setSpacing(GAP)
@@ -79,7 +79,7 @@ class PendingCommandPanel(QWidget):
         rows.addLayout(_row([_button(one) for one in (actions.send, actions.enqueue, actions.cancel)]))
 
     def _show_hint(self, text: str) -> None:
-        """Show a text for a while; QGIS's log of messages keeps it."""
+        """Show a text for a while; QGIS's message log keeps it."""
         if text:
             QgsMessageLog.logMessage(text, TITLE, Qgis.MessageLevel.Info, False)
         self._show_remark(text, None)
@@ -91,10 +91,10 @@ class PendingCommandPanel(QWidget):
         self._show()
 
     def _follow(self, command: str, words: str) -> None:
-        """Say how a command stands, from now on at each of its steps until something else happens."""
+        """Show the state of a command, and each of its steps, until something else happens."""
         known = self._desk.state.commands.get(command)
         stands = COMMAND_STATES[CommandState.QUEUED] if known is None else command_state_in_words(known)
-        # First of all: what follows may be longer than the lines that are seen.
+        # At the beginning: the following text may be longer than the visible lines.
         self._show_remark(f"{stands[0].upper()}{stands[1:]}. {words}.", (command, words))
 
     def _take_steps(self, reports: Sequence[CommandReport]) -> None:
@@ -109,7 +109,7 @@ class PendingCommandPanel(QWidget):
         self._text.set_text_style(WRONG_STYLE if is_wrong else "")
 
     def _going_out(self) -> list[str]:
-        """Return a line about what was sent before the draft on the map was begun."""
+        """Return a line about drafts sent before the one on the map was begun."""
         outgoing = self._desk.sending.outgoing
         if outgoing.first is None:
             return []
@@ -193,18 +193,18 @@ def _in_words(draft: PendingCommand) -> str:
 LONGEST_WHY = 300
 """characters."""
 LONGEST = 1000
-"""characters of what goes to the gateway."""
+"""characters of the text sent to the gateway."""
 MOST_SHOWN = 6
 
 
 class OverrideDialog(QuestionDialog):
-    """Shows what was found of ``what``, and what is done ``then``; nothing is before a reason is given.
+    """Shows the findings on ``what``, and the action ``then``; disabled until a reason is given.
 
-    ``is_safe`` as with the dialog itself: where robots set off by it, Enter does not override.
+    ``is_safe`` as in the base class: where robots set off by it, Enter does not override.
     """
 
     confirmed = pyqtSignal(str)
-    """What is overridden and why."""
+    """The findings overridden and the reason."""
 
     def __init__(self, what: str, found: Sequence[str], then: str, parent: QWidget, *, is_safe: bool):
         super().__init__(
@@ -232,7 +232,7 @@ class OverrideDialog(QuestionDialog):
 
 
 class PendingCommandActions(QObject):
-    """Wires the actions of drafts. None of them sends a draft but ``enqueue``, to its robot's queue."""
+    """Connects the actions of drafts. None of them sends a draft but ``enqueue``, to its robot's queue."""
 
     def __init__(self, desk: FleetController, edits: QueueEdits, actions: Actions, window: QWidget):
         super().__init__(window)
@@ -254,7 +254,7 @@ class PendingCommandActions(QObject):
         self._enable()
 
     def remove(self) -> None:
-        """Close what is open and let the window go."""
+        """Close its windows and drop the reference to the main window."""
         if self._coordinates is not None:
             self._coordinates.close()
             self._coordinates.deleteLater()
@@ -272,9 +272,9 @@ class PendingCommandActions(QObject):
         self._desk.target_ways.set_command(turned_round(self._draft()))
 
     def _enqueue(self) -> None:
-        """Put the draft at the end of its robot's queue.
+        """Append the draft to its robot's queue.
 
-        :raises FleetError: when it must not or cannot be; it stays on the map then.
+        :raises FleetError: when that is not allowed or possible; it stays on the map then.
         """
         if self._desk.sending.is_second_press():
             return
@@ -385,10 +385,10 @@ class PendingCommandActions(QObject):
             )
 
     def _show(self, points: tuple[tuple[float, float], ...]) -> None:
-        """Move the map where none of ``points`` is on it."""
+        """Pan the map where none of ``points`` is on it."""
         canvas = self._desk.canvas
         places = self._desk.site_to_canvas.transform().to_map(np.array(points))
-        # Of a rotated map the extent also has corners that are not on the screen.
+        # For a rotated map the extent also has corners that are off the screen.
         seen, rule = canvas.mapSettings().visiblePolygon(), Qt.FillRule.OddEvenFill
         if not any(seen.containsPoint(QPointF(x, y), rule) for x, y in places.tolist()):
             canvas.setCenter(QgsPointXY(*places[0]))

@@ -57,13 +57,13 @@ CHANGED_MEANWHILE = tr("Not done: the queue has changed since you saw it. This i
 
 
 class QueueEdits(QObject):
-    """Asks for changes at the revision that is shown, so that none of another operator's is undone unseen.
+    """Requests changes at the revision shown, so that no other operator's change is overwritten unseen.
 
-    Each method returns the order's key, None when it could not be sent: then the desk has said why.
+    Each method returns the request's key, None when it could not be sent: then the desk has reported why.
     """
 
     changed = pyqtSignal()
-    """Something was asked for, or the gateway answered."""
+    """A request was sent, or the gateway answered."""
 
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
@@ -74,11 +74,11 @@ class QueueEdits(QObject):
         desk.state.site_changed.connect(self._clear)
 
     def awaits_answer(self, robot: str) -> bool:
-        """Tell whether the gateway has not answered yet what was asked of this queue."""
+        """Return whether a request about this queue has not been answered yet."""
         return robot in self._pending.values()
 
     def conflict(self, robot: str) -> str:
-        """Return what became of a change that came too late; empty after the next one."""
+        """Return the error of a change that came too late; empty after the next one."""
         return self._conflicts.get(robot, "")
 
     def add(
@@ -89,9 +89,9 @@ class QueueEdits(QObject):
         override: str | None = None,
         draft: PendingCommand | None = None,
     ) -> str | None:
-        """Put tasks at the end of a robot's queue; ``words`` say what they are, ``override`` as AddTasks.
+        """Append tasks to a robot's queue; ``words`` describe them, ``override`` as in AddTasks.
 
-        The ``draft`` that they were made of comes back with a refusal.
+        The ``draft`` that they were made from is restored by a refusal.
         """
         request = AddTasks(robot, self._revision(robot), list(tasks), override=override)
         return self._change(request, words, draft=draft)
@@ -102,34 +102,34 @@ class QueueEdits(QObject):
         return self._change(request, tr("Moving a task of {robot}", robot=robot), self._waiting(robot, task))
 
     def remove(self, robot: str, task: str) -> str | None:
-        """Take a task out of a queue."""
+        """Remove a task from a queue."""
         request = RemoveTask(robot, self._revision(robot), task)
         words = tr("Removing a task of {robot}", robot=robot)
         return self._change(request, words, self._waiting(robot, task))
 
     def make_current(self, robot: str, task: str) -> str | None:
-        """Let a task be done first, at once unless the queue is paused."""
+        """Make a task the current one, at once unless the queue is paused."""
         request = MakeCurrent(robot, self._revision(robot), task)
         return self._change(request, tr("A task of {robot} first", robot=robot), self._waiting(robot, task))
 
     def pause(self, robot: str) -> str | None:
-        """Send a robot no further task."""
+        """Pause a queue: the robot is sent no further task."""
         words = tr("Pausing the queue of {robot}", robot=robot)
         return self._change(PauseQueue(robot), words, self._state(robot))
 
     def pause_robot(self, robot: str) -> str | None:
-        """Let a robot stand, and keep what it is doing."""
+        """Make a robot stand, and keep its task."""
         return self._change(PauseRobot(robot), tr("Pause of {robot}", robot=robot), self._state(robot))
 
     def go_on(self, queue: QueueReport) -> str | None:
-        """Let a robot go on with what is at the head of its queue, which is told."""
+        """Continue a queue at its head, which is named in the message."""
         words = tr("{robot} continues", robot=queue.robot)
         if queue.tasks:
             words = tr("{robot} continues with {task}", robot=queue.robot, task=task_in_words(queue.tasks[0]))
         return self._change(ResumeQueue(queue.robot, queue.revision), words, self._state(queue.robot))
 
     def resume(self, robot: str) -> str | None:
-        """Let a queue that is paused go on."""
+        """Continue a paused queue."""
         words = tr("Resuming the queue of {robot}", robot=robot)
         return self._change(ResumeQueue(robot, self._revision(robot)), words, self._state(robot))
 
@@ -172,10 +172,10 @@ class QueueEdits(QObject):
 
 
 class PauseActions(QObject):
-    """Wires both actions to the selected robots.
+    """Connects both actions to the selected robots.
 
-    *Pause robot* is never greyed out, as nothing is that stops robots; *Continue* is where none of them has a
-    queue that is paused.
+    *Pause robot* is always enabled, like all that stops robots; *Continue* is disabled where none of them has
+    a paused queue.
     """
 
     def __init__(self, desk: FleetController, edits: QueueEdits, actions: Actions, parent: QObject):
@@ -217,10 +217,10 @@ NUMBER, TASK, STATE = range(3)
 
 
 class TaskModel(RowModel):
-    """One row for each task. A drop changes nothing here: it is asked for, and told by the gateway."""
+    """One row for each task. A drop changes nothing here: it is requested, and reported by the gateway."""
 
     move_requested = pyqtSignal(str, object)
-    """A task, and the one that it shall stand before or None for the end."""
+    """A task, and the one that it must precede or None for the end."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(COLUMNS, parent)
@@ -273,15 +273,15 @@ class TaskModel(RowModel):
     ) -> bool:
         task = bytes(data.data(MIME)).decode()
         if task not in [one.task for one in self.rows]:
-            # Dragged from before the robot was another, or the task was done.
+            # The drag began when another robot was selected, or the task is done.
             return False
         at = parent.row() if row < 0 and parent.isValid() else row
         self.want_at(task, len(self.rows) if at < 0 else at)
-        # Not True: the view would take out the row that it takes for moved.
+        # Not True: the view would remove the row that it considers moved.
         return False
 
     def want_at(self, task: str, row: int) -> None:
-        """Ask for a task to stand in front of what is in ``row`` now; nothing where it stands there."""
+        """Request that a task precede the one in ``row`` now; nothing if it does already."""
         first = 1 if self.rows and self.rows[0].state is TaskState.CURRENT else 0
         row = max(first, row)
         here = next(k for k, one in enumerate(self.rows) if one.task == task)
@@ -292,7 +292,7 @@ class TaskModel(RowModel):
 
 
 class TaskList(QTreeView):
-    """The list: drag a task to where it shall come, or move the selected one with Alt and the arrow keys."""
+    """The list: drag a task to its new place, or move the selected one with Alt and the arrow keys."""
 
     remove_requested = pyqtSignal(str)
     first_requested = pyqtSignal(str)
@@ -318,7 +318,7 @@ class TaskList(QTreeView):
             self.setColumnWidth(column, self.fontMetrics().horizontalAdvance(widest) + 14)
 
     def show_tasks(self, tasks: list[TaskReport]) -> None:
-        """Show these tasks; the one that is selected stays so."""
+        """Show these tasks; the selected one stays selected."""
         chosen = self.chosen
         self.tasks.show_tasks(tasks)
         row = next((k for k, task in enumerate(tasks) if task.task == chosen), None)
@@ -327,7 +327,7 @@ class TaskList(QTreeView):
 
     @property
     def chosen(self) -> str | None:
-        """The task that is selected."""
+        """The selected task."""
         rows = self.selectionModel().selectedRows()
         return self.tasks.tasks[rows[0].row()].task if rows else None
 
@@ -346,7 +346,7 @@ class TaskList(QTreeView):
         elif event.key() == keys.Key_Delete:
             self.remove_requested.emit(task)
         elif event.key() in (keys.Key_Return, keys.Key_Enter):
-            # Alone it goes to the place: it must not let a robot drive off by a slip of the hand.
+            # Without Alt it shows the place: a slip must not make a robot drive off.
             if event.modifiers() & Qt.KeyboardModifier.ControlModifier:
                 self.first_requested.emit(task)
         else:
@@ -365,7 +365,7 @@ class TaskList(QTreeView):
 
 
 class QueuePanel(QWidget):
-    """Shows one queue and asks for its changes; nothing is moved here before the gateway says so.
+    """Shows one queue and requests changes; nothing is moved here before the gateway has reported it.
 
     A double click on a task shows its place on the map.
     """
@@ -389,7 +389,7 @@ class QueuePanel(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(3)
-        # At the top: what takes room from the panel takes it from the end of the list.
+        # Aligned at the top: when the panel shrinks, the end of the list is cut.
         rows.addLayout(self._row)
         rows.addWidget(self._head)
         rows.addWidget(self.list, 1)
@@ -455,7 +455,7 @@ class QueuePanel(QWidget):
             if paused
             else tr("Send the robot no further task; what it is doing it finishes (Pause robot stops it)")
         )
-        # To hold is never in the way of anything: it waits for no answer.
+        # Pausing is always allowed: it waits for no answer.
         self._hold.setEnabled(self._desk.selection.last is not None and (waits or not paused))
 
     def _queue(self) -> QueueReport | None:
@@ -463,7 +463,7 @@ class QueuePanel(QWidget):
         return self._desk.state.queues.get(robot) if robot is not None else None
 
     def _is_free(self) -> bool:
-        """Tell whether what is shown is what the gateway has: nothing asked for is without an answer."""
+        """Return whether the queue shown is up to date: no request is unanswered."""
         return not self._edits.awaits_answer(self._desk.selection.last or "")
 
     def _in_words(self, queue: QueueReport | None) -> str:

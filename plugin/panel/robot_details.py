@@ -45,7 +45,7 @@ from .alarms.rules import Alarm
 
 Row = tuple[str, str]
 TIMES = ("device_time", "fix_time")
-"""Fields that are seconds since 1970, by the robot's own clock."""
+"""Fields in seconds since 1970, by the robot's own clock."""
 UNITS = {
     "age": "s",
     "pose_age": "s",
@@ -58,11 +58,11 @@ UNITS = {
     "theta": "rad",
 }
 MOST = 20
-"""Commands and tasks that are listed."""
+"""Number of commands and tasks that are listed."""
 
 
 def state_rows(view: RobotView, task: CommandReport | None, off: str, position: str, crs: str) -> list[Row]:
-    """Return how a robot is now, as the operator needs it first."""
+    """Return a robot's current state, in the order that the operator needs."""
     values = view.values
     last_seen = last_seen_in_words(state_words.robot_state_in_words(view), view.age, values.get("link"))
     rows = [(tr("State"), last_seen)]
@@ -87,7 +87,7 @@ def state_rows(view: RobotView, task: CommandReport | None, off: str, position: 
 
 
 def received_rows(values: dict[str, Any]) -> list[Row]:
-    """Return all that was received last, every field by its own name, nothing left out or rounded."""
+    """Return all fields received last by their own names, complete and unrounded."""
     return [(name, _value(name, value)) for name, value in values.items()]
 
 
@@ -97,7 +97,7 @@ def alarm_rows(alarms: Iterable[Alarm]) -> list[Row]:
 
 
 def queue_rows(queue: QueueReport | None) -> list[Row]:
-    """Return a robot's queue: how it stands, then its tasks."""
+    """Return a robot's queue: its state, then its tasks."""
     if queue is None:
         return []
     rows = [(tr("Queue"), state_words.queue_in_words(queue))]
@@ -129,13 +129,13 @@ def _value(name: str, value: Any) -> str:
 
 
 LOOKED_THROUGH = 200
-"""Observations among which the newest image is looked for."""
+"""Observations among which the newest image is searched."""
 LARGEST_SIDE = 1024
 """Pixels to which a larger image is reduced."""
 
 
 class LastImage(QObject):
-    """``text`` says what ``image`` is, or why there is none."""
+    """The newest image of a robot; ``text`` describes ``image``, or says why there is none."""
 
     changed = pyqtSignal()
 
@@ -151,7 +151,7 @@ class LastImage(QObject):
         requests.answered.connect(self._answered)
 
     def ask(self, robot: str) -> None:
-        """Look for the newest image of ``robot``."""
+        """Request the newest image of ``robot``."""
         if robot != self._robot:
             self.image = None
         self._robot = robot
@@ -223,7 +223,7 @@ class LastImage(QObject):
 
 
 class DecodeTask(SignallingTask):
-    """Makes an image of base64, reduced where it is large."""
+    """Decodes a base64 image, reduced where it is large."""
 
     def __init__(self, text: str):
         super().__init__(tr("Reading a robot's image"), QgsTask.Flag.CanCancel)
@@ -267,7 +267,7 @@ HISTORY = 200
 
 
 class RobotDetails(QWidget):
-    """Renewed twice a second while somebody sees it; history and image are asked for once for each robot."""
+    """Updated twice a second while visible; history and image are requested once for each robot."""
 
     def __init__(
         self,
@@ -299,11 +299,11 @@ class RobotDetails(QWidget):
         self.refresh()
 
     def show_alarms_of(self, board: AlarmBoard | None) -> None:
-        """Show each robot's alarms on ``board`` from now on, None for none."""
+        """Show each robot's alarms of ``board`` from now on, None for none."""
         self._alarms = board
 
     def refresh(self) -> None:
-        """Show what is known of the robot that was selected last."""
+        """Show the details of the robot that was selected last."""
         robot = self._desk.selection.last
         view = None if robot is None else self._desk.state.robots.view(robot, self._desk.clock.steady())
         if robot is None or view is None:
@@ -337,7 +337,7 @@ class RobotDetails(QWidget):
         )
 
     def ask(self) -> None:
-        """Ask the gateway for the robot's last image, and for what was asked of it before this desk came."""
+        """Request the robot's last image, and its commands from before this desk connected."""
         robot = self._desk.selection.last
         if robot is None:
             return
@@ -392,7 +392,7 @@ class RobotDetails(QWidget):
         self._make_room_for([name for name, _ in sections.get(NOW, [])])
 
     def _make_room_for(self, names: list[str]) -> None:
-        """Widen the first column to what its longest name takes, up to a half; it is never made narrower."""
+        """Widen the first column to its longest name, up to a half; it is never made narrower."""
         widest = max(map(self._tree.fontMetrics().horizontalAdvance, names), default=0) + AROUND_NAME
         width = min(widest, self._tree.viewport().width() // 2)
         if width > self._tree.columnWidth(0):
@@ -404,7 +404,7 @@ class RobotDetails(QWidget):
 
 
 class _Picture(QLabel):
-    """An image as large as its place, in its own proportions."""
+    """An image as large as its place, with its aspect ratio kept."""
 
     def __init__(self) -> None:
         super().__init__()

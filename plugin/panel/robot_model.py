@@ -29,7 +29,7 @@ from ..ui.tables import TO_THE_RIGHT
 class Column:
     """One column, by its ``title`` in the code and its ``head`` for the operator.
 
-    ``widest`` is the longest text it has room for, ``first`` whether it is shown at first.
+    ``widest`` is the longest text it has room for, ``first`` whether it is visible at first.
     """
 
     title: str
@@ -76,19 +76,19 @@ POSITION = TITLES.index("Position")
 
 
 def short_link(link: str) -> str:
-    """Return how a robot is connected so that it fits into the column, such as ``ws`` or ``@north``."""
+    """Return the link of a robot short enough for the column, such as ``ws`` or ``@north``."""
     if (gateway := gateway_of_link(link)) is not None:
         return f"@{gateway}"
     return "ws" if link == "websocket" else link
 
 
 def idle_in_words(*, stopped: bool, paused: bool) -> str:
-    """Return how a robot without a task stands: who was paused goes on when it is told so."""
+    """Return the state of a robot without a task; a paused one continues on command only."""
     return tr("paused") if paused else tr("stopped") if stopped else ""
 
 
 def task_in_words(task: CommandReport | None, values: dict, *, paused: bool = False) -> str:
-    """Return what a robot is doing, else what it says of itself, else whether it was ``paused``."""
+    """Return a robot's task, else its own status, else whether it was ``paused``."""
     if task is None:
         idle = idle_in_words(stopped=bool(values.get("stopped")), paused=paused)
         return str(values.get("status") or idle)
@@ -104,7 +104,7 @@ def task_in_words(task: CommandReport | None, values: dict, *, paused: bool = Fa
 
 
 def number_in_words(title: str, value: float) -> str:
-    """Return a number of a column as text that fits into it, nothing for one that is not known."""
+    """Return a number of a column as text that fits into it, empty for an unknown one."""
     if np.isnan(value):
         return ""
     if title == "Speed":
@@ -135,7 +135,7 @@ class RobotChoice(str, Enum):
 
 @dataclass
 class FleetRows:
-    """Row k is the robot in row k of the picture. ``shown_as`` (n,) is as :class:`.RobotArrays` has it;
+    """Row k is the robot in row k of the table. ``shown_as`` (n,) is as in :class:`.RobotArrays`;
     ``numbers`` has (n,) by column title, NaN where unknown."""
 
     picture: RobotStates
@@ -146,7 +146,7 @@ class FleetRows:
     xy: Floats
     numbers: dict[str, Floats]
     paused: frozenset[str]
-    """Robots with a queue that is paused."""
+    """Robots with a paused queue."""
     _off: dict[int, float] = field(default_factory=dict)
     _texts: dict[str, list[str]] = field(default_factory=dict)
 
@@ -154,16 +154,16 @@ class FleetRows:
         return len(self.names)
 
     def row_values(self, row: int) -> dict[str, Any]:
-        """Return what was told last of a robot."""
+        """Return the last values of a robot."""
         return self.picture.row_values(row)
 
     def task(self, row: int) -> str:
-        """Return what a robot is doing, in words."""
+        """Return a robot's task in words."""
         name = self.names[row]
         return task_in_words(self.cache.task_of(name), self.row_values(row), paused=name in self.paused)
 
     def off(self, row: int) -> float:
-        """Return how far a robot is from where it was told to be, NaN where nobody can tell."""
+        """Return the distance of a robot from its commanded place, NaN where unknown."""
         known = self._off.get(row)
         if known is None:
             x, y = self.xy[row].tolist()
@@ -173,7 +173,7 @@ class FleetRows:
         return known
 
     def shown(self, which: RobotChoice, text: str, troubled: set[str]) -> Rows:
-        """Return the rows that are listed, by name: each word of ``text`` is in name, state, task or link."""
+        """Return the rows listed, by name: each word of ``text`` is in name, state, task or link."""
         rows = np.array(self.picture.by_name(), dtype=np.intp)
         if which is RobotChoice.TROUBLED:
             bad = self.shown_as != FRESH
@@ -194,11 +194,11 @@ class FleetRows:
         return rows[has[rows]]
 
     def sorted(self, rows: Rows, title: str, descending: bool) -> Rows:
-        """Return ``rows``, which come by name, sorted by a column; what is not known comes last."""
+        """Return ``rows``, which are sorted by name, sorted by a column; unknown values come last."""
         if title == "Robot":
             return rows[::-1] if descending else rows
         keys = self._keys(rows, title)
-        # NaN comes last either way.
+        # NaN comes last in both orders.
         return rows[np.argsort(-keys if descending else keys, kind="stable")]
 
     def _keys(self, rows: Rows, title: str) -> Floats:
@@ -217,7 +217,7 @@ class FleetRows:
         return np.array([rank.get(word, np.nan) for word in words], dtype=np.float64)[rows]
 
     def _offs(self) -> Floats:
-        """Return what :meth:`off` says of everybody; only who was told to be somewhere can be off."""
+        """Return :meth:`off` of every robot; only one with a commanded place has a distance."""
         known = {report.robot for report in self.cache}
         offs = np.full(len(self), np.nan)
         for robot in known:
@@ -227,7 +227,7 @@ class FleetRows:
         return offs
 
     def _text(self, title: str) -> list[str]:
-        """Return the texts of Task or Link of every robot."""
+        """Return the texts of column Task or Link of every robot."""
         known = self._texts.get(title)
         if known is None:
             known = self._texts[title] = self._links() if title == "Link" else self._tasks()
@@ -250,8 +250,8 @@ class FleetRows:
         return texts
 
     def _has(self, word: str, names: list[str]) -> Bools:
-        """Tell which robots have ``word`` in their name, state, task or link; each text is looked at once,
-        however many robots say it."""
+        """Return which robots have ``word`` in their name, state, task or link; each text is checked once,
+        however many robots have it."""
         has = np.fromiter((word in name for name in names), dtype=bool, count=len(names))
         has |= np.array([word in look_in_words(look).casefold() for look in LOOKS])[self.shown_as]
         return has | self.picture.says("link", word) | self._has_task(word)
@@ -288,7 +288,7 @@ def fleet_rows(
     return FleetRows(picture, cache, deviations, robots.names, robots.shown_as, robots.xy, numbers, paused)
 
 
-# Qt's own proxy asks for every cell of ten thousand robots whenever one has changed; this one asks numpy.
+# Qt's own proxy queries every cell of ten thousand robots whenever one has changed; this one uses numpy.
 
 ANSWERED_ROLES = frozenset(
     {
@@ -299,18 +299,18 @@ ANSWERED_ROLES = frozenset(
         Qt.ItemDataRole.TextAlignmentRole,
     }
 )
-"""The item roles that this model answers; a view asks for as many others of each cell that it paints."""
+"""The item roles that this model supports; a view queries as many others for each cell that it paints."""
 
 
 class PositionTexts(Protocol):
-    """The view of the robots, which knows in which CRS positions are shown."""
+    """The view of the robots, which has the CRS in which positions are shown."""
 
     def place_in_words(self, x: float, y: float) -> str:
         """Return the text of a position, given in metres in the site frame; empty where it is not known."""
 
 
 class RobotModel(QAbstractTableModel):
-    """One row for each robot that is listed. ``rows`` are looked at afresh by :meth:`show`."""
+    """One row for each listed robot. ``rows`` are computed afresh by :meth:`show`."""
 
     def __init__(
         self,
@@ -335,11 +335,11 @@ class RobotModel(QAbstractTableModel):
         self._icons = StateIcons()
 
     def set_filter(self, text: str, which: RobotChoice) -> None:
-        """Have only those robots listed, from the next renewal on, that ``text`` and ``which`` mean."""
+        """List only robots that match ``text`` and ``which``, from the next update on."""
         self.text, self.which = text, which
 
     def set_troubled(self, robots: set[str]) -> None:
-        """Note which robots have alarms."""
+        """Record which robots have alarms."""
         self.troubled = robots
 
     def rowCount(self, parent: QModelIndex | None = None) -> int:
@@ -377,11 +377,11 @@ class RobotModel(QAbstractTableModel):
         self._put(self._sorted_rows())
 
     def show(self, moment: float) -> None:
-        """Show what is known at ``moment`` of the desk's clock."""
+        """Show the state at ``moment`` of the desk's clock."""
         picture = self._fleet.picture
         fleet = fleet_rows(picture, self._fleet.cache, self._queues, self.deviations, moment)
         if picture.arrangement != self._arrangement:
-            # Rows of another arrangement are other robots.
+            # Rows of another arrangement belong to other robots.
             self._arrangement = picture.arrangement
             self.beginResetModel()
             self._fleet = fleet
@@ -392,7 +392,7 @@ class RobotModel(QAbstractTableModel):
         self._put(self._sorted_rows())
 
     def count(self) -> int:
-        """Return how many robots there are, listed or not."""
+        """Return the number of robots, listed or not."""
         return len(self._fleet)
 
     def names(self) -> list[str]:
@@ -404,7 +404,7 @@ class RobotModel(QAbstractTableModel):
         return self._fleet.names[self._order[row]]
 
     def rows_of(self, names: Iterable[str]) -> list[int]:
-        """Return the rows of the robots that are listed."""
+        """Return the rows of those robots that are listed."""
         known = (self._fleet.picture.row(name) for name in names)
         found = (int(self._row_at[row]) for row in known if row is not None and row < len(self._row_at))
         return [row for row in found if row >= 0]
@@ -488,7 +488,7 @@ class RobotModel(QAbstractTableModel):
 
 
 def _inverse(order: Rows, count: int) -> Rows:
-    """Return the row in the table of each robot, -1 for those that are not listed."""
+    """Return the row in the table of each robot, -1 for those not listed."""
     rows = np.full(count, -1, dtype=np.intp)
     rows[order] = np.arange(len(order))
     return rows

@@ -1,4 +1,4 @@
-"""Table of robots with its search, choice of robots and columns."""
+"""Table of robots with its search, filter and columns."""
 
 from __future__ import annotations
 
@@ -40,28 +40,28 @@ from ..ui.tables import ZoomMenu, fit_headers, shrink_view, widen_headers
 from .robot_model import COLUMNS, TASK, TITLES, RobotChoice, RobotModel
 
 MANY = 500
-"""With more robots the table is renewed half as often, with ten times as many four times as seldom."""
+"""Robots above which the table is updated half as often; with ten times as many a quarter as often."""
 HIDDEN_KEY = "fleet_supervisor/robot_table/hidden"
 TASK_WIDTH = 70
 NAME = TITLES.index("Robot")
 BESIDE_NAME = 32
-"""Pixels of the icon beside a name, of what Qt leaves free, and two more: Qt cuts by half a pixel."""
+"""Pixels of the icon beside a name and of Qt's margins, and two more: Qt cuts by half a pixel."""
 WIDEST_NAME = 300
-"""Pixels that names get at most; longer ones are cut in their middle, since they differ at their ends."""
+"""Greatest width of names in pixels; longer ones are cut in the middle, since they differ at their ends."""
 LONGEST_NAMES = 20
-"""Names of which the widest is looked for: those of the most characters."""
+"""Number of names among which the widest is searched: those with the most characters."""
 ROWS_AT_LEAST = 4
-"""Robots that are seen at once however low the panel is."""
+"""Robots that are visible at once however low the panel is."""
 OF_THEMES = 2
-"""Pixels that QGIS's themes draw around heads and rows, and that stand in no size hint."""
+"""Pixels that QGIS's themes draw around heads and rows, and that are in no size hint."""
 
 
 class RobotTableView(QTableView):
-    """Shows the desk's robots; its selection and the desk's are one."""
+    """Shows the desk's robots; its selection and the desk's are the same."""
 
     zoom_requested = pyqtSignal(str)
     refreshed = pyqtSignal()
-    """The rows are those of this moment."""
+    """The rows have been updated."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(parent)
@@ -82,24 +82,24 @@ class RobotTableView(QTableView):
         self.positions.changed.connect(self.refresh)
         desk.selection.changed.connect(self._selected_elsewhere)
         desk.state.updated.connect(self._pulled)
-        # The robots known so far may be gone, or be others by the same names.
+        # The robots known so far may be gone, or be others with the same names.
         desk.state.site_changed.connect(self.refresh)
         desk.state.robots_removed.connect(self._removed)
 
     @property
     def robots(self) -> RobotModel:
-        """What it shows: which robots are listed is set there."""
+        """The model: the filter is set there."""
         return self._model
 
     def refresh(self) -> None:
-        """Show what the desk knows at this moment."""
-        # Rows that come and go with a filter take their selection with them; the desk's stays.
+        """Show the desk's current state."""
+        # Rows that a filter hides lose their selection; the desk's stays.
         self._marking = True
         self._model.show(self._desk.clock.steady())
         self._marking = False
         self._fit_names()
         if self._is_reset:
-            # Rows that only changed places took their selection along.
+            # Rows that only changed places kept their selection.
             self._is_reset = False
             self._mark()
         self.refreshed.emit()
@@ -115,7 +115,7 @@ class RobotTableView(QTableView):
         self.refresh()
 
     def _fit_names(self) -> None:
-        """Give the names the room that they take, whatever the other columns have left, until a hand does."""
+        """Fit the width of the names to their texts, as far as columns allow, until it is set by hand."""
         picture = self._desk.state.robots
         known = picture.arrangement, len(picture)
         if self._is_fitted_by_hand or known == self._fitted:
@@ -129,7 +129,7 @@ class RobotTableView(QTableView):
         self._is_fitting = False
 
     def _resized(self, column: int, _before: int, _now: int) -> None:
-        # A click on the head makes room for the mark of sorting, which is nobody's wish for a width.
+        # A click on the head widens it for the sort indicator, which is no width set by hand.
         is_dragged = bool(QApplication.mouseButtons() & Qt.MouseButton.LeftButton)
         self._is_fitted_by_hand |= column == NAME and is_dragged and not self._is_fitting
 
@@ -163,11 +163,11 @@ class RobotTableView(QTableView):
         super().changeEvent(event)
         is_other_font = event.type() in (QEvent.Type.FontChange, QEvent.Type.StyleChange)
         if is_other_font and self._is_set_up:
-            # The heads get theirs after this.
+            # The heads get their font after this event.
             QTimer.singleShot(0, self._refit)
 
     def _refit(self) -> None:
-        """Have room for a larger font, such as one that was chosen in QGIS's options meanwhile."""
+        """Fit to a larger font, such as one chosen in QGIS's options meanwhile."""
         self._is_fitting = True
         self._fit_to_font()
         widen_headers(self)
@@ -185,15 +185,15 @@ class RobotTableView(QTableView):
             extra = BESIDE_NAME if number == NAME else 7
             widest = max(map(metrics.horizontalAdvance, (column.head, column.widest))) + extra
             least = max(widest, TASK_WIDTH if number == TASK else 0)
-            # Of a hidden one this is what it will have.
+            # For a hidden column this is its width when shown.
             self.setColumnWidth(number, max(self.columnWidth(number), least))
-        # The column that takes what is left keeps room for its head.
+        # The last column, which takes the rest, keeps room for its head.
         self.horizontalHeader().setMinimumSectionSize(
             max(24, metrics.horizontalAdvance(COLUMNS[TASK].head) + 9)
         )
 
     def least_height(self) -> int:
-        """Return the pixels of height that :data:`ROWS_AT_LEAST` rows take."""
+        """Return the height in pixels of :data:`ROWS_AT_LEAST` rows."""
         rows = ROWS_AT_LEAST * self.verticalHeader().defaultSectionSize()
         beside = self.horizontalScrollBar().sizeHint().height() + 2 * self.frameWidth()
         return self.horizontalHeader().sizeHint().height() + rows + beside + OF_THEMES
@@ -219,7 +219,7 @@ class RobotTableView(QTableView):
         if self._marking or not rows:
             return
         names = [self._name(index) for index in rows]
-        # Drafts are made for the one that was clicked last.
+        # Drafts are made for the robot clicked last.
         current = self.currentIndex()
         last = self._name(current) if current.isValid() else ""
         names.sort(key=lambda name: name == last)
@@ -245,7 +245,7 @@ class RobotTableView(QTableView):
         flags = QItemSelectionModel.SelectionFlag
         self._marking = True
         if rows:
-            # Keys go on from the robot that drafts are made for.
+            # Keyboard navigation continues from the robot that drafts are made for.
             self.selectionModel().setCurrentIndex(self._model.index(rows[-1], 0), flags.NoUpdate)
         self.selectionModel().select(selection, flags.ClearAndSelect | flags.Rows)
         self._marking = False
@@ -253,7 +253,7 @@ class RobotTableView(QTableView):
 
 WGS84 = "EPSG:4326"
 AROUND_SEARCH = 40
-"""Pixels of the magnifying glass and of the field's margins."""
+"""Pixels of the magnifying glass and the field's margins."""
 ROBOT_CHOICES = {
     RobotChoice.ALL: tr("All robots"),
     RobotChoice.TROUBLED: tr("With alarms, or not fresh"),
@@ -263,9 +263,9 @@ ROBOT_CHOICES = {
 
 
 class RobotPanel(QWidget):
-    """The line of filters: what is typed narrows the table at once; it says how many of how many are listed.
+    """The line of filters: typing filters the table at once; it shows how many of how many are listed.
 
-    The table itself stands apart, above it: as the part of the panel that gives way to others it must move no
+    The table itself is placed above it: as the part of the panel that shrinks for others it must move no
     button.
     """
 
@@ -283,7 +283,7 @@ class RobotPanel(QWidget):
         self.table.refreshed.connect(self._show_count)
 
     def mark_troubled(self, robots: set[str]) -> None:
-        """Say which robots have alarms."""
+        """Set which robots have alarms."""
         self.table.robots.set_troubled(robots)
 
     def _columns_button(self) -> QToolButton:
@@ -364,7 +364,7 @@ def _search_field() -> QgsFilterLineEdit:
     field.setPlaceholderText(tr("Search"))
     field.setAccessibleName(tr("Search robots"))
     field.setToolTip(tr("Name, state, task or link; several words have to be there all"))
-    # In a narrow panel it is the first to give way.
+    # In a narrow panel it is the first to shrink.
     field.setMinimumWidth(field.fontMetrics().horizontalAdvance(field.placeholderText()) + AROUND_SEARCH)
     return field
 
@@ -381,7 +381,7 @@ def _choice_of_robots() -> QComboBox:
 
 def _counter() -> ElidedText:
     label = ElidedText("fleet_robot_count")
-    # One that grew with each digit would move what is beside it.
+    # If it grew with each digit it would move its neighbours.
     widest = tr("{listed} of {all}", listed=100, all=1000)
     label.setSizePolicy(QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Fixed)
     label.setFixedWidth(label.fontMetrics().horizontalAdvance(widest))

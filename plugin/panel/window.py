@@ -45,24 +45,24 @@ from .queue import PauseActions, QueueEdits
 
 MENU = "Fleet Supervisor"
 CONNECTING = request_topic("hello", "")
-"""What was asked for with Connect."""
+"""Topic of requests made with Connect."""
 
 
 class FleetWindow(QObject):
-    """Everything of the desk that hangs in the QGIS window. :meth:`remove` undoes the constructor."""
+    """All parts of the desk in the QGIS window. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface):
         # A child of the main window, so that scripts find its actions there by their object names.
         super().__init__(iface.mainWindow())
         self._iface = iface
         self._reasons: set[str] = set()
-        """Why the link is down, as far as the message bar has said it."""
+        """Reasons why the link is down that the message bar has shown."""
         self._gateways = KnownGateways()
         canvas = iface.mapCanvas()
         self.desk = FleetController(canvas, QgsProject.instance(), self)
         self.actions = Actions(self)
         self._parts: list[Part] = []
-        """What :meth:`remove` takes out, the last one first."""
+        """Parts that :meth:`remove` removes, the last one first."""
         self.notices = self._add(MessageBar(iface.messageBar(), self))
         self._key = self._add(EmergencyKey(self.actions.emergency, self))
         self._project_match = self._add(ProjectMatch(self.desk.state, self.desk.project, self))
@@ -94,7 +94,7 @@ class FleetWindow(QObject):
         self._place()
 
     def remove(self) -> None:
-        """Take every part out of the window and wait for the connection's threads."""
+        """Remove every part from the window and wait for the connection's threads."""
         self.desk.shut_down()
         for tool in self._tools.values():
             self._put_away(tool)
@@ -106,7 +106,7 @@ class FleetWindow(QObject):
             self._leave()
 
     def _leave(self) -> None:
-        """Take toolbar, panel and menu entries out of the window."""
+        """Remove toolbar, panel and menu entries from the window."""
         for action in self.menu_entries():
             self._iface.removePluginMenu(MENU, action)
         self._draft_menu.deleteLater()
@@ -122,13 +122,13 @@ class FleetWindow(QObject):
         return part
 
     def menu_entries(self) -> list[QAction]:
-        """Return what stands in the plugin's menu itself; one entry opens the menu of drafts."""
+        """Return the entries of the plugin's menu itself; one of them opens the menu of drafts."""
         drafts = self.actions.for_drafts
         entries = [self._draft_menu.menuAction() if one in drafts else one for one in self.actions.all()]
         return list(dict.fromkeys(entries))
 
     def go_to(self, robot: str) -> None:
-        """Select a robot alone and show where it is."""
+        """Select a robot alone and show it on the map."""
         self.desk.selection.select(robot)
         self.view.zoom_to(robot)
 
@@ -148,7 +148,7 @@ class FleetWindow(QObject):
         for action, tool in self._tools.items():
             tool.setAction(action)
             action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
-            # A click on the button of the tool in hand keeps it, as QGIS's own do.
+            # A click on the button of the active tool keeps it, as QGIS's own do.
             action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
         actions.panel.triggered.connect(self._give_keyboard)
         actions.connect.triggered.connect(self._connect_or_not)
@@ -173,7 +173,7 @@ class FleetWindow(QObject):
         desk.state.gateways_changed.connect(self._keep_gateways)
 
     def _give_keyboard(self, opened: bool) -> None:
-        """Let who opened the panel by its key go on in it by keys: connected, no letter leads into it."""
+        """Set the focus in a panel opened by its shortcut: once connected, no access key leads there."""
         if opened:
             self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
@@ -189,7 +189,7 @@ class FleetWindow(QObject):
         canvas = self._iface.mapCanvas()
         if canvas.mapTool() is tool:
             canvas.unsetMapTool(tool)
-            # A QGIS without any map tool would not answer to clicks.
+            # A QGIS without any map tool would not react to clicks.
             self._iface.actionPan().trigger()
 
     def _connect_or_not(self, connect: bool) -> None:
@@ -221,7 +221,7 @@ class FleetWindow(QObject):
         if link.phase is ConnectionPhase.FAILED:
             self.desk.messages.post(link.reason, Level.ERROR, OUTAGE)
         elif link.phase is ConnectionPhase.RETRYING and link.reason not in self._reasons:
-            # The panel goes on showing it; the message bar says it once for each outage and gateway.
+            # The panel keeps showing it; the message bar shows it once for each outage and gateway.
             self._reasons.add(link.reason)
             self.desk.messages.post(link.reason, Level.WARNING, OUTAGE)
         if not link.reason:
@@ -250,7 +250,7 @@ class FleetWindow(QObject):
 
 
 class WindowAlarms(QObject):
-    """Puts the alarms beside the other lists of the Fleet panel. :meth:`remove` undoes the constructor."""
+    """Adds the alarms to the lists of the Fleet panel. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface, window: FleetWindow, surfaces: SurfaceStore):
         super().__init__(window)
@@ -269,7 +269,7 @@ class WindowAlarms(QObject):
         self.bar.requested.connect(self._show)
 
     def remove(self) -> None:
-        """Watch no more and take panel and message away."""
+        """Stop watching and remove panel and message."""
         self.bar.remove()
         self.watch.remove()
         self.panel.remove()
@@ -299,25 +299,25 @@ class WindowAlarms(QObject):
         self._tabs.setCurrentWidget(self.panel)
 
 
-# --- Project of the site: whether the open one fits the gateway's site, and published sites dropped in ---
+# --- Project of the site: whether the open one matches the gateway's site, and published sites dropped in ---
 
 SAME_PLACE = 0.01
-"""Metres up to which two origins are one."""
+"""Metres up to which two origins are the same."""
 SAME_ANGLE = 1e-6
-"""Radians up to which two rotations are one."""
+"""Radians up to which two rotations are the same."""
 
 
 class ProjectMatch(QObject):
-    """Tells of a project whose variables have another site frame than the site that is served.
+    """Warns of a project whose variables have another site frame than the site that is served.
 
-    Robots are shown where they are all the same; what is checked before a command goes out, and what raises
-    alarms, are the project's own roads, keepouts and obstacles.
+    Robots are shown in the right places even so; but the checks before a command is sent, and the alarms,
+    use the project's own roads, keepouts and obstacles.
     """
 
     differs = pyqtSignal(str)
-    """What to tell the operator."""
+    """The warning for the operator."""
     over = pyqtSignal(str)
-    """What was told is not so any more."""
+    """The warning is no longer true."""
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -328,7 +328,7 @@ class ProjectMatch(QObject):
         state.site_changed.connect(self._compare)
 
     def remove(self) -> None:
-        """Compare no more."""
+        """Stop comparing."""
         self._watch.remove()
 
     def _compare(self) -> None:
@@ -353,11 +353,11 @@ def _is_one(a: SiteFrame, b: SiteFrame) -> bool:
 
 
 WHOLE = ("directory", "collection")
-"""What the browser panel calls a folder, and a GeoPackage with all that is in it."""
+"""The browser panel's types of a folder, and of a GeoPackage with all its layers."""
 
 
 class SiteDropHandler(QgsCustomDropHandler):
-    """Takes a site's folder, its site.toml or its site.gpkg; everything else is left to QGIS.
+    """Handles a site's folder, its site.toml or its site.gpkg; everything else is left to QGIS.
 
     :meth:`remove` undoes the constructor.
     """
@@ -368,12 +368,12 @@ class SiteDropHandler(QgsCustomDropHandler):
         iface.registerCustomDropHandler(self)
 
     def remove(self) -> None:
-        """Take nothing more that is dropped."""
+        """Stop handling drops."""
         self._iface.unregisterCustomDropHandler(self)
         self.deleteLater()
 
     def handleMimeDataV2(self, data: QMimeData) -> bool:
-        # Not as files: what comes from the browser panel names data sources.
+        # Not as files: items of the browser panel name data sources.
         sources = QgsMimeDataUtils.decodeUriList(data) if QgsMimeDataUtils.isUriList(data) else []
         folders = [site_folder(Path(one.uri)) for one in sources if one.layerType in WHOLE]
         if not folders or None in folders or len(folders) < len(sources):
@@ -390,7 +390,7 @@ class SiteDropHandler(QgsCustomDropHandler):
         return True
 
     def _load(self, folder: Path) -> None:
-        """Load the site, or say why not."""
+        """Load the site, or report why not."""
         known = loaded_already(folder, self._project)
         if known:
             names = ", ".join(layer.name() for layer in known)
@@ -406,7 +406,7 @@ class SiteDropHandler(QgsCustomDropHandler):
             return
         self._notices.info(_in_words(site))
         if was_empty:
-            # QGIS takes over the site's CRS in a moment; what was shown whole before would be small then.
+            # QGIS is about to switch to the site's CRS; an extent set before would be small then.
             QTimer.singleShot(0, self._iface.mapCanvas().zoomToFullExtent)
 
 

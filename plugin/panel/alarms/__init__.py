@@ -1,1 +1,1 @@
-"""Alarms: rules on arrays, hysteresis, board of alarms, and what shows them."""
+"""Alarms: rules on arrays, hysteresis, the board of alarms, and their display."""

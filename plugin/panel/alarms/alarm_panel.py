@@ -1,4 +1,4 @@
-"""Panel of alarms: table, log, and the form and dialog of thresholds."""
+"""Panel of alarms: table, log, and form and dialog of thresholds."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ GATEWAY_JUDGES = tr("the gateway judges it by the published site, and says what 
 
 
 class ThresholdsForm(QWidget):
-    """A box for each kind of alarm that is watched for, with its numbers beside it."""
+    """A box for each kind of alarm, with its thresholds beside it."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -48,20 +48,20 @@ class ThresholdsForm(QWidget):
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(1, 1)
-        # All of it fits QGIS's options on a small screen with large type.
+        # The whole form fits QGIS's options on a small screen with large type.
         grid.setVerticalSpacing(2)
         for kind in AlarmKind:
             self._add(grid, kind)
 
     def show_limits(self, limits: Thresholds) -> None:
-        """Show these settings."""
+        """Show these thresholds."""
         for kind, box in self._boxes.items():
             box.setChecked(kind in limits.kinds)
         for name, threshold in THRESHOLDS.items():
             self._numbers[name].setValue(getattr(limits, name) * threshold.scale)
 
     def limits(self) -> Thresholds:
-        """Return what stands in the fields."""
+        """Return the thresholds in the fields."""
         return Thresholds(
             **{name: self._numbers[name].value() / one.scale for name, one in THRESHOLDS.items()},
             kinds=frozenset(kind for kind, box in self._boxes.items() if box.isChecked()),
@@ -93,7 +93,7 @@ class ThresholdsForm(QWidget):
 
 
 class ThresholdsDialog(QDialog):
-    """The fields, and what to do with them."""
+    """The form of thresholds with its buttons."""
 
     chosen = pyqtSignal(object)
     """The Thresholds, when OK was pressed."""
@@ -128,7 +128,7 @@ ALARM_COLUMNS = (tr("Since"), tr("Alarm"), tr("State"))
 
 
 class AlarmModel(RowModel):
-    """One row for each alarm, in the order in which they are given."""
+    """One row for each alarm, in the order given."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(ALARM_COLUMNS, parent)
@@ -149,7 +149,7 @@ class AlarmModel(RowModel):
         return None
 
     def show_alarms(self, alarms: list[Alarm]) -> None:
-        """Show these; rows that stay the same alarms keep their selection."""
+        """Show these alarms; rows of the same alarms stay selected."""
         self.show_rows(alarms, lambda alarm: alarm.key)
 
     def alarm_at(self, row: int) -> Alarm:
@@ -157,12 +157,12 @@ class AlarmModel(RowModel):
         return self.rows[row]
 
     def rows_of(self, keys: set) -> list[int]:
-        """Return the rows of alarms by their keys."""
+        """Return the rows of the alarms with these keys."""
         return [row for row, alarm in enumerate(self.rows) if alarm.key in keys]
 
 
 def tip(alarm: Alarm) -> str:
-    """Return all that is known of an alarm."""
+    """Return all details of an alarm."""
     lines = [f"{alarm.kind.words}: {alarm.text}", tr("since {time}", time=time_of_day(alarm.began))]
     if alarm.times > 1:
         lines.append(tr("it began {times} times", times=alarm.times))
@@ -179,7 +179,7 @@ CSV_HEAD = ("time", "change", "kind", "robot", "other", "x", "y", "alarm", "by")
 
 
 class AlarmLogDialog(QDialog):
-    """Newest first; the whole of it can be written as CSV."""
+    """The log of alarms, newest first, with export of all of it as CSV."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -214,12 +214,12 @@ class AlarmLogDialog(QDialog):
         self.resize(1040, 440)
 
     def show_events(self, events: list[AlarmEvent]) -> None:
-        """Show these, oldest given first."""
+        """Show these events, given oldest first."""
         self._events = events
         self._model.show_events(events[::-1])
 
     def export(self, path: str) -> None:
-        """Write all that is shown to ``path`` and say so."""
+        """Write all events shown to ``path`` and report it."""
         try:
             count = write_csv(path, CSV_HEAD, map(_csv_row, self._events))
         except FleetError as error:
@@ -273,9 +273,9 @@ class AlarmPanel(QWidget):
     """A row for each alarm; a double click or Enter goes to the robot."""
 
     robots_requested = pyqtSignal(list)
-    """The names of robots to be selected and shown."""
+    """The names of robots to select and show."""
     counted = pyqtSignal(int)
-    """How many alarms nobody has acknowledged yet."""
+    """The number of unacknowledged alarms."""
 
     def __init__(self, watch: AlarmWatch, parent: QWidget | None = None):
         super().__init__(parent)
@@ -292,7 +292,7 @@ class AlarmPanel(QWidget):
         self.refresh()
 
     def refresh(self) -> None:
-        """Show the alarms as they are."""
+        """Show the current alarms."""
         chosen = {alarm.key for alarm in self._chosen()}
         alarms = self._watch.board.alarms()
         self._model.show_alarms(alarms)
@@ -349,7 +349,7 @@ class AlarmPanel(QWidget):
         rows = QVBoxLayout(self)
         rows.setContentsMargins(0, 2, 0, 0)
         rows.setSpacing(4)
-        # At the top: what takes room from the panel takes it from the end of the list.
+        # Aligned at the top: when the panel shrinks, the end of the list is cut.
         rows.addLayout(self._buttons())
         rows.addWidget(self._view, 1)
         rows.addWidget(self._note)
@@ -363,7 +363,7 @@ class AlarmPanel(QWidget):
         self._log.raise_()
 
     def remove(self) -> None:
-        """Close what it opened."""
+        """Close its windows."""
         if self._log is not None:
             self._log.close()
             self._log.deleteLater()

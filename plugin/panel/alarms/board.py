@@ -1,4 +1,4 @@
-"""Board of alarms, of the plugin's rules and of the gateway's reports, their colours, the log."""
+"""Board of alarms from the plugin's rules and the gateway's reports, their colours, and the log."""
 
 from __future__ import annotations
 
@@ -35,14 +35,14 @@ CHANGES = {
 
 
 def robots_of(alarm: Alarm) -> str:
-    """Return the robot, or both."""
+    """Return the robot of an alarm, or both."""
     if not alarm.other:
         return alarm.robot
     return tr("{robot} and {other}", robot=alarm.robot, other=alarm.other)
 
 
 def alarm_state_in_words(alarm: Alarm) -> str:
-    """Return whether an alarm holds and was seen, as in ``new ×3`` or ``over``."""
+    """Return whether an alarm holds and was acknowledged, as in ``new ×3`` or ``over``."""
     if not alarm.is_new:
         return tr("seen")
     state = tr("new") if alarm.ended is None else tr("over")
@@ -50,24 +50,24 @@ def alarm_state_in_words(alarm: Alarm) -> str:
 
 
 def colour_of(alarm: Alarm) -> QColor:
-    """Return the colour of an alarm's letters; pale where it is over."""
+    """Return the text colour of an alarm; pale where it is over."""
     if alarm.ended is not None:
         return QApplication.palette().color(QPalette.ColorGroup.Disabled, QPalette.ColorRole.Text)
     return alarm_colour(alarm.kind.is_urgent)
 
 
 def alarm_colour(pressing: bool) -> QColor:
-    """Return red for what is pressing, else amber, legible on the background of lists."""
+    """Return red for an urgent alarm, else amber, legible on the background of lists."""
     if pressing:
         return QColor("#FF8A80" if is_dark() else "#B71C1C")
     return QColor("#FFB74D" if is_dark() else "#A15C00")
 
 
 class ReportedAlarm(NamedTuple):
-    """An alarm as long as the gateway reports it; ``xy`` is metres in the site frame.
+    """An alarm for as long as the gateway reports it; ``xy`` is metres in the site frame.
 
     ``began`` is seconds since 1970, None where the desk's own time counts. ``unsure`` names those of the two
-    that may be elsewhere.
+    robots that may be elsewhere.
     """
 
     kind: AlarmKind
@@ -81,12 +81,12 @@ class ReportedAlarm(NamedTuple):
 
     @property
     def key(self) -> Key:
-        """What makes it the same alarm in the next report."""
+        """The key by which the next report is recognised as the same alarm."""
         return self.kind, self.robot, self.other or self.area
 
 
 def fence_alarms(alarms: Iterable[FenceAlarm]) -> list[ReportedAlarm]:
-    """Return robots in keepouts and at obstacles as alarms, with what the gateway has done."""
+    """Return alarms for robots in keepouts and at obstacles, with the gateway's reaction."""
     found = []
     for one in alarms:
         kind = AlarmKind.IN_KEEPOUT if one.kind == "keepout" else AlarmKind.AT_OBSTACLE
@@ -96,15 +96,15 @@ def fence_alarms(alarms: Iterable[FenceAlarm]) -> list[ReportedAlarm]:
 
 
 def passing_alarms(conflicts: Conflicts, limits: rules.Thresholds) -> list[ReportedAlarm]:
-    """Return the robots that will pass one another too near soon, or do so now, as alarms."""
+    """Return alarms for robots that pass one another too near now or soon."""
     soon = (one for one in conflicts.conflicts if one.begins - conflicts.t <= limits.pass_within)
     found = [_passing_alarm(one) for one in soon]
-    # Of several meetings of the same two the soonest is told.
+    # If the same two meet several times, the soonest meeting is reported.
     return list({alarm.key: alarm for alarm in reversed(found)}.values())
 
 
 def nearness_alarms(alarms: Iterable[NearnessAlarm], doubted: Collection[str] = ()) -> list[ReportedAlarm]:
-    """Return the people and vehicles that are near robots, or will be soon, as alarms; those ``doubted`` may
+    """Return alarms for people and vehicles that are near robots now or soon; those ``doubted`` may
     be elsewhere."""
     found = []
     for one in alarms:
@@ -128,7 +128,7 @@ def _nearness_text(one: NearnessAlarm) -> str:
 
 
 def _passing_alarm(one: ConflictReport) -> ReportedAlarm:
-    # The gateway tells first who drives: when one of them has stopped it is the same alarm.
+    # The gateway names the moving one first: when one of them has stopped it is still the same alarm.
     robot, other = sorted((one.robot, one.other))
     return ReportedAlarm(AlarmKind.WILL_PASS, robot, _passing_text(one), (one.x, one.y), other)
 
@@ -170,15 +170,15 @@ def _passing_text(one: ConflictReport) -> str:
 MOST_EVENTS = 5000
 MOST_ALARMS = 1000
 ON_AFTER = 1.0
-"""Seconds for which a rule holds before it is an alarm; a robot that stands has longer."""
+"""Seconds for which a rule must hold before it is an alarm; for a robot that stands they are more."""
 OFF_AFTER = 1.0
 GONE_AFTER = 2.0
-"""Seconds without a report after which a reported alarm is over: a conflict at its limit comes and goes."""
+"""Seconds without a report after which a reported alarm is over: a conflict at its limit flickers."""
 URGENCY = {kind: number for number, kind in enumerate(AlarmKind)}
 
 
 class AlarmBoard:
-    """Looks at one situation after the other. ``moment`` is on the monotonic clock, ``at`` since 1970."""
+    """Evaluates one snapshot after the other. ``moment`` is on the monotonic clock, ``at`` since 1970."""
 
     def __init__(self, limits: rules.Thresholds | None = None) -> None:
         self._limits = limits or rules.Thresholds()
@@ -186,29 +186,30 @@ class AlarmBoard:
         self._doubted = RowHysteresis()
         self._pairs = PairHysteresis()
         self._reported: dict[Key, float] = {}
-        """The alarms that the gateway judges, with when each was reported last."""
+        """The alarms judged by the gateway, with the time of their last report."""
         self._alarms: dict[Key, Alarm] = {}
         self._ordered: list[Alarm] | None = []
         self.log: deque[AlarmEvent] = deque(maxlen=MOST_EVENTS)
 
     @property
     def limits(self) -> rules.Thresholds:
-        """The settings."""
+        """The thresholds."""
         return self._limits
 
     def alarms(self) -> list[Alarm]:
-        """Return those to be shown: new ones first, what holds before what is over, pressing ones first."""
+        """Return the alarms to show: new ones first, holding before over, urgent ones first."""
         if self._ordered is None:
-            # Bar, panel, table and details ask at each change: with a thousand alarms that is noticeable.
+            # Bar, panel, table and details call this at each change: with a thousand alarms that is
+            # noticeable.
             self._ordered = sorted(self._alarms.values(), key=_order)
         return self._ordered.copy()
 
     def of(self, robot: str) -> list[Alarm]:
-        """Return the alarms that a robot is part of, pressing ones first."""
+        """Return the alarms of a robot, urgent ones first."""
         return [alarm for alarm in self.alarms() if robot in (alarm.robot, alarm.other)]
 
     def evaluate(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
-        """Judge a situation and return what changed by it."""
+        """Evaluate a snapshot and return the changes."""
         events = []
         for kind, rule in rules.RULES.items():
             holds, over = rule(now, self._limits)
@@ -229,7 +230,7 @@ class AlarmBoard:
     def report(
         self, reported: Iterable[ReportedAlarm], moment: float, at: float
     ) -> tuple[list[AlarmEvent], bool]:
-        """Take in what the gateway reports now; return what changed by it, and whether a text did."""
+        """Apply the gateway's present reports; return the changes, and whether a text changed."""
         events, renewed = [], False
         for one in reported:
             if one.kind not in self._limits.kinds:
@@ -252,11 +253,11 @@ class AlarmBoard:
         return events, renewed
 
     def set_limits(self, limits: rules.Thresholds) -> None:
-        """Judge by other settings from the next look on."""
+        """Use other thresholds from the next evaluation on."""
         self._limits = limits
 
     def acknowledge(self, keys: Iterable[Key], by: str, at: float) -> list[AlarmEvent]:
-        """Note that somebody has seen these alarms; those that are over go."""
+        """Record that these alarms were acknowledged; those that are over are removed."""
         events = []
         for key in keys:
             alarm = self._alarms.get(key)
@@ -273,7 +274,7 @@ class AlarmBoard:
         return events
 
     def clear(self) -> None:
-        """Forget the robots and their alarms: they are another site's. The log stays."""
+        """Forget the robots and their alarms: they belong to another site. The log stays."""
         self._rows = {kind: RowHysteresis() for kind in rules.RULES}
         self._doubted = RowHysteresis()
         self._pairs = PairHysteresis()
@@ -282,7 +283,7 @@ class AlarmBoard:
         self._ordered = None
 
     def drop(self, gone: RemovedRobots) -> None:
-        """Forget robots that are there no more or out of view, with their alarms. The log stays."""
+        """Forget robots that no longer exist or are out of view, with their alarms. The log stays."""
         for latch in (*self._rows.values(), self._doubted, self._pairs):
             latch.drop(gone.rows)
         names = gone.all_names
@@ -293,7 +294,7 @@ class AlarmBoard:
         self._ordered = None
 
     def _let_go(self) -> None:
-        """Leave what is over to the log where nobody has acknowledged anything for a long time."""
+        """Remove the oldest alarms that are over, where there are too many; they stay in the log."""
         too_many = len(self._alarms) - MOST_ALARMS
         if too_many > 0:
             over = (alarm for alarm in self._alarms.values() if alarm.ended is not None)
@@ -301,7 +302,7 @@ class AlarmBoard:
                 del self._alarms[alarm.key]
 
     def _begin_for_doubts(self, now: AlarmSnapshot, moment: float, at: float) -> list[AlarmEvent]:
-        """Let what began since a robot does not know its place begin again where it may be elsewhere."""
+        """Begin an alarm for poor accuracy again where the robot may be elsewhere by now."""
         kind = AlarmKind.UNSURE
         holds = now.doubted & self._rows[kind].on
         rises, _ = self._doubted.update(holds, ~now.doubted, moment, 0.0, 0.0)
@@ -334,10 +335,11 @@ class AlarmBoard:
         return self._put_up(alarm, at)
 
     def _renew_text(self, one: ReportedAlarm) -> bool:
-        """Let an alarm say what the gateway says of it now, and return whether that is something else.
+        """Update the text of an alarm from the gateway's report, and return whether it has changed.
 
-        How near two robots pass changes all the time: that stays as it was when the alarm began, or when one
-        of them could be elsewhere, or no more.
+        The distance at which two robots pass changes all the time: the text keeps the one at the alarm's
+        begin,
+        or at the time when one of them became unsure, or sure again.
         """
         alarm = self._alarms.get(one.key)
         if alarm is None or alarm.text == one.text or not (one.area or alarm.unsure != one.unsure):

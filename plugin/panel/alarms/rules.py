@@ -18,9 +18,9 @@ from ...ui.language import tr
 
 
 class AlarmKind(str, Enum):
-    """What an alarm is about, the most pressing first: the value that it is kept under, and ``words`` for it.
+    """The subject of an alarm, most urgent first: the value it is stored under, and ``words`` for it.
 
-    One that ``is_urgent`` has to be dealt with at once.
+    One that ``is_urgent`` needs attention at once.
     """
 
     LOST = "lost", tr("lost")
@@ -47,7 +47,7 @@ class AlarmKind(str, Enum):
 
 @dataclass(frozen=True)
 class Threshold:
-    """One number of the settings: the alarm that it is of, what it may be, and how it is shown."""
+    """One setting: the alarm that it belongs to, its range, and its display."""
 
     kind: AlarmKind
     least: float
@@ -59,7 +59,7 @@ class Threshold:
 
 
 def _threshold(default: float, *of: Any) -> Any:
-    """Return a field of :class:`Thresholds` with what :class:`Threshold` says of it."""
+    """Return a field of :class:`Thresholds` with a :class:`Threshold` as metadata."""
     return field(default=default, metadata={Threshold: Threshold(*of)})
 
 
@@ -73,7 +73,7 @@ class Thresholds:
     ``unsure_margin`` below. ``outside_margin`` and ``road_margin`` are metres beyond the site's bounds or
     beside the road from which an alarm begins; it ends on the site or road. ``stopped_after`` is seconds for
     which a robot with a task stands; ``pass_within`` is seconds before two robots pass one another too near.
-    ``kinds`` are the alarms that are watched for.
+    ``kinds`` are the alarms that are evaluated.
     """
 
     low_battery: float = _threshold(0.20, AlarmKind.LOW_BATTERY, 0.0, 1.0, tr("begins below"), " %", 100.0, 0)
@@ -118,7 +118,7 @@ GROUP = "fleet_supervisor/alarms"
 
 
 def read_thresholds() -> Thresholds:
-    """Return what the operator set; a value that is none, or out of its range, counts as never set."""
+    """Return the operator's settings; an invalid value, or one out of its range, counts as not set."""
     settings = QgsSettings()
     numbers = {name: _number(settings.value(f"{GROUP}/{name}"), name) for name in THRESHOLDS}
     off = str(settings.value(f"{GROUP}/off") or "").split(",")
@@ -129,7 +129,7 @@ def read_thresholds() -> Thresholds:
 
 
 def write_thresholds(limits: Thresholds) -> None:
-    """Keep the settings."""
+    """Store the settings."""
     settings = QgsSettings()
     for name in THRESHOLDS:
         settings.setValue(f"{GROUP}/{name}", getattr(limits, name))
@@ -147,15 +147,15 @@ def _number(value: object, name: str) -> float | None:
 
 
 Key = tuple[AlarmKind, str, str]
-"""Kind, robot, and the other robot or the area where there is one."""
+"""Kind, robot, and the other robot or the area if any."""
 
 
 class Alarm(NamedTuple):
-    """Something that holds since ``began``, or held until ``ended``; times are seconds since 1970.
+    """An alarm that holds since ``began``, or held until ``ended``; times are seconds since 1970.
 
-    It stays until it is over and somebody has seen it. ``times`` counts how often it began since it was
+    It stays until it is over and acknowledged. ``times`` counts how often it began since it was
     last acknowledged. ``area`` is the keepout or obstacle that it is about, ``unsure`` those of its robots
-    that may be elsewhere. ``xy`` is where the robot was when it began, metres in the site frame.
+    that may be elsewhere. ``xy`` is the robot's position when it began, metres in the site frame.
     """
 
     kind: AlarmKind
@@ -173,17 +173,17 @@ class Alarm(NamedTuple):
 
     @property
     def key(self) -> Key:
-        """What makes it the same alarm when it comes again."""
+        """The key by which it is recognised as the same alarm when it returns."""
         return self.kind, self.robot, self.other or self.area
 
     @property
     def is_new(self) -> bool:
-        """Whether nobody has acknowledged it."""
+        """Whether it is not acknowledged."""
         return self.acknowledged is None
 
 
 class AlarmChange(str, Enum):
-    """What happened to an alarm."""
+    """A change of an alarm."""
 
     BEGAN = "began"
     ENDED = "ended"
@@ -192,7 +192,7 @@ class AlarmChange(str, Enum):
 
 @dataclass(frozen=True)
 class AlarmEvent:
-    """A line of the log: at ``at`` an alarm changed; ``by`` is who acknowledged it."""
+    """A line of the log: at ``at`` an alarm changed; ``by`` is the operator who acknowledged it."""
 
     at: float
     change: AlarmChange
@@ -200,9 +200,9 @@ class AlarmEvent:
     by: str = ""
 
 
-# --- When something is an alarm and when it is none any more: rules on columns, one row for each robot
-# Each rule answers twice: of whom it is true beyond doubt, and of whom it is over beyond doubt. Between the
-# two nothing changes, so that a value that trembles about its threshold makes one alarm and not hundreds.
+# --- When an alarm begins and ends: rules on columns, one row for each robot
+# Each rule returns two arrays: where it certainly holds, and where it is certainly over. Between the
+# two nothing changes, so that a value that fluctuates about its threshold makes one alarm and not hundreds.
 
 Floats = npt.NDArray[np.float64]
 Bools = npt.NDArray[np.bool_]
@@ -213,22 +213,22 @@ FRESH = STATES.index(RobotState.FRESH)
 LOST = STATES.index(RobotState.LOST)
 OFFLINE = STATES.index(RobotState.OFFLINE)
 STANDS = 0.05
-"""m/s below which a robot stands."""
+"""Speed in m/s below which a robot stands."""
 DRIVES = 0.2
-"""m/s above which it drives."""
+"""Speed in m/s above which it drives."""
 
 
 @dataclass(frozen=True)
 class AlarmSnapshot:
     """All robots at one moment, n rows that keep their places.
 
-    ``xy`` (n, 2) metres in the site frame, ``v`` (n,) metres a second, ``battery`` (n,) part of a full one,
-    ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
-    ``stopped`` (n,) whether it said that it stops; ``driving`` (n,) whether it accepted a task that is not
-    finished and nobody has it wait; ``only_seen`` (n,) whether it takes no commands, as phones do;
-    ``doubted`` (n,) whether it may not be where ``xy`` is, for which ``doubts`` has the reasons by row;
-    ``off_road`` (n,) whether it is further than the margin from every road surface, and ``on_road`` whether
-    it is on one, both None where no surfaces are known. ``bounds`` is x_min, y_min, x_max, y_max.
+    ``xy`` (n, 2) metres in the site frame, ``v`` (n,) metres per second, ``battery`` (n,) fraction of a full
+    one, ``accuracy`` (n,) metres, each NaN where not known; ``state`` (n,) index into :data:`STATES`;
+    ``stopped`` (n,) whether it reported that it stops; ``driving`` (n,) whether it accepted a task that is
+    not finished and not paused; ``only_seen`` (n,) whether it accepts no commands, like phones; ``doubted``
+    (n,) whether it may not be where ``xy`` is, for which ``doubts`` has the reasons by row; ``off_road`` (n,)
+    whether it is further than the margin from every road surface, and ``on_road`` whether it is on one, both
+    None where no surfaces are known. ``bounds`` is x_min, y_min, x_max, y_max.
     """
 
     names: list[str]
@@ -248,15 +248,15 @@ class AlarmSnapshot:
 
 
 def lost(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
-    """Nothing is heard of a robot any more; over when it speaks again or went offline in good order."""
+    """A robot has fallen silent; over when it is heard again or went offline in good order."""
     return now.state == LOST, (now.state == FRESH) | (now.state == OFFLINE)
 
 
 def unsure(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
-    """A robot may not be where it is shown, or says that it does not know its place; over when it is believed
-    and does, or says no more of it, or is offline.
+    """A robot may not be where it is shown, or reports that it has lost its position; over when neither
+    holds, or it reports no accuracy any more, or is offline.
 
-    A margin as large as the limit would never end: then half the limit is well enough.
+    A margin as large as the limit would never end: then half the limit is used.
     """
     surely = max(limits.unsure - limits.unsure_margin, limits.unsure / 2)
     fresh = now.state == FRESH
@@ -272,16 +272,16 @@ def low_battery(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
 
 
 def stopped(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
-    """A robot stands although it accepted a task; over when it drives, or has nothing to do any more."""
+    """A robot stands although it accepted a task; over when it drives, or has no task any more."""
     stands = now.stopped | (now.v < STANDS)
     return now.driving & (now.state == FRESH) & stands, ~now.driving | (~now.stopped & (now.v > DRIVES))
 
 
 def outside_site(now: AlarmSnapshot, limits: Thresholds) -> Verdict:
-    """A robot has left the site's bounds; over when it is within them."""
+    """A robot has left the site's bounds; over when it is inside them."""
     x_min, y_min, x_max, y_max = now.bounds
     x, y = now.xy.T
-    # Negative inside, positive outside; a robot without a place is neither.
+    # Negative inside, positive outside; a robot without a position is neither.
     beyond = np.maximum.reduce([x_min - x, x - x_max, y_min - y, y - y_max])
     return beyond > limits.outside_margin, beyond <= 0.0
 
@@ -302,14 +302,14 @@ RULES: dict[AlarmKind, Callable[[AlarmSnapshot, Thresholds], Verdict]] = {
     AlarmKind.OUTSIDE_SITE: outside_site,
     AlarmKind.OFF_ROAD: off_road,
 }
-"""The rules about one robot; :func:`too_close` is about two."""
+"""The rules for single robots; :func:`too_close` is for pairs."""
 
 
 def too_close(now: AlarmSnapshot, limits: Thresholds) -> tuple[Ints, Ints, Floats]:
-    """Return pairs i < j of robots that are near, and how far apart they are.
+    """Return pairs i < j of robots that are near each other, and their distances.
 
-    That is all pairs nearer than an alarm takes to end; two that are both offline are parked, not near. The
-    gateway tells who is near of what is only seen.
+    These are all pairs nearer than the distance that ends an alarm; two that are both offline are parked,
+    not near. Nearness to robots that accept no commands is reported by the gateway.
     """
     placed = np.flatnonzero(np.isfinite(now.xy).all(axis=1) & ~now.only_seen)
     one, other, apart = close_pairs(now.xy[placed], limits.too_close + limits.close_margin)
@@ -319,7 +319,7 @@ def too_close(now: AlarmSnapshot, limits: Thresholds) -> tuple[Ints, Ints, Float
 
 
 def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None = None) -> str:
-    """Return what is the matter with the robot in ``row``, or with two."""
+    """Return the text of an alarm of the robot in ``row``, or of two."""
     name = now.names[row]
     x, y = now.xy[row].tolist()
     where = tr(" at {x:.1f}, {y:.1f} m", x=x, y=y) if np.isfinite(x) and np.isfinite(y) else ""
@@ -357,11 +357,11 @@ def alarm_text(kind: AlarmKind, now: AlarmSnapshot, row: int, other: int | None 
 
 PAIR_SHIFT = np.int64(32)
 MOST_AT_ONCE = 200
-"""Changes of one look; others come with the next: a whole fleet that is lost does not hold up the window."""
+"""Changes per evaluation; others follow with the next: a fleet that is lost must not block the window."""
 
 
 class RowHysteresis:
-    """One rule for all robots: goes on where it holds for a while, off where it is over for a while."""
+    """One rule for all robots: on where it has held for a while, off where it has been over for a while."""
 
     def __init__(self) -> None:
         self.on = np.zeros(0, dtype=bool)
@@ -371,7 +371,7 @@ class RowHysteresis:
     def update(
         self, holds: Bools, over: Bools, now: float, on_after: float, off_after: float
     ) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
-        """Take in at time ``now`` where the rule (n,) holds and is over; return the rows gone on, and off."""
+        """Apply where the rule holds and is over, (n,), at time ``now``; return rows switched on, and off."""
         self._grow(len(holds))
         self._holds_since = np.where(holds, np.minimum(self._holds_since, now), np.inf)
         self._over_since = np.where(over, np.minimum(self._over_since, now), np.inf)
@@ -381,7 +381,7 @@ class RowHysteresis:
         return rises, falls
 
     def drop(self, rows: Ints) -> None:
-        """Forget robots that are there no more; those below them move up."""
+        """Forget robots that no longer exist; those below them move up."""
         rows = rows[rows < len(self.on)]
         self.on = np.delete(self.on, rows)
         self._holds_since = np.delete(self._holds_since, rows)
@@ -404,7 +404,7 @@ class PairHysteresis:
     def update(
         self, one: Ints, other: Ints, apart: Floats, distance: float
     ) -> tuple[list[tuple[int, int]], list[tuple[int, int]]]:
-        """Take in all pairs that are not yet far enough apart; return the pairs gone on, and off."""
+        """Apply all pairs that are not yet far enough apart; return the pairs switched on, and off."""
         key = (one << PAIR_SHIFT) + other
         begins = key[apart < distance]
         on = np.union1d(np.intersect1d(self._on, key), begins)
@@ -414,7 +414,7 @@ class PairHysteresis:
         return _pairs(rises), _pairs(falls)
 
     def drop(self, rows: Ints) -> None:
-        """Forget the pairs of robots that are there no more; those below them move up."""
+        """Forget the pairs of robots that no longer exist; those below them move up."""
         pairs = np.array(_pairs(self._on), dtype=np.int64).reshape(-1, 2)
         pairs = pairs[~np.isin(pairs, rows).any(axis=1)]
         pairs -= np.searchsorted(np.sort(rows), pairs)

@@ -1,4 +1,4 @@
-"""Watch that runs the alarm rules: snapshot, road surfaces; alarms in QGIS's message log and message bar."""
+"""Watch that runs the alarm rules: snapshot, road surfaces, alarms in QGIS's message log and message bar."""
 
 from __future__ import annotations
 
@@ -29,27 +29,27 @@ from .board import AlarmBoard, fence_alarms, nearness_alarms, passing_alarms
 from .rules import Alarm, AlarmChange, AlarmEvent, AlarmKind, AlarmSnapshot, Bools, Floats, Key, Thresholds
 
 AROUND = np.array([(np.cos(turn), np.sin(turn)) for turn in np.arange(8) * np.pi / 4])
-"""Directions in which the margin is looked for."""
+"""Directions in which the margin is sampled."""
 
 
 class RoadGround(QObject):
-    """Asks ``store``; surfaces that are not read yet are read beside the window."""
+    """Queries ``store`` for road surfaces; those not read yet are read in the background."""
 
     def __init__(self, store: SurfaceStore, parent: QObject | None = None):
         super().__init__(parent)
         self._store = store
         self._failed_once = False
         self.why_not = ""
-        """Why nobody can tell who is on the road; empty where that is known."""
+        """Why it is unknown who is on the road; empty where that is known."""
         store.forgotten.connect(self._forgotten)
         store.ended.connect(self._have_read)
 
     def evaluate(
         self, xy: Floats, transform: SiteToMapTransform, margin: float
     ) -> tuple[Bools, Bools] | None:
-        """Return of (n, 2) metres in the site frame which are off the road by ``margin``, and which on it.
+        """Return which of (n, 2) metres in the site frame are off the road by ``margin``, and which on it.
 
-        None where no surfaces are known (see :attr:`why_not`). A robot without a place is neither.
+        None where no surfaces are known (see :attr:`why_not`). A robot without a position is neither.
         """
         surfaces = self._surfaces()
         if surfaces is None:
@@ -64,11 +64,11 @@ class RoadGround(QObject):
         return off, on
 
     def report_failure(self, why: str) -> None:
-        """Say why nobody can tell who is on the road."""
+        """Report why it is unknown who is on the road."""
         self.why_not = why
 
     def remove(self) -> None:
-        """Ask the store for nothing any more."""
+        """Disconnect from the store."""
         self._store.forgotten.disconnect(self._forgotten)
         self._store.ended.disconnect(self._have_read)
 
@@ -79,7 +79,7 @@ class RoadGround(QObject):
             return None
         found = self._store.kept(layers)
         if found is not None and not found.index.surfaces:
-            # Every robot would be off the road.
+            # Otherwise every robot would be off the road.
             names = ", ".join(layer.name() for layer in layers)
             self.why_not = tr("layers of road surfaces hold no areas ({names})", names=names)
             return None
@@ -98,7 +98,7 @@ class RoadGround(QObject):
             self._give_up(why)
 
     def _give_up(self, why: str) -> None:
-        # Not tried again before a layer changes.
+        # Not tried again before a layer has changed.
         self._failed_once = True
         self.why_not = tr("layers of road surfaces cannot be read: {why}", why=why)
 
@@ -115,7 +115,7 @@ def _on_a_surface(xy: Floats, transform: SiteToMapTransform, surfaces: SurfaceMa
 
 
 class SnapshotBuilder:
-    """Makes one situation after the other; between two it sees how fast those move who do not say it."""
+    """Makes successive snapshots; from two of them it derives the speed of robots that do not report it."""
 
     def __init__(self, state: FleetState, site_to_canvas: SiteToCanvas, ground: RoadGround):
         self._state, self._site_to_canvas = state, site_to_canvas
@@ -124,7 +124,7 @@ class SnapshotBuilder:
         self._arrangement = state.robots.arrangement
 
     def at(self, moment: float, limits: Thresholds) -> AlarmSnapshot:
-        """Return how things are at ``moment`` of the desk's clock; the site has to be known."""
+        """Return the snapshot at ``moment`` of the desk's clock; the site must be known."""
         robots = self._state.robots.arrays(moment)
         off, on = self._roads(robots.xy, limits)
         only_seen = self._state.robots.only_seen()
@@ -133,7 +133,7 @@ class SnapshotBuilder:
             xy=robots.xy,
             v=self._speeds(robots, moment),
             battery=self._state.robots.column("battery"),
-            # Nobody drives by the place of what is only seen: a phone's is metres, or seconds, off all day.
+            # Not for robots that are only seen: a phone's position is metres, or seconds, off all day.
             accuracy=np.where(only_seen, np.nan, robots.accuracy),
             state=robots.state,
             stopped=self._state.robots.column("stopped") == 1.0,
@@ -149,7 +149,7 @@ class SnapshotBuilder:
     def _speeds(self, robots: RobotArrays, moment: float) -> Floats:
         then, places = self._before
         if self._arrangement != self._state.robots.arrangement:
-            # Where other robots were.
+            # These rows belonged to other robots.
             self._arrangement, places = self._state.robots.arrangement, places[:0]
         self._before = moment, robots.xy
         seen = np.full(len(robots.v), np.nan)
@@ -180,14 +180,14 @@ class SnapshotBuilder:
 
 
 MOST_LINES = 20
-"""Alarms that are written within :data:`WITHIN`: a fleet that loses its radio again and again would otherwise
+"""Alarms that are written within :data:`WITHIN`: a fleet that keeps losing its radio would otherwise
 take megabytes an hour. The log of alarms has all of them."""
 WITHIN = 600.0
 """Seconds."""
 
 
 class AlarmMessages:
-    """Writes what began, by the steady time of ``clock``."""
+    """Writes alarms that began to the message log, by the steady time of ``clock``."""
 
     def __init__(self, clock: Clock):
         self._clock = clock
@@ -196,9 +196,9 @@ class AlarmMessages:
         self._counted = 0
 
     def write(self, began: Sequence[Alarm]) -> None:
-        """Write these as far as there is room; of others at once how many, and the rest when there is room.
+        """Write these as far as the limit allows; of others the number at once, and the rest later.
 
-        To be called with nothing as well, again and again.
+        Must be called again and again, also without alarms.
         """
         if self._clock.steady() >= self._until:
             self._begin_anew()
@@ -234,16 +234,16 @@ def _write(text: str) -> None:
 FENCED = frozenset({AlarmKind.IN_KEEPOUT, AlarmKind.AT_OBSTACLE})
 NEARNESS = frozenset({AlarmKind.NEAR_ROBOT, AlarmKind.COMES_NEAR})
 MANY = 500
-"""With more robots it looks half as often."""
+"""Number of robots above which the alarms are evaluated half as often."""
 
 
 class AlarmWatch(QObject):
-    """Watches as long as the link is up: what the gateway does not tell, nobody can judge."""
+    """Evaluates the alarms while the link is up: without reports of the gateway nothing can be judged."""
 
     changed = pyqtSignal()
-    """Alarms came, ended or were acknowledged, or whether somebody watches; soon after it was so."""
+    """Alarms began, ended or were acknowledged, or the watch started or stopped; signalled shortly after."""
     happened = pyqtSignal(list)
-    """The AlarmEvents since this was told last; soon after they were."""
+    """The AlarmEvents since this was last signalled; signalled shortly after."""
 
     def __init__(
         self,
@@ -263,14 +263,14 @@ class AlarmWatch(QObject):
         self._reason = ""
         self._untold: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
-        """Alarms that have begun and that nobody was told of yet."""
+        """Alarms that have begun and have not been shown yet."""
         self._telling = CooperativeTask(self, ONE_STEP)
         self.board = AlarmBoard(rules.read_thresholds())
         state.updated.connect(self._pulled)
         state.robots_removed.connect(self._drop)
 
     def remove(self) -> None:
-        """Look no more."""
+        """Stop watching."""
         self._state.updated.disconnect(self._pulled)
         self._state.robots_removed.disconnect(self._drop)
         self._telling.stop()
@@ -292,7 +292,7 @@ class AlarmWatch(QObject):
         return " ".join(texts)
 
     def evaluate(self) -> None:
-        """Judge what is known now."""
+        """Evaluate the alarms now."""
         if self._state.link.phase is ConnectionPhase.CONNECTED and self._state.site is not None:
             moment = self._state.clock.steady()
             situation = self._situations.at(moment, self.board.limits)
@@ -301,18 +301,18 @@ class AlarmWatch(QObject):
         self._tell_of_watching()
 
     def acknowledge(self, keys: Iterable[Key]) -> None:
-        """Note that the operator has seen these alarms."""
+        """Acknowledge these alarms for the operator."""
         link = self._state.link
         operator = (link.who if link.phase is ConnectionPhase.CONNECTED else "") or tr("this desk")
         self._tell(self.board.acknowledge(keys, operator, time.time()))
         self._telling.finish()
 
     def acknowledge_all(self) -> None:
-        """Note that the operator has seen every alarm that was told of."""
+        """Acknowledge every alarm that has been shown."""
         self.acknowledge([alarm.key for alarm in self.board.alarms() if alarm.key not in self._unseen])
 
     def set_limits(self, limits: Thresholds) -> None:
-        """Judge by these settings from now on, in later sessions as well."""
+        """Use these thresholds from now on, in later sessions as well."""
         rules.write_thresholds(limits)
         self.board.set_limits(limits)
         self.changed.emit()
@@ -347,10 +347,10 @@ class AlarmWatch(QObject):
             self._telling.begin_soon(self._parts())
 
     def _parts(self) -> Steps[None]:
-        """Tell of events part by part: to judge hundreds and to show it is too much for one piece."""
+        """Signal events in parts: judging and showing hundreds at once would block the window."""
         events, self._untold = self._untold, []
         self.happened.emit(events)
-        # The message bar counts them and says what the most pressing ones are.
+        # The message bar counts them and describes the most urgent ones.
         self._unseen.clear()
         yield 0.5
         self.changed.emit()
@@ -365,11 +365,11 @@ class AlarmWatch(QObject):
 # --- Alarms in QGIS's message bar: one item that counts, with its button ---
 
 NAMED = 2
-"""Alarms that are told in words; the others are counted."""
+"""Alarms that are described; the others are counted."""
 
 
 class AlarmBar(QObject):
-    """Hangs there while there are alarms that nobody has seen. Closed, it comes back with the next one."""
+    """A bar item, present while there are unacknowledged alarms. Closed, it returns with the next one."""
 
     requested = pyqtSignal()
     """The operator wants to see the alarms."""
@@ -387,11 +387,11 @@ class AlarmBar(QObject):
         watch.changed.connect(self._changed)
 
     def text(self) -> str:
-        """Return what hangs there, empty for nothing."""
+        """Return the text of the item, empty for none."""
         return "" if self._label is None else self._label.text()
 
     def remove(self) -> None:
-        """Take it down and listen no more."""
+        """Remove the item and disconnect."""
         self._bar.widgetRemoved.disconnect(self._removed)
         self._watch.happened.disconnect(self._happened)
         self._watch.changed.disconnect(self._changed)
@@ -401,8 +401,8 @@ class AlarmBar(QObject):
         self._show(has_begun=any(event.change is AlarmChange.BEGAN for event in events))
 
     def _changed(self) -> None:
-        # Alarms also go without an event: with their robots, or with the link to others. And what the gateway
-        # does about one is told while it hangs there.
+        # Alarms also vanish without an event: with their robots, or when the link changes to others. And the
+        # gateway's reaction to one is shown while the item is there.
         if self._item is not None:
             self._show(has_begun=False)
 
@@ -421,7 +421,7 @@ class AlarmBar(QObject):
         return [alarm for alarm in self._watch.board.alarms() if alarm.is_new]
 
     def _show_words(self) -> None:
-        """Say what the alarms say now."""
+        """Show the present text of the alarms."""
         if self._label is None:
             return
         new = self._new()
@@ -432,7 +432,7 @@ class AlarmBar(QObject):
             self._label.setToolTip(tip)
 
     def _bring_to_front(self, level: Qgis.MessageLevel) -> None:
-        """Let it hang there with this level, in front; it is hung up again only behind another notice, since
+        """Show the item with this level, in front; it is replaced only when behind another notice, since
         that takes QGIS as long as a frame of the map."""
         if self._item is None:
             self._hang_up(level)
@@ -452,8 +452,8 @@ class AlarmBar(QObject):
         show.setObjectName("fleet_show_alarms")
         show.setText(tr("Show"))
         show.clicked.connect(lambda: self.requested.emit())
-        # Nothing else is pressed here: the bar comes and goes, and whoever aimed at what was there before
-        # would have acknowledged what nobody has read.
+        # The item has no other button: the bar comes and goes, and a click aimed at what was there before
+        # would acknowledge unread alarms.
         body = NoticeBody(self._label, [show], self._bar)
         body.setObjectName("fleet_alarm_bar")
         self._item = QgsMessageBarItem(body, level, 0)
@@ -470,6 +470,6 @@ class AlarmBar(QObject):
 
 
 def in_words(new: list[Alarm]) -> str:
-    """Return how many alarms nobody has seen, and what the most pressing ones are."""
+    """Return the number of unacknowledged alarms, and descriptions of the most urgent ones."""
     head = tr_count(len(new), "1 alarm", "%n alarms")
     return f"{head}: {'; '.join(first_of([alarm.text for alarm in new], NAMED))}"
