@@ -1,4 +1,4 @@
-"""Operators' accounts: the dialog, its model and its forms."""
+"""Dialog of operators' accounts, its model and its forms."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def read_accounts(
     sessions: Iterable[administration.SessionReport],
     own: str,
 ) -> list[Account]:
-    """Return the accounts in the order in which they are given; ``own`` is this desk's."""
+    """Return the accounts in the order given; ``own`` is this desk's."""
     connected = {session.operator for session in sessions}
     return [Account(one, one.operator == own, one.operator in connected) for one in operators]
 
@@ -58,7 +58,7 @@ class AccountModel(TextModel):
 
 
 def account_cells(account: Account) -> tuple[str, ...]:
-    """Return what the columns show of an account."""
+    """Return the texts of an account in the columns."""
     report = account.report
     name = tr("{operator} (you)", operator=report.operator) if account.is_own else report.operator
     seen = NOW if account.is_connected else day_and_time(report.used_at)
@@ -66,7 +66,7 @@ def account_cells(account: Account) -> tuple[str, ...]:
 
 
 def token_in_words(report: administration.OperatorReport) -> str:
-    """Return how an account's newest token stands."""
+    """Return the state of an account's newest token."""
     if report.token is administration.TokenState.REVOKED:
         return tr("revoked {time}", time=day_and_time(report.revoked_at))
     if report.token is administration.TokenState.EXPIRED:
@@ -85,13 +85,13 @@ VALIDITIES = (
     (tr("for 90 days"), 90 * DAY),
     (tr("for 1 year"), 365 * DAY),
 )
-"""How long a token may hold; seconds, None for no end."""
+"""Validity of a token; seconds, None for no end."""
 LONGEST_NAME = 128
-"""Characters of an operator's name that gateways take."""
+"""Characters of an operator's name that gateways accept."""
 
 
 class NewAccountDialog(QuestionDialog):
-    """``confirmed`` has the name, the role and for how many seconds the token holds, None for no end."""
+    """``confirmed`` has the name, the role and the validity of the token in seconds, None for no end."""
 
     confirmed = pyqtSignal(str, object, object)
 
@@ -157,7 +157,7 @@ class ChangeRoleDialog(QuestionDialog):
 
 
 class RenewTokenDialog(QuestionDialog):
-    """``confirmed`` has for how many seconds the new token holds, None for no end."""
+    """``confirmed`` has the validity of the new token in seconds, None for no end."""
 
     confirmed = pyqtSignal(object)
 
@@ -182,7 +182,7 @@ class RenewTokenDialog(QuestionDialog):
 
 
 def confirm_revocation(account: Account, parent: QWidget, then: Callable[[], object]) -> QMessageBox:
-    """Ask whether an operator's token is to be taken away; ``then`` is done when it is."""
+    """Ask whether to revoke an operator's token; ``then`` is called when confirmed."""
     texts = [
         tr(
             "The token of {operator} ends at once, with every connection that it opened. The account "
@@ -207,7 +207,7 @@ def _add_role(question: QuestionDialog, chosen: Role) -> QComboBox:
 
 
 def _chosen(roles: QComboBox) -> Role:
-    # Qt keeps text that is an enum, too, as mere text.
+    # Qt keeps text that is an enum, too, as plain text.
     return Role(roles.currentData())
 
 
@@ -226,7 +226,7 @@ WIDEST = (
 
 
 class AccountsDialog(SupervisorDialog):
-    """A row for each account. A token that the gateway makes is shown even when this is closed by then."""
+    """A row for each account. A token made by the gateway is shown even when this is closed by then."""
 
     def __init__(self, desk: FleetController, parent: QWidget):
         super().__init__(desk, AccountModel(), "fleet_accounts_dialog", tr("Accounts"), ACCOUNTS, parent)
@@ -245,11 +245,11 @@ class AccountsDialog(SupervisorDialog):
         self._lay_out()
 
     def close_tokens(self) -> None:
-        """Close what shows tokens: nobody will be there to do it."""
+        """Close the windows that show tokens: nobody will be there to do it."""
         for shown in list(self._tokens):
             shown.reject()
 
-    # --- the list ---
+    # --- List ---
 
     def _ask_rows(self) -> None:
         self._has_none = False
@@ -279,7 +279,7 @@ class AccountsDialog(SupervisorDialog):
                 )
             )
 
-    # --- what a supervisor does ---
+    # --- Actions of a supervisor ---
 
     def _add(self) -> None:
         is_first = self._has_none
@@ -338,7 +338,7 @@ class AccountsDialog(SupervisorDialog):
         self._ask(request, words, lambda result: self._show_token(result, ends_link))
 
     def _show_token(self, result: dict[str, Any], ends_link: bool) -> None:
-        # Beside the QGIS window and not this one: it must not go when this is closed.
+        # With the QGIS window as parent and not this one: it must not close when this is closed.
         made, parent = new_token(result), self.parentWidget()
         dialog = TokenDialog(made, self._desk.state.url, ends_link=ends_link, parent=parent)
         self._tokens.append(dialog)
@@ -349,7 +349,7 @@ class AccountsDialog(SupervisorDialog):
 
 
 class AccountsAction(DialogAction):
-    """The entry and its window."""
+    """The menu entry and its window."""
 
     def __init__(self, iface: QgisInterface, menu: str, connections: ConnectionMenu, desk: FleetController):
         super().__init__(

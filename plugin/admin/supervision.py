@@ -1,4 +1,4 @@
-"""What supervisors decide while the fleet runs: the site served, recordings played, robots removed."""
+"""Decisions of supervisors while the fleet runs: the site served, recordings played, robots removed."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from ..ui.language import first_of, tr, tr_count
 from ..ui.tables import TextModel
 from .supervisor_dialog import DialogAction, PendingQueries, SupervisorDialog, fit_columns, why_not
 
-# --- Which of the published sites is served ---
+# --- Choice of the published site that is served ---
 
 SITE_COLUMNS = (tr("Site"), tr("Folder"), tr("Version"), tr("State"))
 SERVED = tr("served now")
@@ -56,7 +56,7 @@ class SiteModel(TextModel):
 
 
 def site_cells(offer: administration.SiteOffer) -> tuple[str, ...]:
-    """Return what the columns show of a site."""
+    """Return the texts of a site in the columns."""
     version = "–" if offer.version is None else str(offer.version)
     return offer.name or "–", offer.site, version, state_in_words(offer)
 
@@ -69,7 +69,7 @@ def state_in_words(offer: administration.SiteOffer) -> str:
 def confirm_site_choice(
     offer: administration.SiteOffer, parent: QWidget, then: Callable[[], object]
 ) -> QMessageBox:
-    """Say what serving a site means for robots; ``then`` is done when it is to be."""
+    """Show the consequences of serving a site for robots; ``then`` is called when confirmed."""
     name = offer.name or offer.site
     texts = (
         tr(
@@ -102,7 +102,7 @@ class SiteChoiceDialog(SupervisorDialog):
         self._button("fleet_site_serve", tr("&Serve this site…"), self._choose, for_row=True)
         self._button("fleet_sites_refresh", tr("Re&fresh"), self.refresh, for_row=False)
         fit_columns(self.view, WIDEST_SITE)
-        # Why a site cannot be chosen takes several lines.
+        # The reason why a site cannot be chosen takes several lines.
         self.view.setWordWrap(True)
         self.view.verticalHeader().setSectionResizeMode(QHeaderView.ResizeMode.ResizeToContents)
         desk.state.site_changed.connect(self._site_changed)
@@ -141,7 +141,7 @@ class SiteChoiceDialog(SupervisorDialog):
 
 
 class SiteChoiceAction(DialogAction):
-    """The entry and its window."""
+    """The menu entry and its window."""
 
     def __init__(self, iface: QgisInterface, menu: str, connections: ConnectionMenu, desk: FleetController):
         super().__init__(
@@ -156,17 +156,17 @@ class SiteChoiceAction(DialogAction):
         )
 
 
-# --- Recordings that links play: on and on, paused, at another speed, from another place ---
+# --- Recordings that links play: in a loop, paused, at another speed, from another position ---
 
 REPLAY = "replay"
 """The kind of links that play recordings."""
 ASK_EVERY_MS = 1000
 SLOWEST, FASTEST = 0.1, 1000.0
-"""times the speed at which it was recorded."""
+"""Factors of the speed at which it was recorded."""
 
 
 class RecordingsDialog(QDialog):
-    """How the recording of one link is played. What is changed goes to the gateway at once."""
+    """Playback of the recording of one link. Changes are sent to the gateway at once."""
 
     def __init__(self, desk: FleetController, parent: QWidget):
         super().__init__(parent)
@@ -200,7 +200,7 @@ class RecordingsDialog(QDialog):
         self._loop.clicked.connect(lambda on: self._change(loop=on))
         self._asking.refused.connect(lambda why: self.status.setText(f"✘ {why}"))
         self._numbers: dict[str, float] = {}
-        """Place and speed as reported or sent last."""
+        """Position and speed as reported or sent last."""
 
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
@@ -212,7 +212,7 @@ class RecordingsDialog(QDialog):
         self._timer.stop()
 
     def _look(self, *_: object) -> None:
-        """Ask how the recording is played now, or say why there is nothing to ask."""
+        """Query the playback of the recording, or show why there is none to query."""
         names = [one.link for one in self._desk.state.links.links if one.kind == REPLAY and one.up]
         if names != [self._link.itemText(row) for row in range(self._link.count())]:
             chosen = self._link.currentText()
@@ -236,7 +236,7 @@ class RecordingsDialog(QDialog):
         self._asking.ask(SetPlayback(name, **change), words, self._show)
 
     def _apply(self) -> None:
-        """Send the numbers that were typed, as far as they are others than those reported or sent last."""
+        """Send the numbers that were typed, where they differ from those reported or sent last."""
         typed = {"place_s": self._seconds.value(), "speed": self._speed.value()}
         if change := {
             name: value for name, value in typed.items() if value != self._numbers.get(name, value)
@@ -244,7 +244,7 @@ class RecordingsDialog(QDialog):
             self._change(**change)
 
     def _step(self, action: int) -> None:
-        # By a key or a click beside the handle; while that is dragged its end counts.
+        # By a key or a click beside the handle; while that is dragged only its release counts.
         if (
             not self._place.isSliderDown()
             and QSlider.SliderAction(action) != QSlider.SliderAction.SliderNoAction
@@ -279,7 +279,7 @@ class RecordingsDialog(QDialog):
         place.addWidget(self._seconds)
         form = QFormLayout()
         form.addRow(tr("&Link"), self._link)
-        # A row of two fields has no key of its own.
+        # A row of two fields has no access key of its own.
         label = QLabel(tr("Pl&ace"))
         label.setBuddy(self._place)
         form.addRow(label, place)
@@ -336,17 +336,17 @@ def _speed_field() -> QDoubleSpinBox:
     return field
 
 
-# --- Robots that are gone, removed from every desk: which ones, the question before, what became of it ---
+# --- Removal of robots that are gone from every desk: choice, confirmation, outcome ---
 
 GONE = (RobotState.LOST, RobotState.OFFLINE)
 LONGEST_REASON = 200
 MOST_NAMES = 8
 NAME_LINES = 3
-"""Lines of the dialog that names get, so that the choice of others moves no button."""
+"""Lines reserved in the dialog for names, so that another choice moves no button."""
 
 
 class RemovalDialog(QuestionDialog):
-    """Asks which robots are removed, ``selected`` ones or ``all_gone``, and why; Enter removes none."""
+    """Asks which robots to remove, ``selected`` ones or ``all_gone``, and why; Enter removes none."""
 
     confirmed = pyqtSignal(list, str)
     """The names of the robots, and the reason."""
@@ -428,7 +428,7 @@ class RobotRemoval:
         connections.offer(self.action)
 
     def ask(self) -> None:
-        """Ask which robots are removed, or say why none can be."""
+        """Ask which robots to remove, or show why none can be."""
         gone = self._gone()
         why = why_not(self._desk.state.link) or ("" if gone else tr("No robot is lost or offline."))
         if why:
@@ -442,7 +442,7 @@ class RobotRemoval:
         dialog.open()
 
     def remove(self) -> None:
-        """Take the entries out."""
+        """Remove the entries."""
         self._table.setContextMenuPolicy(Qt.ContextMenuPolicy.DefaultContextMenu)
         self._table.removeAction(self._here)
         self._connections.withdraw(self.action)

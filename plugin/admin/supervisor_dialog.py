@@ -1,4 +1,4 @@
-"""Dialog over one table of what supervisors alone may see and change, its menu entry and queries."""
+"""Base dialog of a table that only supervisors may see and change, its menu entry and queries."""
 
 from __future__ import annotations
 
@@ -37,13 +37,13 @@ Take = Callable[[dict[str, Any]], None]
 
 
 class PendingQueries(QObject):
-    """Hands each answer to whoever asked, however late it comes; never waits for one.
+    """Hands each answer to its sender, however late it comes; never waits for one.
 
-    An answer may be all there ever is of a token, so one is taken even after the link was lost.
+    An answer may be the only copy of a token, so it is accepted even after the link was lost.
     """
 
     refused = pyqtSignal(str)
-    """Something was not done, or its answer cannot be read: why, for the operator."""
+    """A request was not carried out, or its answer is invalid: the reason, for the operator."""
 
     def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
@@ -52,7 +52,7 @@ class PendingQueries(QObject):
         requests.answered.connect(self._answered)
 
     def ask(self, request: Any, words: str, take: Take) -> None:
-        """Ask for ``request``, which is ``words`` to the operator; ``take`` gets the result."""
+        """Send ``request``, described to the operator by ``words``; ``take`` receives the result."""
         try:
             self._takers[self._requests.inquire(request)] = words, take
         except FleetError as error:
@@ -86,7 +86,7 @@ class PendingQueries(QObject):
 class DialogAction:
     """An entry of ``menu`` and of ``connections``, and the window. :meth:`remove` undoes the constructor.
 
-    The window is made by ``make_dialog`` when it is opened for the first time: QGIS starts without it.
+    The window is made by ``make_dialog`` when it is first opened: QGIS starts without it.
     """
 
     def __init__(
@@ -119,7 +119,7 @@ class DialogAction:
         self.dialog.activateWindow()
 
     def remove(self) -> None:
-        """Close the window with all that it opened, and take the entries out."""
+        """Close the window with all that it opened, and remove the entries."""
         if self.dialog is not None:
             self.dialog.close()
             self.dialog.deleteLater()
@@ -135,10 +135,10 @@ BESIDE = 16
 
 
 class SupervisorDialog(QDialog):
-    """Asks for its rows when it is shown and when a link comes up; says why where nothing can be asked.
+    """Requests its rows when it is shown and when a link comes up; shows why where that is impossible.
 
     It stays beside the map, where robots can be stopped meanwhile, and so do the questions that it opens.
-    Who derives from it gives ``_ask_rows``, and calls :meth:`_lay_out` once its buttons are made.
+    Derived classes implement ``_ask_rows``, and call :meth:`_lay_out` once their buttons are made.
     """
 
     def __init__(
@@ -162,12 +162,12 @@ class SupervisorDialog(QDialog):
         self.finished.connect(self._close_question)
 
     def selected(self) -> Any:
-        """Return the row that is selected, None without one."""
+        """Return the selected row, None without one."""
         rows = self.view.selectionModel().selectedRows()
         return self.model.rows[rows[0].row()] if rows else None
 
     def refresh(self) -> None:
-        """Ask for the rows again, or say why that cannot be."""
+        """Request the rows again, or show why that is impossible."""
         why = why_not(self._desk.state.link)
         if why:
             self._show_rows([])
@@ -182,29 +182,29 @@ class SupervisorDialog(QDialog):
         self.refresh()
 
     def _ask_rows(self) -> None:
-        """Ask :attr:`_listing` for the rows."""
+        """Request the rows by :attr:`_listing`."""
         raise NotImplementedError
 
     def _key(self, row: Any) -> str:
-        """Return what a row is known by from one answer to the next."""
+        """Return the key by which a row is recognised in the next answer."""
         raise NotImplementedError
 
     def _can_change(self, row: Any) -> bool:
-        """Tell whether the buttons that change a row are for this one."""
+        """Return whether the buttons that change a row are enabled for this one."""
         return True
 
     def _show_rows(self, rows: list[Any]) -> None:
-        """Show these, and keep the selection where its row is still there."""
+        """Show these rows, and keep the selection where its row is still there."""
         before = self.selected()
         self.model.show_rows(rows, self._key)
         for number, row in enumerate(rows):
             if before is not None and self._key(row) == self._key(before):
                 self.view.selectRow(number)
-        # A table that is filled again does not tell that nothing is selected any more.
+        # A table that is filled again does not signal that nothing is selected any more.
         self._renew()
 
     def _say_once_known(self, text: str) -> None:
-        """Say this now that the rows are there, unless what became of a change stands there."""
+        """Show this now that the rows are there, unless the outcome of a change is shown."""
         if self.status.text() == ASKING:
             self.status.setText(text)
 
@@ -227,17 +227,17 @@ class SupervisorDialog(QDialog):
         rows.addLayout(line)
         rows.addWidget(self.status)
         rows.addWidget(foot)
-        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
+        # Only within the dialog: otherwise Enter would do nothing once another button had the focus.
         foot.button(standard.Close).setDefault(True)
         self.resize(*SIZE)
         self._renew()
 
     def _open(self, question: QDialog) -> None:
-        """Open a question in place of the one before it."""
+        """Open a question in place of the previous one."""
         self._close_question()
         self._question = question
         question.finished.connect(self._forget_question)
-        # Message boxes are modal unless told otherwise, and would hold up the map.
+        # Message boxes are modal by default, and would block the map.
         question.setModal(False)
         question.show()
 
@@ -249,12 +249,12 @@ class SupervisorDialog(QDialog):
             self._question.reject()
 
     def _ask(self, request: Any, words: str, take: Take) -> None:
-        """Ask for a change, which is ``words`` to the operator; ``take`` gets the result."""
+        """Request a change, described to the operator by ``words``; ``take`` receives the result."""
         self.status.setText(ASKING)
         self._changing.ask(request, words, take)
 
     def _changed(self, done: str) -> None:
-        """Say what was changed, and ask for the rows as they are now unless that ended the link."""
+        """Show the change made, and request the rows again unless it ended the link."""
         self.status.setText(done)
         if self.isVisible() and not why_not(self._desk.state.link):
             self._ask_rows()
@@ -265,12 +265,12 @@ class SupervisorDialog(QDialog):
             self._desk.failed.emit(why)
 
     def _not_listed(self, why: str) -> None:
-        # Without a link that is said already, and the rows are asked for when it is back.
+        # Without a link that is shown already, and the rows are requested when it is back.
         if not why_not(self._desk.state.link):
             self.status.setText(f"✘ {why}")
 
     def _link_changed(self) -> None:
-        # What was asked about one gateway's account must not be answered for another's.
+        # A question about one gateway's account must not be answered for another's.
         self._close_question()
         if self.isVisible():
             self.refresh()
@@ -286,7 +286,7 @@ class SupervisorDialog(QDialog):
 
 
 def why_not(link: ConnectionStatus) -> str:
-    """Return why a desk with this link cannot ask what takes a supervisor; nothing where it can."""
+    """Return why a desk with this link cannot make a supervisor's requests; empty where it can."""
     if link.phase is not ConnectionPhase.CONNECTED:
         return tr("The desk is not connected to a gateway. Press Connect first.")
     if not link.role:
@@ -302,7 +302,7 @@ def why_not(link: ConnectionStatus) -> str:
 
 
 def fit_columns(view: QTableView, widest: tuple[str, ...]) -> None:
-    """Make columns as wide as their widest texts and their heads; the last one takes what is left."""
+    """Fit columns to their widest texts and their heads; the last one takes the rest."""
     for column, text in enumerate(widest):
         view.setColumnWidth(column, view.fontMetrics().horizontalAdvance(text) + BESIDE)
     fit_headers(view)

@@ -1,4 +1,4 @@
-"""A new token, as it is handed over: as text, and as a code that a phone reads."""
+"""Dialog that hands over a new token: as text, and as a code that a phone reads."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ from ..ui.vendored import vendored_package
 
 
 def until_in_words(expires_at: float | None) -> str:
-    """Return how long a token holds."""
+    """Return until when a token is valid."""
     if expires_at is None:
         return tr("holds")
     return tr("holds until {time}", time=day_and_time(expires_at))
 
 
 def day_and_time(at: float | None) -> str:
-    """Return a time since 1970 in the computer's time zone, to the minute; a dash for none."""
+    """Return a time since 1970 in the computer's time zone, to the minute; a dash for None."""
     return "–" if at is None else datetime.fromtimestamp(at).strftime("%Y-%m-%d %H:%M")
 
 
@@ -44,7 +44,7 @@ EDGES = 24
 
 
 class TokenDialog(QDialog):
-    """The token is in its field and its code and nowhere else here, and gone when this closes.
+    """The token is in its field and its code and nowhere else, and gone when this closes.
 
     ``gateway`` is the address of the desk that it was made at, as ``wss://gateway.example.org:8765/desk``.
     """
@@ -78,11 +78,11 @@ class TokenDialog(QDialog):
         copy.clicked.connect(self._copy)
         foot = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         foot.addButton(copy, QDialogButtonBox.ButtonRole.ActionRole)
-        # Enter takes the token along; it must not make it vanish.
+        # Enter copies the token; it must not make it vanish.
         foot.button(QDialogButtonBox.StandardButton.Close).setAutoDefault(False)
         foot.rejected.connect(self.reject)
         rows.addWidget(foot)
-        # Only within the dialog: Enter would mean nothing once another button had the keyboard.
+        # Only within the dialog: otherwise Enter would do nothing once another button had the focus.
         copy.setDefault(True)
 
     def _copy(self) -> None:
@@ -90,7 +90,7 @@ class TokenDialog(QDialog):
         self._copied.setText(tr("Copied. It stays in the clipboard until something else is copied."))
 
     def _show_code(self, token: str, gateway: str) -> str:
-        """Show the code if a phone can come by it to the gateway; return what is to be said of it."""
+        """Show the code if a phone can reach the gateway by it; return the text about it."""
         host = urlsplit(gateway).hostname or ""
         self._code.setVisible(False)
         if is_loopback(host):
@@ -107,14 +107,14 @@ class TokenDialog(QDialog):
             )
         code = library.make(field_address(gateway, token), error="m", micro=False)
         self._code.setPixmap(code_pixmap(code.matrix_iter(border=QUIET_MODULES), self.devicePixelRatioF()))
-        # A code that a small screen cuts off is read by no camera.
+        # A code that a small screen cuts off cannot be read by a camera.
         self._code.setMinimumSize(self._code.sizeHint())
         self._code.setVisible(True)
         return tr("A phone whose camera reads this code opens the field page, signed in with the token:")
 
     def _forget(self) -> None:
         self._code.clear()
-        # setText, other than clear, also empties what could be undone.
+        # setText, unlike clear, also empties the undo history.
         self._field.setText("")
 
 
@@ -145,14 +145,14 @@ def _field(token: str) -> QLineEdit:
 
 
 QUIET_MODULES = 4
-"""Light modules around a code, without which a camera does not find it."""
+"""Light modules around a code, needed by cameras to find it."""
 MODULE_PIXELS = 4
 
 
 def field_address(gateway: str, token: str) -> str:
-    """Return what opens the field page of the gateway at ``gateway``, signed in.
+    """Return the URL that opens the field page of the gateway at ``gateway``, signed in.
 
-    What follows ``#`` stays on the phone: no server and no proxy sees it.
+    The part after ``#`` stays on the phone: no server and no proxy sees it.
     """
     parts = urlsplit(gateway)
     scheme = "https" if parts.scheme == "wss" else "http"

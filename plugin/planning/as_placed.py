@@ -29,7 +29,7 @@ from ..ui.language import time_of_day, tr, tr_count
 from ..ui.steady_widgets import ScrollingText
 from ..ui.tables import fit_headers, write_csv
 
-# --- The as-placed report: each cone with where it was to stand, where it stands, how far off, by whom, when
+# --- The as-placed report: planned and actual position of each cone, deviation, robot and time ---
 
 COLUMNS = (
     "cone", "layout", "planned_x", "planned_y", "x", "y", "deviation", "robot", "placed_at", "collected_at",
@@ -38,7 +38,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class DeviationSummary:
-    """What the report comes to; metres."""
+    """The summary of the report; metres."""
 
     cones: int
     collected: int
@@ -46,7 +46,7 @@ class DeviationSummary:
     mean: float
 
     def in_words(self, expected: int | None = None) -> str:
-        """Return the figures, with how many cones the plan has if that is known."""
+        """Return the figures as text, with the number of cones in the plan if known."""
         if not self.cones:
             return tr("No cone was put down yet.")
         placed = (
@@ -76,7 +76,7 @@ def select_placed_cones(
 
 
 def deviation_summary(placements: list[PlacementReport]) -> DeviationSummary:
-    """Return what the report comes to."""
+    """Return the summary of the report."""
     off = [one.deviation for one in placements]
     collected = sum(one.collected_at is not None for one in placements)
     return DeviationSummary(len(off), collected, max(off, default=0.0), sum(off) / len(off) if off else 0.0)
@@ -95,20 +95,20 @@ def csv_row(one: PlacementReport) -> list[object]:
 
 
 def utc_in_words(at: float | None) -> str:
-    """Return seconds since 1970 as ISO 8601 in UTC, nothing for None."""
+    """Return seconds since 1970 as ISO 8601 in UTC, empty for None."""
     if at is None:
         return ""
     return datetime.fromtimestamp(at, timezone.utc).isoformat(timespec="seconds").replace("+00:00", "Z")
 
 
-# --- The way from the cones that the desk knows to the report of them: QGIS's dialog of the algorithm ---
+# --- From the cones known to the desk to their report: QGIS's dialog of the algorithm ---
 
 PLACED = "cones_as_placed"
-"""The mark of the layer that the cones are on."""
+"""The key that marks the layer of placed cones."""
 
 
 class AsPlacedReportError(FleetError):
-    """The report cannot be asked for: says what to do."""
+    """The report cannot be made: the text gives the remedy."""
 
 
 def open_report_dialog(project: QgsProject) -> None:
@@ -149,14 +149,14 @@ MANY = 2000
 
 
 class AsPlacedPage(QWidget):
-    """Shows what was put down of a plan, a layout or all, as the desk knows it."""
+    """Shows the cones placed of a plan, a layout or all, as known to the desk."""
 
     refresh_requested = pyqtSignal()
     collect_requested = pyqtSignal(object)
-    """Ask for a plan that collects a layout (its name), or all that stands (None)."""
+    """Request a plan that collects a layout (its name), or all standing cones (None)."""
     shown = pyqtSignal()
     layer_requested = pyqtSignal()
-    """Somebody is about to take the layer of what is shown, and needs it whole."""
+    """The layer of the cones shown is about to be used, and must be complete."""
     place_requested = pyqtSignal(float, float)
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
@@ -190,13 +190,13 @@ class AsPlacedPage(QWidget):
         self.which.currentIndexChanged.connect(self.show_placed)
 
     def show_plan(self, plan: str | None, expected: int | None) -> None:
-        """Take the plan that is driven, of which so many cones are to be placed."""
+        """Set the plan being driven, and the number of cones that it places."""
         if (plan, expected) != (self._plan, self._expected):
             self._plan, self._expected = plan, expected
             self.show_placed()
 
     def show_placed(self, *_: object) -> None:
-        """Show what is known now."""
+        """Show the cones known now."""
         self._fill_choices()
         self.placements = self._chosen()
         expected = self._expected if self.which.currentData() == THIS_PLAN else None
@@ -211,7 +211,7 @@ class AsPlacedPage(QWidget):
         self.shown.emit()
 
     def save(self, path: str) -> None:
-        """Write the report to ``path`` as CSV and say so."""
+        """Write the report to ``path`` as CSV and report it."""
         self._desk.messages.end(FILE)
         try:
             count = write_csv(path, COLUMNS, map(csv_row, self.placements))
@@ -258,7 +258,7 @@ class AsPlacedPage(QWidget):
             self.save(path)
 
     def _open_report(self) -> None:
-        # The user may have taken the layer out of the project.
+        # The user may have removed the layer from the project.
         self.show_placed()
         self.layer_requested.emit()
         self._desk.messages.end(REPORT)

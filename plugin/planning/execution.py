@@ -1,4 +1,4 @@
-"""Cone plans that the gateway drives: submitted, steered by requests, and followed by its reports."""
+"""Cone plans driven by the gateway: submitted, controlled by requests, and followed by reports."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ from .plan_texts import after_sending, problem_in_words
 from .proposal import PlanProposal
 
 REPLANNING_S = 2.0
-"""How long a new plan for what is left may take at most: robots stand meanwhile."""
+"""Greatest time for a new plan for the remainder: robots stand meanwhile."""
 GATEWAY = "gateway"
-"""Who does what nobody asked for."""
+"""The author of actions that nobody requested."""
 
 
 @dataclass(frozen=True)
 class RefusedPlan:
-    """What the gateway does with an override alone: the request, in words, and all that speaks against it.
+    """A request that the gateway carries out only with an override: its text, and all that speaks against it.
 
-    ``plan`` is what it is about, as the operator saw it.
+    ``plan`` is its plan, as the operator saw it.
     """
 
     request: plans.SubmitPlan | plans.ConfirmReplan
@@ -54,14 +54,14 @@ class _PendingRequest:
 
 
 class PlanExecution(QObject):
-    """Submits the draft when told to, shows one of the plans that the gateway drives, and steers that.
+    """Submits the draft on request, shows one of the plans that the gateway drives, and controls that.
 
-    Nothing is kept of what robots are to do: that is the gateway's. One request waits for its answer at a
-    time; a pause waits for none.
+    The robots' tasks are kept by the gateway only. One request at a time waits for its answer; a pause
+    waits for none.
     """
 
     changed = pyqtSignal()
-    """Something new is known of the plan that is shown, or another one is."""
+    """The plan that is shown has changed, or another one is shown."""
     hint = pyqtSignal(str)
 
     def __init__(self, desk: FleetController, drafts: PlanEditor, parent: QObject | None = None):
@@ -73,14 +73,14 @@ class PlanExecution(QObject):
         self._refusal: RefusedPlan | None = None
         self._pending: dict[str, _PendingRequest] = {}
         self._wants_draft = False
-        """Whether the operator chose not to be shown what others submit."""
+        """Whether the operator chose not to be shown plans that others submit."""
         self._cleared_here: set[str] = set()
         self._fetched: tuple[str, int] | None = None
-        """Of which plan the documents were asked for on this link, and at which revision."""
+        """The plan, and its revision, whose documents were requested on this link."""
         self._submitted_here: PlanProposal | None = None
-        """What this desk submitted last: it is shown until the gateway has sent it back."""
+        """The plan submitted last by this desk: it is shown until the gateway has sent it back."""
         self._went: tuple[str, Sequence[str]] | None = None
-        """What was asked after robots were let go on, by its key, and these robots."""
+        """The key of the query sent after robots were released, and these robots."""
         self._reports: dict[str, plans.PlanReport] = {}
         desk.state.plans_changed.connect(self._take_plans)
         desk.state.queues_changed.connect(self._take_queues)
@@ -92,12 +92,12 @@ class PlanExecution(QObject):
 
     @property
     def known(self) -> KnownPlan | None:
-        """The plan that is shown, as the gateway reported it last; None while the draft is shown."""
+        """The last report of the plan that is shown; None while the draft is shown."""
         return self._desk.state.plans.get(self.shown)
 
     @property
     def shown_plan(self) -> ConePlan | None:
-        """The plan to show: a new plan of what is left, the plan that is driven, or the draft."""
+        """The plan to show: a new plan for the remainder, the plan that is driven, or the draft."""
         known = self.known
         if known is None:
             return None if self._drafts.draft is None else self._drafts.draft.plan
@@ -110,31 +110,31 @@ class PlanExecution(QObject):
 
     @property
     def choice(self) -> list[KnownPlan]:
-        """The plans that can be shown: those that are driven, newest first, and the one that is shown."""
+        """The plans to choose from: those that are driven, newest first, and the one that is shown."""
         found, known = self._desk.state.plans.open(), self.known
         return found if known is None or known.is_open else [known, *found]
 
     @property
     def asking(self) -> bool:
-        """Whether something was asked of the gateway that it has not answered yet; pauses do not count."""
+        """Whether a request waits for its answer; pauses do not count."""
         return any(not isinstance(one.request, plans.PausePlan) for one in self._pending.values())
 
     @property
     def busy(self) -> bool:
-        """Whether something is asked for or planned."""
+        """Whether a request or a computation is under way."""
         return self.asking or self._drafts.busy
 
     @property
     def refusal(self) -> RefusedPlan | None:
-        """What the gateway does with an override alone, while that is not decided."""
+        """The request that needs an override, while that is not decided."""
         refusal = self._refusal
         return None if refusal is None or refusal.plan is not self.shown_plan else refusal
 
     @property
     def paused(self) -> list[str]:
-        """Robots of a plan that is driven that stand still with work to do: somebody paused their queues.
+        """Robots of a driven plan that stand with tasks left because their queues were paused.
 
-        Not those that are away or whose cone failed: it takes a new plan to let these go on.
+        Not those that are away or whose cone failed: they need a new plan to continue.
         """
         known = self.known
         if known is None or known.report.state is not plans.PlanState.DRIVEN:
@@ -150,7 +150,7 @@ class PlanExecution(QObject):
 
     @property
     def is_without_plans(self) -> bool:
-        """Whether the gateway is too old to drive plans."""
+        """Whether the gateway is too old to drive cone plans."""
         return self._desk.state.plans.is_driving is False
 
     def pauses_in_words(self) -> list[str]:
@@ -169,7 +169,7 @@ class PlanExecution(QObject):
             for why, names in robots.items()
         ]
 
-    # --- what the operator asks for ---
+    # --- Requests of the operator ---
 
     def choose(self, name: str | None) -> None:
         """Show a plan that the gateway drives, None for the draft."""
@@ -178,7 +178,7 @@ class PlanExecution(QObject):
         self.changed.emit()
 
     def make_room(self) -> None:
-        """Show the draft, which is made next; raises PlanningError while a plan that is driven is shown."""
+        """Show the draft, which is about to be made; raises PlanningError while a driven plan is shown."""
         known = self.known
         if known is not None and known.is_open:
             raise PlanningError(
@@ -203,7 +203,7 @@ class PlanExecution(QObject):
         self._ask(self._submission(draft), tr("Sending the cone plan"), draft.plan, self._submitted)
 
     def override(self, refusal: RefusedPlan, why: str) -> None:
-        """Ask for what was refused all the same, as text ``why`` says; PlanningError when that is over."""
+        """Repeat the refused request with reason ``why``; PlanningError when it is no longer pending."""
         if refusal is not self.refusal or self.asking:
             raise PlanningError(
                 tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
@@ -212,22 +212,22 @@ class PlanExecution(QObject):
         self._ask(replace(refusal.request, override=why), refusal.words, refusal.plan, done)
 
     def pause(self) -> None:
-        """Have the plan's robots sent nothing more; raises PlanningError when none is driven."""
+        """Pause the plan: its robots are sent no more tasks; raises PlanningError when none is driven."""
         self._ask(plans.PausePlan(self._open().plan), tr("Pause of the cone plan"))
 
     def resume(self) -> None:
-        """Let the plan's robots go on; raises PlanningError when none is driven."""
+        """Continue the plan's robots; raises PlanningError when none is driven."""
         report = self._open().report
         request = plans.ResumePlan(report.plan, report.revision)
         self._ask(request, tr("Going on with the cone plan"), done=self._went_on)
 
     def plan_rest(self, *, try_again: bool = False) -> None:
-        """Have the robots held and what is left planned; raises PlanningError when no plan is driven."""
+        """Hold the robots and plan the remainder; raises PlanningError when no plan is driven."""
         report = self._open().report
         self._ask(plans.Replan(report.plan, report.revision, try_again), tr("Plan of what is left"))
 
     def confirm(self) -> None:
-        """Have the new plan for what is left driven; raises PlanningError when it is not there to be seen."""
+        """Have the new plan for the remainder driven; raises PlanningError when there is none to see."""
         known = self._open()
         if known.proposal is None or not known.is_whole:
             raise PlanningError(tr("There is no new plan to confirm."))
@@ -235,12 +235,12 @@ class PlanExecution(QObject):
         self._ask(request, tr("The new cone plan"), known.proposal, self._went_on)
 
     def discard(self) -> None:
-        """Give up the new plan, or its making; robots that were held go on as before."""
+        """Discard the new plan, or cancel its computation; robots that were held continue as before."""
         report = self._open().report
         self._ask(plans.DiscardReplan(report.plan, report.revision), tr("Going on as before"))
 
     def clear(self) -> None:
-        """Have the plan that is shown followed no more, or show no longer what ended; drop the draft."""
+        """Stop following the plan that is shown, or hide an ended one; drop the draft."""
         known = self.known
         if known is not None and known.is_open:
             self._cleared_here.add(known.plan)
@@ -249,7 +249,7 @@ class PlanExecution(QObject):
         self._show_nothing(wants_draft=True)
 
     def forget(self) -> None:
-        """Forget what is shown, plan or draft: it is another site's."""
+        """Forget the plan or draft that is shown: it belongs to another site."""
         self._reports.clear()
         self._show_nothing(wants_draft=False)
 
@@ -298,7 +298,7 @@ class PlanExecution(QObject):
         if self.asking and not isinstance(request, plans.PausePlan):
             raise PlanningError(tr("No plan is being driven, or something is still being sent."))
         key = self._desk.orders.ask(request, words, PLAN_SENT)
-        # Only now: what could not be asked leaves what was refused to be overridden.
+        # Only now: if the request could not be sent, the refused one can still be overridden.
         self._desk.messages.end(PLAN_SENT)
         self._refusal = None
         self._pending[key] = _PendingRequest(request, words, plan, done)
@@ -314,7 +314,7 @@ class PlanExecution(QObject):
         elif answer.overridable:
             found = tuple(f"{text}." for text in answer.overridable)
             self._refusal = RefusedPlan(pending.request, pending.words, found, pending.plan)
-            # One text that says where it is decided, in place of the one that every refusal brings.
+            # A single text that says where it is decided replaces the one that every refusal brings.
             self._desk.messages.withdraw(f"{pending.words}: {answer.error}")
             self._fail(_in_words(self._refusal))
         if isinstance(pending.request, plans.ClearPlan):
@@ -325,7 +325,7 @@ class PlanExecution(QObject):
         self.hint.emit(tr("The cone plan is in the robots' queues."))
 
     def _went_on(self, result: dict[str, Any]) -> None:
-        """Ask how the queues are: what is told of them may come after the answer of what let them go on."""
+        """Query the queues: their reports may arrive after the answer that continued them."""
         known = self._desk.state.plans.get(result.get("plan"))
         if known is None:
             return
@@ -341,7 +341,7 @@ class PlanExecution(QObject):
     def _fail(self, text: str) -> None:
         self._desk.report_failure(text, PLAN_SENT)
 
-    # --- what the gateway reports ---
+    # --- Reports of the gateway ---
 
     def _link_changed(self) -> None:
         if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
@@ -351,7 +351,7 @@ class PlanExecution(QObject):
     def _take_queues(self, robots: Sequence[str]) -> None:
         known = self.known
         if known is not None and not set(robots).isdisjoint(known.report.robots):
-            # They may have been paused, or go on.
+            # They may have been paused or continued.
             self.changed.emit()
 
     def _take_plans(self, names: Sequence[str]) -> None:
@@ -367,7 +367,7 @@ class PlanExecution(QObject):
         self.changed.emit()
 
     def _submitted_before(self) -> None:
-        """Show in place of the draft what the gateway has of it, be it that its answer was lost."""
+        """Show the gateway's copy of the draft in its place, even if the answer to its submission is lost."""
         draft = self._drafts.draft
         if draft is not None and self._desk.state.plans.get(draft.name) is not None:
             self.shown, self._wants_draft, self._refusal = draft.name, False, None
@@ -391,7 +391,7 @@ class PlanExecution(QObject):
             self._desk.messages.post(text, Level.WARNING, PLAN_SENT)
 
     def _fetch(self) -> None:
-        """Ask for the documents of the plan that is shown, where they are not those of its last report."""
+        """Request the documents of the plan that is shown, unless they belong to its last report."""
         known = self.known
         if known is None or known.is_whole or self._fetched == (known.plan, known.report.revision):
             return
@@ -401,11 +401,11 @@ class PlanExecution(QObject):
             if is_another:
                 self._desk.orders.inquire(GetPlacements(plan=known.plan, limit=MOST_PLACEMENTS))
         except NotSentError:
-            # It is asked for once the link is back.
+            # It is requested once the link is back.
             return
         self._fetched = (known.plan, known.report.revision)
 
-    # --- what is told of plans, whichever is shown ---
+    # --- Messages about plans, shown or not ---
 
     def _notice(self, name: str) -> None:
         known, before = self._desk.state.plans.get(name), self._reports.pop(name, None)
@@ -426,7 +426,7 @@ class PlanExecution(QObject):
                 self._notice_gateway(before.state, report, by_itself)
 
     def _notice_gateway(self, before: plans.PlanState, report: plans.PlanReport, topic: Topic) -> None:
-        """Tell what the gateway did with a plan by itself."""
+        """Report the gateway's own actions on a plan."""
         why = report.reason
         if report.state is plans.PlanState.PAUSED:
             self._desk.report_failure(tr("The cone plan is paused: {why}.", why=why), topic)
@@ -437,7 +437,7 @@ class PlanExecution(QObject):
 
 
 def no_plans_here() -> str:
-    """Return what is said where the gateway knows no cone plans."""
+    """Return the message where the gateway does not support cone plans."""
     return tr(
         "The gateway is older than this plugin and drives no cone plans: plans are made and looked at here, "
         "and nothing of them is sent. Update the gateway, or give robots their cones with Add to queue."

@@ -30,11 +30,11 @@ from ..ui.tables import CHECKED, TO_THE_RIGHT, UNCHECKED, number_of
 from .layouts.layout_layer import MARK
 from .plan_settings import PlanRobotSettings, PlanSettings, available_robots, point_layers
 
-# --- The form of what a plan is made for: which cones and stores, what is minimised, along what ---
+# --- The form of a plan's settings: cones and stores, objective, and roads ---
 
 
 class SettingsForm(QWidget):
-    """Shows settings, and tells when the operator changed them."""
+    """Shows settings, and signals when the operator changed them."""
 
     changed = pyqtSignal()
 
@@ -69,13 +69,13 @@ class SettingsForm(QWidget):
         project.cleared.connect(self._fill_layers)
 
     def remove(self) -> None:
-        """Listen to the project no longer."""
+        """Stop listening to the project."""
         self._project.layersAdded.disconnect(self._fill_layers)
         self._project.layersRemoved.disconnect(self._fill_layers)
         self._project.cleared.disconnect(self._fill_layers)
 
     def settings(self, of: PlanSettings) -> PlanSettings:
-        """Return ``of`` with what stands in the form."""
+        """Return ``of`` with the values in the form."""
         return replace(
             of,
             cones=self.cones.currentData() or "",
@@ -92,7 +92,7 @@ class SettingsForm(QWidget):
         )
 
     def show_settings(self, settings: PlanSettings) -> None:
-        """Show other settings, as those of a project that was opened."""
+        """Show other settings, like those of a project that was opened."""
         self._settings = settings
         self._fill_layers()
         self._show()
@@ -165,7 +165,7 @@ class SettingsForm(QWidget):
 
 
 def _placed_by_hand(layers: list[QgsVectorLayer]) -> str:
-    """Return the id of the layer that cone layouts are placed into, nothing without one."""
+    """Return the id of the layer into which cone layouts are placed, empty without one."""
     return next((layer.id() for layer in layers if layer.customProperty(MARK)), "")
 
 
@@ -204,7 +204,7 @@ def _row(*widgets: QWidget) -> QHBoxLayout:
     return row
 
 
-# --- The robots that may take part in a plan, as rows of a table in which the operator writes ---
+# --- The robots available for a plan, as an editable table ---
 
 HEADS = (tr("Robot"), tr("Carries"), tr("Aboard"), tr("m/s"), tr("Range"))
 _FIELDS = ("used", "capacity", "aboard", "speed", "range_m")
@@ -216,9 +216,9 @@ class RobotsModel(QAbstractTableModel):
     """A row for each robot, by name: ticked when it takes part, with its settings."""
 
     edited = pyqtSignal(str, object)
-    """The operator changed a robot: its name and its RobotSettings now."""
+    """The operator changed a robot: its name and its new RobotSettings."""
     refused = pyqtSignal(str)
-    """What was written is no number that a robot can have; it stays as it was."""
+    """An entry is not a valid number for a robot; the value is unchanged."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -265,10 +265,10 @@ class RobotsModel(QAbstractTableModel):
         return True
 
     def show_robots(self, names: Sequence[str], there: Sequence[bool], settings: PlanSettings) -> None:
-        """Show the robots ``names``, of whom ``there`` says who can take part, with their ``settings``.
+        """Show the robots ``names``, ``there`` whether each can take part, with their ``settings``.
 
-        Nothing but what changed is told: with a thousand robots some come or go at any moment, and an editor
-        that is open must not lose what is being typed.
+        Only changes are signalled: with a thousand robots some come or go at any moment, and an open editor
+        must not lose what is being typed.
         """
         self._show_settings(settings)
         if names != self._names:
@@ -313,7 +313,7 @@ class RobotsModel(QAbstractTableModel):
         return None
 
     def _number(self, row: int, column: int, text: str) -> float | None:
-        """Return what ``text`` says; None where it says nothing that the column can hold, which is told."""
+        """Return the number in ``text``; None, and report it, where the column cannot hold it."""
         field = _FIELDS[column]
         kind = type(getattr(PlanRobotSettings(), field))
         try:
@@ -344,23 +344,23 @@ def _newcomers(names: Sequence[str], known: set[str]) -> Iterator[tuple[int, int
         row += count
 
 
-# --- The table of the robots that may take part: which, how many cones they carry, how fast, how far ---
+# --- The table of the robots available for a plan: selection, cones carried, speed, range ---
 
 SHOWN = 6
-"""Rows that are shown without scrolling."""
+"""Rows that are visible without scrolling."""
 WIDEST = ("", "100", "100", "0.05", "10000")
-"""What each column has room for, if its head needs less."""
+"""The widest text that each column has room for, if its head needs less."""
 BESIDE_TEXT = 10
-"""Pixels at the edges of a cell."""
+"""Width in pixels of the edges of a cell."""
 
 
 class RobotsForm(QTableView):
-    """A row for each robot that was heard of; a range of 0 does not matter."""
+    """A row for each known robot; a range of 0 means no limit."""
 
     edited = pyqtSignal(str, object)
-    """The operator changed a robot: its name and its RobotSettings now."""
+    """The operator changed a robot: its name and its new RobotSettings."""
     refused = pyqtSignal(str)
-    """What was written is no number that a robot can have."""
+    """An entry is not a valid number for a robot."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -379,7 +379,7 @@ class RobotsForm(QTableView):
         self._fit_height()
 
     def show_robots(self, desk: FleetController, settings: PlanSettings) -> None:
-        """Show the robots that ``desk`` knows at this moment, with their settings."""
+        """Show the robots known to ``desk`` now, with their settings."""
         robots, rows = desk.state.robots.arrays(desk.clock.steady()), desk.state.robots.by_name()
         there = available_robots(robots).tolist()
         count = self._model.rowCount()
@@ -388,7 +388,7 @@ class RobotsForm(QTableView):
             self._fit_height()
 
     def _fit_columns(self) -> None:
-        """Give the columns of numbers a width for good: fitted to their contents, a thousand robots would be
+        """Give the columns of numbers a fixed width: fitted to their contents, a thousand robots would be
         measured at each change of one."""
         heads = self.horizontalHeader()
         heads.setSectionResizeMode(QHeaderView.ResizeMode.Fixed)
@@ -402,7 +402,7 @@ class RobotsForm(QTableView):
         self.setMinimumWidth(sum(widths) + 2 * self.frameWidth())
 
     def _fit_height(self) -> None:
-        """Be as high as the rows are, or as many of them as there is room for."""
+        """Set the height to that of the rows, up to a limit."""
         row, head = self.verticalHeader().defaultSectionSize(), self.horizontalHeader().sizeHint().height()
         shown = min(max(self._model.rowCount(), 2), SHOWN)
         self.setFixedHeight(head + row * shown + 2 * self.frameWidth() + 2)

@@ -43,11 +43,11 @@ from .plan_texts import ReportedProgress
 from .plan_views import PlanLayers, PlanTree
 from .proposal import closed_in_words, meeting_in_words
 
-# --- What the operator does with a plan: send it, and agree to a new one for what is left ---
+# --- Actions on a plan: sending it, and accepting a new one for the remainder ---
 
 
 class ExecutionBar(QWidget):
-    """Buttons that are usable when they can do something, and a line that says how things stand."""
+    """Buttons that are enabled when they have an effect, and a line with the status."""
 
     send_plan_requested = pyqtSignal()
     override_requested = pyqtSignal()
@@ -129,7 +129,7 @@ class ExecutionBar(QWidget):
         grid.setSpacing(4)
         grid.addWidget(self.text, 0, 0, 1, 2)
         grid.addWidget(self.trouble, 1, 0, 1, 2)
-        # Each has a place of its own: no button comes to be where another one was pressed.
+        # Each has its own place: no button moves to where another one was pressed.
         places = (
             (self.send, self.clear),
             (self.override, self.pause),
@@ -145,7 +145,7 @@ class ExecutionBar(QWidget):
             grid.setColumnStretch(column, 1)
 
     def refresh(self) -> None:
-        """Show how things stand now."""
+        """Show the current status."""
         drafts, driven = self._drafts, self._driven
         known = driven.known
         report = None if known is None else known.report
@@ -226,7 +226,7 @@ class ExecutionBar(QWidget):
 
 
 def _against(report: PlanReport) -> list[str]:
-    """Return what speaks against the new plan of what is left."""
+    """Return the findings against the new plan for the remainder."""
     texts = []
     if report.closed:
         texts.append(
@@ -243,11 +243,11 @@ def _against(report: PlanReport) -> list[str]:
     return texts
 
 
-# --- The panel of cone plans: made, looked at, changed, sent, watched; and the as-placed report ---
+# --- The panel of cone plans: made, reviewed, edited, sent, followed; and the as-placed report ---
 
 
 class PlanDock(ActionDock):
-    """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
+    """Builds the parts. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(tr("Cone plan"), "fleet_plan_dock", parent)
@@ -255,7 +255,7 @@ class PlanDock(ActionDock):
         desk.state.plans_changed.connect(self._build_for)
 
     def _build_for(self, plans: list[str]) -> None:
-        # A plan that is driven is on the map and says what is wrong with it, whoever looks at the panel.
+        # A driven plan is on the map and its problems are reported, even if the panel is closed.
         if plans:
             self.build()
 
@@ -266,7 +266,7 @@ class PlanDock(ActionDock):
         self.collecting = CollectionPlanner(desk, self.drafts, self)
         self.layers = PlanLayers(desk)
         self.form = SettingsForm(desk.project, self.drafts.settings)
-        # It has chosen the layer of cones that is there, where the project's settings name none.
+        # The form has chosen the existing layer of cones, where the project's settings name none.
         self.drafts.plan_with(self.form.settings(self.drafts.settings))
         self.robots = RobotsForm()
         self.tree = PlanTree()
@@ -290,13 +290,13 @@ class PlanDock(ActionDock):
         self._refresh()
 
     def _take_out(self) -> None:
-        """Stop what is being planned and take the layers out of the project."""
+        """Cancel planning and remove the layers from the project."""
         self.drafts.shut_down()
         self._desk.project.readProject.disconnect(self._read_settings)
         self.form.remove()
         self.layers.remove()
 
-    # --- what the operator does ---
+    # --- Actions of the operator ---
 
     def make(self, *, preview: bool) -> None:
         """Plan the chosen cones, unless a plan is being driven."""
@@ -317,7 +317,7 @@ class PlanDock(ActionDock):
         return True
 
     def ask_to_send(self) -> None:
-        """Say what will happen, and send when the operator agrees."""
+        """Show the consequences, and send when the operator agrees."""
         draft = self.drafts.draft
         if draft is None:
             return
@@ -331,7 +331,7 @@ class PlanDock(ActionDock):
         box.open()
 
     def ask_to_override(self) -> None:
-        """Ask why what was refused of the plan is right all the same, and send it on then."""
+        """Ask for a reason to override a refusal of the plan, and send it with that."""
         refusal = self.driven.refusal
         if refusal is None:
             return
@@ -341,11 +341,11 @@ class PlanDock(ActionDock):
         dialog.open()
 
     def collect(self, layout: str | None) -> None:
-        """Plan who collects what stands of a layout, or all that stands, unless a plan is being driven."""
+        """Plan the collection of a layout, or of all standing cones, unless a plan is being driven."""
         if self._make_room():
             self._try(lambda: self.collecting.ask(CollectLayout(layout)))
 
-    # --- what it shows ---
+    # --- Display ---
 
     def _refresh(self) -> None:
         driven = self.driven
@@ -368,7 +368,7 @@ class PlanDock(ActionDock):
         self.progress.setEnabled(self.drafts.busy)
 
     def _show_choice(self) -> None:
-        """List the plans that can be shown, with the one that is."""
+        """List the plans to choose from, with the present one selected."""
         entries = [(tr("New plan"), None)]
         entries += [(plan_texts.plan_title(one.report), one.plan) for one in self.driven.choice]
         box = self.which
@@ -434,7 +434,7 @@ class PlanDock(ActionDock):
         self._desk.canvas.refresh()
 
     def _refuse(self, why: str) -> None:
-        """Say why something of a plan was not done; it hangs there until something else is asked for."""
+        """Report why an action on a plan was not done; shown until the next request."""
         self._desk.report_failure(why, PLAN_REQUEST)
 
     def _try(self, action: Callable[[], object]) -> None:
@@ -444,7 +444,7 @@ class PlanDock(ActionDock):
         except FleetError as error:
             self._refuse(str(error))
 
-    # --- how it is put together ---
+    # --- Layout ---
 
     def _lay_out(self) -> None:
         plan = QWidget()
@@ -466,7 +466,7 @@ class PlanDock(ActionDock):
         rows.addWidget(self.bar)
         self.tabs = QTabWidget()
         self.tabs.setObjectName("fleet_plan_tabs")
-        # The tabs are outside of what scrolls: they are seen wherever that stands.
+        # The tabs are outside of the scrolled area: they are always visible.
         self.tabs.addTab(ShrinkableScrollArea(plan), tr("Plan"))
         self.tabs.addTab(self.placed, tr("As placed"))
         body = QWidget()

@@ -1,4 +1,4 @@
-"""The plan being edited by the operator, unknown to any robot; plans for collecting a layout, too."""
+"""The plan being edited by the operator, unknown to any robot; also plans for collecting a layout."""
 
 from __future__ import annotations
 
@@ -33,18 +33,18 @@ from ..ui.scheduling import WAITING, CooperativeTask, Steps
 from . import plan_settings
 from .proposal import ClosureCheck, PlanProposal, PlanTask, PlanTravel
 
-# --- The plan as it is planned and edited at the desk; nothing of it is known to any robot ---
+# --- The plan as it is made and edited at the desk; no robot knows it ---
 
 
 class PlanningError(FleetError):
-    """What cannot be planned as things are: names what is missing, and what to do."""
+    """A plan cannot be made: names what is missing, and the remedy."""
 
 
 class PlanEditor(QObject):
     """Makes and changes the plan by one :class:`PlanTask` at a time."""
 
     changed = pyqtSignal()
-    """There is another plan, or none, or one is being made."""
+    """The plan has changed, is gone, or is being made."""
     refused = pyqtSignal(str)
 
     def __init__(self, desk: FleetController, parent: QObject | None = None):
@@ -54,18 +54,18 @@ class PlanEditor(QObject):
         self.draft: PlanProposal | None = None
         self.task: PlanTask | None = None
         self._before: PlanTask | None = None
-        """The one that was given up last: its thread may be in a layer that hangs."""
+        """The task cancelled last: its thread may be in a layer that hangs."""
         self._layers = OneAtATime()
         self._reading, self._waiting = CooperativeTask(self), CooperativeTask(self)
         self._closures: Sequence[ClosureReport] = ()
-        """Those that the task goes by."""
+        """The closures that the task considers."""
         self._then: Callable[[PlanProposal], None] = self._put
-        """What gets the plan that the task makes."""
+        """Receives the plan that the task makes."""
         self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
     def plan_with(self, settings: plan_settings.PlanSettings) -> None:
-        """Make plans by ``settings`` from now on."""
+        """Make plans with ``settings`` from now on."""
         self.settings = settings
 
     @property
@@ -92,13 +92,13 @@ class PlanEditor(QObject):
         self._begin(self._make(tuple(targets), facts, frame, preview))
 
     def move(self, target: str, robot: str, trip: int, place: int) -> None:
-        """Let ``robot`` serve ``target`` as number ``place``, from 0, of its trip ``trip``."""
+        """Move ``target`` to ``robot`` as number ``place``, from 0, of its trip ``trip``."""
         self._edit(
             lambda plan, travel_of: plan_changes.move_target(plan, travel_of, target, robot, trip, place)
         )
 
     def remove(self, target: str) -> None:
-        """Let nobody serve ``target``."""
+        """Remove ``target`` from the plan."""
         self._edit(lambda plan, travel_of: plan_changes.remove_target(plan, travel_of, target))
 
     def set_proposal(self, draft: PlanProposal | None) -> None:
@@ -108,7 +108,7 @@ class PlanEditor(QObject):
         self.changed.emit()
 
     def drop(self, draft: PlanProposal) -> None:
-        """Show ``draft`` no longer, if it is the plan; what is being made goes on."""
+        """Hide ``draft``, if it is the plan; a computation under way continues."""
         if self.draft is draft:
             self.draft = None
             self.changed.emit()
@@ -120,7 +120,7 @@ class PlanEditor(QObject):
         work: Callable[[PlanTask], ConePlan],
         then: Callable[[PlanProposal], None],
     ) -> None:
-        """Make a plan on the ground of another, beside the window's thread; ``then`` gets it."""
+        """Make a plan on the ground of another, in the background; ``then`` receives it."""
         self._check_idle()
         apart_m, closures = self.settings.apart_m, self._desk.roads.closures
         task = PlanTask(title, lambda task: ground.with_plan(work(task), apart_m, closures))
@@ -130,13 +130,13 @@ class PlanEditor(QObject):
         self.changed.emit()
 
     def cancel(self) -> None:
-        """Give up what is being made; the plan of before stays."""
+        """Cancel the computation under way; the previous plan stays."""
         if not self.busy:
             return
         self._reading.stop()
         self._waiting.stop()
         task, self.task = self.task, None
-        # QGIS deletes a task that is done; what it made may still be held against roads closed meanwhile.
+        # QGIS deletes a finished task; its plan may still be checked against roads closed meanwhile.
         if task is not None and not sip.isdeleted(task):
             task.cancel()
             if task.is_under_way:
@@ -144,19 +144,19 @@ class PlanEditor(QObject):
         self.changed.emit()
 
     def shut_down(self) -> None:
-        """Give up what is being made; its thread may stay in a layer that hangs."""
+        """Cancel the computation under way; its thread may remain in a layer that hangs."""
         self._look.stop()
         self._look_at_made.stop()
         self.cancel()
 
     def look_at_closures(self) -> None:
-        """Find out again what of the plan leads along closed roads."""
+        """Find again which parts of the plan lead along closed roads."""
         draft = self.draft
         if draft is None:
             return
 
         def found(drafts: list[PlanProposal]) -> None:
-            # Another plan was judged when it was made.
+            # Another plan was checked when it was made.
             if self.draft is draft and drafts[0] is not draft:
                 self.draft = drafts[0]
                 self.changed.emit()
@@ -168,7 +168,7 @@ class PlanEditor(QObject):
             raise PlanningError(tr("A plan is being made. Wait for it, or press Cancel."))
 
     def _begin(self, work: Steps[None]) -> None:
-        """Read layers for a plan and begin to make it."""
+        """Read layers for a plan and start making it."""
         self._check_idle()
         self._reading.begin(work, done=lambda _: self.changed.emit(), failed=self._refused)
         if self._reading.is_busy:
@@ -179,7 +179,7 @@ class PlanEditor(QObject):
         self.refused.emit(str(error))
 
     def _add_task(self, task: PlanTask) -> Steps[None]:
-        """Have QGIS do ``task`` when the thread of the one before has left it: threads would pile up."""
+        """Start ``task`` when the thread of the one before has ended: threads would pile up."""
         while self._before is not None and self._before.is_under_way:
             yield WAITING
         self._before = None
@@ -249,7 +249,7 @@ class PlanEditor(QObject):
             return
         now = self._desk.roads.closures
         if now != closures:
-            # Meanwhile a road was closed or opened.
+            # A road was closed or opened meanwhile.
             self._look_at_made.begin([draft], now, lambda found: self._made(task, found[0], now, then))
             return
         self.task = None
@@ -259,7 +259,7 @@ class PlanEditor(QObject):
     def _ended(self, task: PlanTask, _done: bool) -> None:
         if task is not self.task:
             return
-        # Cancelled it was in QGIS's own list of tasks.
+        # It was cancelled in QGIS's own list of tasks.
         cancelled = task.isCanceled()
         if task.draft is not None and not cancelled:
             self._made(task, task.draft, self._closures, self._then)
@@ -288,7 +288,7 @@ class PlanEditor(QObject):
         )
 
     def _cones_of_before(self, collected: set[int | None]) -> np.ndarray:
-        """Return where cones stand that the plan does not collect, (n, 2)."""
+        """Return the positions of cones that the plan does not collect, (n, 2)."""
         cones = [
             (one.x, one.y)
             for one in self._desk.state.placed_cones
@@ -297,7 +297,7 @@ class PlanEditor(QObject):
         return np.array(cones, dtype=float).reshape(-1, 2)
 
     def _standing_robots(self) -> dict[str, tuple[float, float]]:
-        """Return where robots are that do not take part."""
+        """Return the positions of robots that do not take part."""
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         stand = plan_settings.have_position(robots) & ~plan_settings.participating_robots(
             robots, self.settings
@@ -305,7 +305,7 @@ class PlanEditor(QObject):
         return {robots.names[row]: tuple(robots.xy[row].tolist()) for row in np.flatnonzero(stand)}
 
 
-# --- Asks the gateway what stands of a layout, and plans who collects it ---
+# --- Queries the gateway for the standing cones of a layout, and plans their collection ---
 
 
 class CollectionPlanner(QObject):
@@ -321,11 +321,11 @@ class CollectionPlanner(QObject):
         desk.state.forgotten.connect(self._forget)
 
     def ask(self, request: CollectLayout) -> None:
-        """Ask which cones to collect; raises NotSentError when that cannot be asked."""
+        """Request the cones to collect; raises NotSentError when that cannot be sent."""
         self._key = self._desk.orders.ask(request, tr("What is to be collected"))
 
     def _forget(self) -> None:
-        # Answers come after the news of another site that came later: those places are the one's before.
+        # An answer may arrive after a later change of site: its places belong to the site before.
         self._key = None
 
     def _answered(self, answer: RequestResult) -> None:

@@ -36,14 +36,14 @@ from ..ui.errors import FleetError
 from ..ui.language import tr
 from ..ui.scheduling import Steps
 
-# --- What the operator wants of a plan, kept with the project ---
+# --- The operator's settings of a plan, kept with the project ---
 
 SCOPE, KEY = "fleet_supervisor", "plans/settings"
 
 
 @dataclass(frozen=True)
 class PlanRobotSettings:
-    """What one robot can do: cones it carries, cones aboard now, m/s, metres of battery (0: any)."""
+    """The abilities of one robot: cones carried, cones aboard now, m/s, range in metres (0: unlimited)."""
 
     used: bool = True
     capacity: int = 8
@@ -52,7 +52,7 @@ class PlanRobotSettings:
     range_m: float = 0.0
 
     def robot(self, name: str, x: float, y: float) -> PlanRobot:
-        """Return the robot ``name`` at (x, y), as an assignment takes it."""
+        """Return the robot ``name`` at (x, y), as used by an assignment."""
         return PlanRobot(
             name, x, y, self.capacity, self.speed, self.range_m or math.inf, min(self.aboard, self.capacity)
         )
@@ -60,11 +60,11 @@ class PlanRobotSettings:
 
 @dataclass(frozen=True)
 class PlanSettings:
-    """The panel's settings. Layers are named by their ids; an empty one is none.
+    """The panel's settings. Layers are named by their ids; an empty id means none.
 
-    ``direct_m`` is up to how far robots drive straight and not along the roads; ``clearance_m`` how far they
-    keep from cones; ``apart_m`` how far from one another. With ``by_itself`` a new plan is sent without a
-    question when a robot is lost.
+    ``direct_m`` is the distance up to which robots drive straight and not along the roads; ``clearance_m``
+    their distance from cones; ``apart_m`` from one another. With ``by_itself`` a new plan is sent without
+    confirmation when a robot is lost.
     """
 
     cones: str = ""
@@ -84,11 +84,11 @@ class PlanSettings:
 
     @property
     def off_standing_m(self) -> float:
-        """How far to keep from a robot that stands: half of what two keep that drive, for only one errs."""
+        """The distance from a standing robot: half of that between two driving ones, as only one errs."""
         return max(self.clearance_m, self.apart_m / 2)
 
     def of_robot(self, name: str) -> PlanRobotSettings:
-        """Return the settings of a robot, the usual ones where it has none."""
+        """Return the settings of a robot, the defaults where it has none."""
         return self.robots.get(name, PlanRobotSettings())
 
     def with_robot(self, name: str, settings: PlanRobotSettings) -> PlanSettings:
@@ -97,7 +97,7 @@ class PlanSettings:
 
 
 def read_settings(project: QgsProject) -> PlanSettings:
-    """Return the settings kept in ``project``; what is not there or not right is as usual."""
+    """Return the settings kept in ``project``; missing or invalid ones have their defaults."""
     text, found = project.readEntry(SCOPE, KEY, "")
     if not found or not text:
         return PlanSettings()
@@ -109,12 +109,12 @@ def read_settings(project: QgsProject) -> PlanSettings:
         return PlanSettings()
     if made.objective not in OBJECTIVES or made.finish not in FINISHES:
         made = replace(made, objective=BALANCED, finish=STAY)
-    # Whoever opens a project has not switched on yet what is sent without a question.
+    # Sending without confirmation must be switched on again in each session.
     return replace(made, robots=robots, by_itself=False)
 
 
 def keep_settings(project: QgsProject, settings: PlanSettings) -> None:
-    """Keep the settings with ``project``."""
+    """Store the settings in ``project``."""
     project.writeEntry(SCOPE, KEY, json.dumps(asdict(settings)))
 
 
@@ -129,24 +129,24 @@ def _made(kind: type, given: dict[str, Any]):
     return kind(**values)
 
 
-# --- Which robots a plan can be made with ---
+# --- The robots available for a plan ---
 
 _IS_HERE = np.array([state in (RobotState.FRESH, RobotState.STALE) for state in STATES])
 Which = npt.NDArray[np.bool_]
 
 
 def have_position(robots: RobotArrays) -> Which:
-    """Tell which robots ever said where they are."""
+    """Return which robots have ever reported their position."""
     return np.isfinite(robots.xy).all(axis=1)
 
 
 def available_robots(robots: RobotArrays) -> Which:
-    """Tell which robots can be planned with: they have said where they are, and are not away."""
+    """Return which robots are available for plans: they have reported a position, and are not away."""
     return have_position(robots) & _IS_HERE[robots.state]
 
 
 def participating_robots(robots: RobotArrays, settings: PlanSettings) -> Which:
-    """Tell which robots can be planned with, and are to be."""
+    """Return which robots are available for plans and selected."""
     used = np.array([settings.of_robot(name).used for name in robots.names], dtype=bool)
     return available_robots(robots) & used
 
@@ -157,11 +157,11 @@ _NAMES = ("id", "name")
 
 
 class ConeLayerError(FleetError):
-    """There is no layer of cones or stores to plan for, or nothing in it."""
+    """There is no layer of cones or stores to plan for, or it is empty."""
 
 
 def point_layers(project: QgsProject) -> list[QgsVectorLayer]:
-    """Return the layers that may hold cones or stores, by name."""
+    """Return the layers that may contain cones or stores, by name."""
     points = QgsWkbTypes.GeometryType.PointGeometry
     found = [
         layer
@@ -175,13 +175,13 @@ def point_layers(project: QgsProject) -> list[QgsVectorLayer]:
 def read_cones(
     project: QgsProject, settings: PlanSettings, frame: SiteFrame, readings: OneAtATime
 ) -> Steps[tuple[tuple[ConeTarget, ...], dict[str, ConeFacts]]]:
-    """Return the cones to place, in the site frame, and what is written down of each, by the target's id.
+    """Return the cones to place, in the site frame, and the attributes of each, by the target's id.
 
     Fields: ``id``, ``heading`` (degrees clockwise from north), ``layout``, ``stage``, ``demand`` and
     ``service_s``.
 
-    :raises ConeLayerError: when the layer is not there, or empty; LayerReadingError naming the layer, the
-        feature and the field that cannot be used, or a layer that does not answer.
+    :raises ConeLayerError: when the layer does not exist, or is empty; LayerReadingError naming the layer,
+    the feature and the invalid field, or a layer that does not answer.
     """
     layer = project.mapLayer(settings.cones)
     if layer is None:
@@ -210,7 +210,7 @@ def read_cones(
 def read_stores(
     project: QgsProject, settings: PlanSettings, frame: SiteFrame, readings: OneAtATime
 ) -> Steps[tuple[Store, ...]]:
-    """Return the stores in the site frame, nothing where no layer is chosen; raises as :func:`read_cones`."""
+    """Return the stores in the site frame, empty where no layer is chosen; raises as :func:`read_cones`."""
     if not settings.stores:
         return ()
     layer = project.mapLayer(settings.stores)

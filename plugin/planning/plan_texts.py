@@ -1,4 +1,4 @@
-"""Cone plans in words and rows: how far one is, what its stops are, what speaks against sending it."""
+"""Cone plans in words and rows: their progress, their stops, and findings against sending them."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from ..gateway_client.state_words import ROBOT_STATES
 from ..ui.language import first_of, time_of_day, tr, tr_count
 from .proposal import PlanProposal, closed_in_words, meeting_in_words
 
-# --- How far a submitted plan is, and what keeps it from going on, from what the gateway reports of it ---
+# --- The progress of a submitted plan, and its obstacles, from the gateway's reports ---
 
 _REMARKED = (TaskState.SKIPPED, TaskState.REMOVED, TaskState.FAILED, TaskState.WAITING)
 """States with a reason that is shown: why a cone failed, was given up, or is not begun yet."""
 
 
 def problem_in_words(problems: Sequence[PlanProblemReport]) -> str:
-    """Return what happened, for the operator."""
+    """Return the problems as text for the operator."""
     away = [
         tr("{robot} is lost or offline", robot=one.robot)
         for one in problems
@@ -51,11 +51,11 @@ def problem_in_words(problems: Sequence[PlanProblemReport]) -> str:
 
 
 class ReportedProgress:
-    """What became of each cone of a submitted plan, by its target's id."""
+    """The state of each cone of a submitted plan, by its target's id."""
 
     def __init__(self, report: PlanReport, placements: Iterable[PlacementReport]):
         self.began_at = report.submitted_at
-        """Seconds since 1970, from which the plan's own times count."""
+        """Seconds since 1970, the origin of the plan's own times."""
         self._stops: dict[str, PlanStopReport] = {
             one.id: one for one in report.stops if one.kind in (PLACE, COLLECT)
         }
@@ -66,27 +66,27 @@ class ReportedProgress:
         self._placed, self._collected = placed, collected
 
     def state_of(self, target: str) -> TaskState | None:
-        """Return what became of a cone, None for one that no robot has as a task."""
+        """Return the state of a cone, None for one that is no robot's task."""
         stop = self._stops.get(target)
         return None if stop is None else stop.state
 
     def remark_on(self, target: str) -> str:
-        """Return what is said of a cone: why it failed, was given up, or is not begun yet."""
+        """Return the remark on a cone: why it failed, was given up, or is not begun yet."""
         stop = self._stops.get(target)
         return (stop.reason or "") if stop is not None and stop.state in _REMARKED else ""
 
     def deviation_of(self, target: str) -> float | None:
-        """Return how far off a cone stands, or stood before it was collected, in metres."""
+        """Return the deviation of a cone, or that before it was collected, in metres."""
         stop = self._stops.get(target)
         if stop is None or stop.state is not TaskState.DONE:
             return None
         return self._placed.get(stop.task) if stop.placement is None else self._collected.get(stop.placement)
 
 
-# --- A plan in words and numbers: what table, map and message say of it ---
+# --- A plan in words and numbers, for table, map and messages ---
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C510A", "#6A3D9A")
-"""Of Okabe and Ito's palette and two more; with more robots they repeat, and the numbers tell them apart."""
+"""Okabe and Ito's palette and two more; with more robots colours repeat, and the numbers distinguish them."""
 
 _WORDS = {
     TaskState.WAITING: tr("in the queue"),
@@ -101,9 +101,9 @@ NOT_DONE = (TaskState.FAILED, TaskState.SKIPPED)
 
 @dataclass(frozen=True)
 class PlanStopRow:
-    """One stop as it is shown. ``number`` counts the stops of its robot, from 1, those behind it first.
+    """One stop for display. ``number`` counts the stops of its robot, from 1, completed ones first.
 
-    ``state`` is what became of a cone that was sent, ``why`` what is said of it; ``deviation`` is metres.
+    ``state`` is that of a cone that was sent, ``why`` the remark on it; ``deviation`` is in metres.
     """
 
     robot: str
@@ -116,7 +116,7 @@ class PlanStopRow:
     deviation: float | None = None
 
     def in_words(self) -> str:
-        """Return state and reason for the operator, nothing for what was not sent."""
+        """Return state and reason for the operator, empty for a cone that was not sent."""
         words = "" if self.state is None else _WORDS[self.state]
         return f"{words}: {self.why}" if self.why else words
 
@@ -128,7 +128,7 @@ def colour_of(plan: ConePlan, robot: str) -> str:
 
 
 def stop_rows(plan: ConePlan, progress: ReportedProgress | None) -> dict[str, list[PlanStopRow]]:
-    """Return the stops of each robot, those behind it first."""
+    """Return the stops of each robot, completed ones first."""
     began = None if progress is None else progress.began_at
     rows: dict[str, list[PlanStopRow]] = {}
     for one in plan.robots:
@@ -142,7 +142,7 @@ def stop_rows(plan: ConePlan, progress: ReportedProgress | None) -> dict[str, li
 
 
 def plan_title(report: PlanReport) -> str:
-    """Return by whom and when a plan was submitted, and for which robots."""
+    """Return who submitted a plan and when, and for which robots."""
     return tr(
         "{by}, {time}: {robots}",
         by=report.submitted_by,
@@ -152,7 +152,7 @@ def plan_title(report: PlanReport) -> str:
 
 
 def plan_summary(plan: ConePlan) -> str:
-    """Return how good a plan is and what it leaves out."""
+    """Return the quality of a plan and the cones that it leaves out."""
     cones = sum(stop.is_target for _, stop in plan.all_stops())
     robots = sum(bool(one.stops) for one in plan.robots)
     text = tr(
@@ -177,12 +177,12 @@ def plan_summary(plan: ConePlan) -> str:
 
 
 def method_text(plan: ConePlan) -> str:
-    """Return by which parts a plan was made, for those who want to know."""
+    """Return the parts of the method by which a plan was made, for those interested."""
     return tr("Found by: {method}. Ways along: {travel}.", method=plan.method, travel=plan.travel)
 
 
 def time_text(seconds: float, began_at: float | None) -> str:
-    """Return when that is: the time of day once the plan was begun, before as time after its begin."""
+    """Return the time of day once the plan has begun, before that the time after its beginning."""
     if began_at is None:
         return f"+{_span(seconds)}"
     return time.strftime("%H:%M:%S", time.localtime(began_at + seconds))
@@ -208,17 +208,17 @@ def _span(seconds: float) -> str:
     return f"{hours}:{minutes:02d}:{rest:02d}" if hours else f"{minutes}:{rest:02d}"
 
 
-# --- What the operator is told before a plan is sent, and after ---
+# --- Messages to the operator before and after a plan is sent ---
 
 MOVED = 1.0
 """Metres that a robot may have moved since the plan was made."""
 
 LISTED = 5
-"""Robots, doubts, closed ways and meetings that the question names: it has to fit on a screen."""
+"""Robots, doubts, closed ways and meetings named in the question: it must fit on a screen."""
 
 
 def before_sending(desk: FleetController, draft: PlanProposal) -> str:
-    """Return what sending will do, and what speaks against it."""
+    """Return the consequences of sending, and the findings against it."""
     driving = [one for one in draft.plan.robots if one.stops and not one.lost]
     lines = [plan_summary(draft.plan) + ".", ""]
     lines += first_of([f"{one.robot.id}: {_cones(one)}" for one in driving], LISTED)
@@ -232,7 +232,7 @@ def before_sending(desk: FleetController, draft: PlanProposal) -> str:
 
 
 def after_sending(desk: FleetController, robots: Sequence[str]) -> list[str]:
-    """Return which of a plan's robots do not set off, since somebody holds them."""
+    """Return the plan's robots that do not start, since their queues are paused."""
     texts = []
     for robot in robots:
         report = desk.state.queues.get(robot)
@@ -274,7 +274,7 @@ def _doubts_of_place(desk: FleetController, robot: PlanRobot) -> Iterator[str]:
 
 
 def _doubts_of_queue(queue: QueueReport) -> Iterator[str]:
-    """Yield what becomes of the tasks that are in the robot's queue already."""
+    """Yield the fate of the tasks that are in the robot's queue already."""
     waiting = sum(task.state is not TaskState.CURRENT for task in queue.tasks)
     if waiting:
         yield tr_count(

@@ -1,4 +1,4 @@
-"""Cone plans as shown: the table of robots with their stops, and the layers on the map."""
+"""Display of cone plans: the table of robots with their stops, and the layers on the map."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from ..ui.tables import fit_headers
 from .as_placed import PLACED, utc_in_words
 from .plan_texts import NOT_DONE, PlanStopRow, colour_of, time_text
 
-# --- The plan as a table of robots with their stops: dragged, moved by keys, taken out ---
+# --- The plan as a table of robots with their stops, which can be dragged, moved by keys and removed ---
 
 HEADS = (tr("Robot, stop"), tr("Arrives"), tr("State"), tr("Off [m]"))
 _NAME = Qt.ItemDataRole.UserRole
@@ -43,13 +43,13 @@ _KINDS = {"place": "", "collect": tr("collect "), "store": tr("store "), "home":
 
 
 class PlanTree(QTreeWidget):
-    """Shows a draft or the plan that is driven. Changes are asked for, and shown when they are made."""
+    """Shows a draft or the driven plan. Changes are requested, and shown once they are made."""
 
     move_requested = pyqtSignal(str, str, int, int)
-    """A target to another robot, trip and place."""
+    """A target moves to another robot, trip and place."""
     remove_requested = pyqtSignal(str)
     place_requested = pyqtSignal(float, float)
-    """A stop was double clicked: where it is, in the site frame."""
+    """A stop was double-clicked: its position in the site frame."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -84,7 +84,7 @@ class PlanTree(QTreeWidget):
             self.clear()
             return
         if plan is not self._plan:
-            # The gateway tells a plan once more with each of its revisions.
+            # The gateway reports a plan again with each of its revisions.
             is_same, self._plan = plan == self._plan, plan
             if not is_same:
                 self._build(plan, rows)
@@ -106,7 +106,7 @@ class PlanTree(QTreeWidget):
             super().keyPressEvent(event)
 
     def dropEvent(self, event: QDropEvent) -> None:
-        """Ask for the cone that is dragged to be where it is dropped; nothing is moved here."""
+        """Request the move of the dragged cone to where it is dropped; nothing is moved here."""
         onto = self.itemAt(_place(event))
         below = self.dropIndicatorPosition() != QAbstractItemView.DropIndicatorPosition.AboveItem
         target = self._target()
@@ -116,7 +116,7 @@ class PlanTree(QTreeWidget):
             self._want(target, onto, after=below)
 
     def give_to(self, robot: str) -> None:
-        """Ask for the selected cone to be the last one of ``robot``."""
+        """Request that the selected cone become the last one of ``robot``."""
         target = self._target()
         if target and self._plan is not None:
             self._emit(target, position_at_end(self._plan, target, robot))
@@ -141,7 +141,7 @@ class PlanTree(QTreeWidget):
             self.move_requested.emit(target, *place)
 
     def _target(self) -> str:
-        """Return the cone that is selected and may be changed, else nothing."""
+        """Return the selected cone if it can be moved, else an empty text."""
         item = self.currentItem()
         if not self._editable or item is None or item.parent() is None:
             return ""
@@ -188,7 +188,7 @@ class PlanTree(QTreeWidget):
 def position_beside(plan: ConePlan, target: str, onto: str, *, after: bool) -> tuple[str, int, int] | None:
     """Return robot, trip and place of ``target`` when it is dropped before or ``after`` cone ``onto``.
 
-    Trip and place are as :func:`~.editing.moved` takes them. None when ``onto`` is nobody's.
+    Trip and place are as in :func:`~.editing.moved`. None when ``onto`` is no robot's.
     """
     names = [one.robot.id for one in plan.robots if not one.lost]
     for robot, day in zip(names, trips_of(plan), strict=True):
@@ -236,7 +236,7 @@ def _robot_in_words(rows: Sequence[PlanStopRow], lost: bool) -> str:
 
 
 def _place(event: QDropEvent) -> QPoint:
-    """Return where in the view ``event`` happens; Qt 6 has no pos(), and Qt 5 no position()."""
+    """Return the position of ``event`` in the view; Qt 6 has no pos(), and Qt 5 no position()."""
     if hasattr(event, "position"):
         return event.position().toPoint()
     return event.pos()  # type: ignore[attr-defined]
@@ -260,11 +260,11 @@ PLACED_FIELDS = (
     "planned_y:double,x:double,y:double,theta:double,collected:boolean,planned_easting:double,"
     "planned_northing:double,easting:double,northing:double"
 )
-"""As in what ``robot-bridge placements export`` writes, so that the as-placed report takes it."""
+"""As in the files of ``robot-bridge placements export``, so that the as-placed report accepts it."""
 
 
 class PlanLayers:
-    """Made when there is something to show, and taken out with the plugin."""
+    """The layers, created when there is something to show, and removed with the plugin."""
 
     def __init__(self, desk: FleetController):
         self._desk = desk
@@ -278,7 +278,7 @@ class PlanLayers:
         self.placed = RowLayer(project, PLACED, tr("Cones as placed"), "Point", PLACED_FIELDS, _style_placed)
 
     def show(self, plan: ConePlan | None, rows: Mapping[str, Sequence[PlanStopRow]]) -> None:
-        """Show a plan by the rows of each robot; nothing for none."""
+        """Show a plan by the rows of each robot; None shows nothing."""
         stops, ways = [], []
         for robot, theirs in (rows if plan is not None else {}).items():
             colour = colour_of(plan, robot)
@@ -292,30 +292,30 @@ class PlanLayers:
         self.stops.show(stops, self._desk.state.site)
 
     def show_placed(self, placements: list[PlacementReport]) -> None:
-        """Show where cones were put down."""
+        """Show the positions of placed cones."""
         site = self._desk.state.site
         if site is not None:
             frame = frame_of(site)
             self.placed.show(_placed_rows(placements, frame), site)
 
     def remove(self) -> None:
-        """Take all of them out of the project."""
+        """Remove all of them from the project."""
         for layer in (self.ways, self.stops, self.placed):
             layer.remove()
 
 
 def _stop_values(row: PlanStopRow, colour: str) -> list[Any]:
-    """Return the values of ``STOP_FIELDS``; the state as the protocol has it, whatever QGIS speaks."""
+    """Return the values of ``STOP_FIELDS``; the state by its protocol name in every language."""
     stop, state = row.stop, "" if row.state is None else row.state.value
     return [row.robot, row.number, row.trip, stop.kind, stop.id, row.arrives, state, row.why, colour]
 
 
 def _placed_rows(placements: Sequence[PlacementReport], frame: SiteFrame) -> list[Row]:
-    """Return where cones were put down and the values of ``PLACED_FIELDS``, times in UTC."""
+    """Return positions of placed cones and the values of ``PLACED_FIELDS``, times in UTC."""
     if not placements:
         return []
     places = [(one.planned_x, one.planned_y, one.x, one.y) for one in placements]
-    # Without the noise, below a millimetre, of the way from the site's frame.
+    # Rounded to remove the noise, below a millimetre, of the transform from the site frame.
     in_crs = np.round(frame.to_crs(np.reshape(places, (-1, 2))), 3).reshape(-1, 4).tolist()
     rows: list[Row] = []
     for one, crs_metres in zip(placements, in_crs, strict=True):

@@ -1,4 +1,4 @@
-"""The plan proposal: its paths, checked for closed roads and near meetings, and its task."""
+"""The plan proposal: its paths, its checks for closed roads and near meetings, and its task."""
 
 from __future__ import annotations
 
@@ -46,15 +46,15 @@ from .plan_settings import PlanSettings
 
 # --- Paths: straight or by road, around standing cones and robots ---
 
-# --- How the robots of a plan get from place to place: straight nearby, along the roads farther off ---
+# --- The robots' ways from place to place: straight nearby, along the roads farther off ---
 
 
 class PlanTravel:
     """The ground of one plan; made in the window's thread, used by one task after the other.
 
-    ``cones`` (n, 2) are those of before, beside the plan's own; ``standing`` is where robots stand that do
-    not drive by it. ``closures`` are the roads that are closed at the gateway. All hold for the next plan
-    that is made.
+    ``cones`` (n, 2) are those standing before, besides the plan's own; ``standing`` are positions of robots
+    that do not take part. ``closures`` are the roads that are closed at the gateway. All apply to the next
+    plan that is made.
     """
 
     def __init__(self, project: QgsProject, frame: SiteFrame, settings: PlanSettings) -> None:
@@ -76,10 +76,10 @@ class PlanTravel:
         self._roads, self._keepouts = sources(ROAD_CENTRELINE), sources(KEEPOUT)
 
     def travel_of(self, job: AssignmentJob, goes_on: Callable[[], bool]) -> Travel:
-        """Return the ways between the places of ``job``, clear of its cones and of what stands.
+        """Return the ways between the places of ``job``, clear of its cones and of standing cones and robots.
 
-        :raises CancelledError: here and by the ways once ``goes_on()`` says no; RoadsError when a place is
-            too far from every road; LayerReadingError for a layer of roads that cannot be read.
+        :raises CancelledError: here and by the ways once ``goes_on()`` is false; RoadsError when a place is
+        too far from every road; LayerReadingError for a layer of roads that cannot be read.
         """
         router = self._opened(goes_on)
         travel: Travel = StraightTravel(job)
@@ -101,14 +101,14 @@ class PlanTravel:
     def _opened(self, goes_on: Callable[[], bool]) -> Router | None:
         if not self._read:
             self._router = self._network(goes_on)
-            # Only now: who is cancelled or fails here has no roads, and must not go on without them.
+            # Only now: a cancelled or failed task has no roads, and must not continue without them.
             self._read = True
         if self._router is not None:
             self._close(self._router)
         return self._router
 
     def _close(self, router: Router) -> None:
-        """Close what is closed at the gateway, and open what is not any more."""
+        """Close the roads closed at the gateway, and open those that no longer are."""
         lines = [(np.array(one.line, dtype=float), one.level) for one in self.closures]
         edges = {edge for line in lines for edge in edges_of_closure(router.nearest, *line).tolist()}
         always = set(np.flatnonzero(router.closed).tolist()) - self._shut
@@ -137,7 +137,7 @@ def _ask(goes_on: Callable[[], bool]) -> None:
 
 
 class _Asking(QgsFeedback):
-    """Asks another whether it is cancelled, for what reads layers until its feedback says so."""
+    """Checks ``goes_on`` for cancellation, for readers of layers that check a feedback."""
 
     def __init__(self, goes_on: Callable[[], bool]) -> None:
         super().__init__()
@@ -149,11 +149,11 @@ class _Asking(QgsFeedback):
 
 # --- The proposal, its checks, and the task that computes it ---
 
-# --- Which ways of a plan lead along roads that are closed at the gateway ---
+# --- The ways of a plan that lead along roads closed at the gateway ---
 
 
 def closed_in_words(way: ClosedWay) -> str:
-    """Return whose way that is, and who closed the road and why."""
+    """Return the robot of the way, and who closed the road and why."""
     return tr(
         "the way of {robot} to {stop} leads along a road that {by} closed{why}",
         robot=way.robot,
@@ -166,8 +166,8 @@ def closed_in_words(way: ClosedWay) -> str:
 def closed_ways(plan: ConePlan, closures: Sequence[ClosureReport]) -> Steps[tuple[ClosedWay, ...]]:
     """Find the ways of ``plan`` that lead along a closed road, one step for each road and each way.
 
-    A way that only crosses one, or turns off where it begins, may be driven. The gateway says of closures no
-    width, so that a road counts as wide as one of which none is known.
+    A way that only crosses one, or turns off where it begins, may be driven. The gateway reports closures
+    without a width, so that a road counts as wide as one of unknown width.
     """
     if not closures:
         return ()
@@ -196,19 +196,19 @@ class _Road:
         self._all = np.ones(len(self._nearest.network), dtype=bool)
 
     def is_along(self, path: Floats) -> bool:
-        """Tell whether ``path``, (n, 2) in the site frame, runs along the road."""
+        """Return whether ``path``, (n, 2) in the site frame, runs along the road."""
         low, high = np.minimum(path[:-1], path[1:]), np.maximum(path[:-1], path[1:])
         legs = np.flatnonzero(((low <= self._high) & (high >= self._low)).all(axis=1))
         if len(legs) == 0:
             return False
-        # Most of a long way is far from the road, and need not be looked at.
+        # Most of a long way is far from the road, and need not be checked.
         return len(edges_along(self._nearest, path[legs[0] : legs[-1] + 2], self._all)) > 0
 
 
 def _without_ends(line: Floats) -> Floats:
     """Return ``line``, (n, 2), without half a road's width at either end, at most nine tenths of it.
 
-    A way is on a road up to half its width beyond the road's end, which is where other roads begin.
+    A way is on a road up to half its width beyond the road's end, where other roads begin.
     """
     metres = float(np.hypot(*np.diff(line, axis=0).T).sum())
     cut = min(DEFAULT_WIDTH_M / 2, 0.45 * metres)
@@ -216,7 +216,7 @@ def _without_ends(line: Floats) -> Floats:
 
 
 def meeting_in_words(meeting: NearMeeting) -> str:
-    """Return who meets whom, where and when."""
+    """Return which robots meet, where and when."""
     minutes, seconds = divmod(round(meeting.at_s), 60)
     return tr(
         "{robot} and {other} come within {metres:.1f} m at {x:.0f}, {y:.0f} m after {minutes}:{seconds:02d}",
@@ -230,12 +230,12 @@ def meeting_in_words(meeting: NearMeeting) -> str:
     )
 
 
-# --- A plan together with the ground that it is planned on, and what speaks against it there ---
+# --- A plan together with its ground, and the findings against it ---
 
 
 @dataclass(frozen=True)
 class PlanProposal:
-    """A plan with the ground that it is planned on. Its tasks and cones are written down with ``name``."""
+    """A plan with the ground that it is planned on. Its tasks and cones are recorded with ``name``."""
 
     plan: ConePlan
     ways: PlanTravel
@@ -243,11 +243,11 @@ class PlanProposal:
     name: str
     meetings: tuple[NearMeeting, ...] = field(default=())
     closed: tuple[ClosedWay, ...] = field(default=())
-    """Ways along roads that are closed at the gateway, which would not take them."""
+    """Ways along roads that are closed at the gateway, which would refuse them."""
 
     def with_plan(self, plan: ConePlan, apart_m: float, closures: Sequence[ClosureReport]) -> PlanProposal:
-        """Return ``plan`` on the same ground, judged: where robots come nearer to each other than ``apart_m``
-        metres, and what of it leads along ``closures``.
+        """Return ``plan`` on the same ground, checked: where robots come nearer than ``apart_m`` metres to
+        each other, and which of its ways lead along ``closures``.
 
         That takes seconds for a plan of an hour among a thousand robots: not in the window's thread.
         """
@@ -256,16 +256,16 @@ class PlanProposal:
         return replace(self, plan=plan, meetings=near, closed=run_to_end(closed_ways(plan, closures)))
 
     def with_closures(self, closures: Sequence[ClosureReport]) -> Steps[PlanProposal]:
-        """Return the same with other roads closed; itself if that changes nothing."""
+        """Return the proposal with other roads closed; itself if that changes nothing."""
         closed = yield from closed_ways(self.plan, closures)
         return self if closed == self.closed else replace(self, closed=closed)
 
 
-# --- Looks which ways of plans lead along closed roads, without holding the window up ---
+# --- Checks which ways of plans lead along closed roads, without blocking the window ---
 
 
 class ClosureCheck(QObject):
-    """One look at a time: ten roads and four hundred ways take a tenth of a second, in slices."""
+    """One check at a time: ten roads and four hundred ways take a tenth of a second, in slices."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -277,16 +277,16 @@ class ClosureCheck(QObject):
         closures: Sequence[ClosureReport],
         done: Callable[[list[PlanProposal]], None],
     ) -> None:
-        """Call ``done`` with ``drafts`` as these roads leave them, at once where that is soon found.
+        """Call ``done`` with ``drafts`` checked against these roads, at once where that is quick.
 
-        A look that is under way is given up.
+        A check that is under way is given up.
         """
         found = self._slices.begin(_looked_at(drafts, closures), done=done)
         if found is not None:
             done(found)
 
     def stop(self) -> None:
-        """Look no more; what was asked for is not told."""
+        """Stop checking; the result of the check under way is dropped."""
         self._slices.stop()
 
 
@@ -299,11 +299,11 @@ def _looked_at(
     return found
 
 
-# --- Makes a plan beside the window's thread, with progress and cancel ---
+# --- Makes a plan in the background, with progress and cancel ---
 
 
 class PlanTask(SignallingTask):
-    """Does ``work``, which is given the task: ``draft`` is there afterwards, or ``why`` not."""
+    """Runs ``work``, which is given the task: afterwards ``draft`` is set, or ``why`` is the error."""
 
     def __init__(self, title: str, work: Callable[[PlanTask], PlanProposal]):
         super().__init__(title, QgsTask.Flag.CanCancel)
@@ -311,7 +311,7 @@ class PlanTask(SignallingTask):
         self.draft: PlanProposal | None = None
         self.why = ""
         self.share = 0.0
-        """How much is done, 0 to 1; known when QGIS has deleted the task, too."""
+        """The part that is done, 0 to 1; known even when QGIS has deleted the task."""
         self.is_under_way = False
         """Whether a thread is in :meth:`run`."""
 
@@ -333,11 +333,11 @@ class PlanTask(SignallingTask):
         return self.draft is not None
 
     def report_progress(self, share: float) -> bool:
-        """Show that ``share`` of the work, 0 to 1, is done; return whether to go on."""
+        """Show that ``share`` of the work, 0 to 1, is done; return whether to continue."""
         self.share = share
         self.setProgress(100.0 * share)
         return self.goes_on()
 
     def goes_on(self) -> bool:
-        """Whether nobody has cancelled it."""
+        """Whether it has not been cancelled."""
         return not self.isCanceled()

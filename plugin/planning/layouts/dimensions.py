@@ -1,4 +1,4 @@
-"""The window beside the map in which a layout's dimensions are changed before it is placed."""
+"""The window beside the map for editing a layout's dimensions before it is placed."""
 
 from __future__ import annotations
 
@@ -33,13 +33,13 @@ GROUP = "fleet_supervisor/layouts"
 _WIDTH = 140
 """Pixels of a field."""
 _FURTHEST = 1e6
-"""What a field takes at most, either way: what is wrong with a number is said, and not cut off unseen."""
+"""Greatest absolute value in a field: a wrong number is reported, and not silently clipped."""
 
 
 class NumberField(QgsDoubleSpinBox):
-    """A number with as many decimals as it has; its button sets it back to the standard's.
+    """A number with as many decimals as it has; its button resets it to the standard's.
 
-    The wheel scrolls past it: a dimension is changed by who means to, and not by who looks for another one.
+    The wheel scrolls past it: a dimension must not change by accident while scrolling.
     """
 
     def wheelEvent(self, event: QWheelEvent) -> None:
@@ -50,28 +50,28 @@ class NumberField(QgsDoubleSpinBox):
 
 
 class ChoiceField(QComboBox):
-    """A choice that the wheel scrolls past, as with :class:`NumberField`."""
+    """A choice that ignores the wheel, like :class:`NumberField`."""
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         event.ignore()
 
 
 class LayoutDimensions(QDialog):
-    """A field for each dimension, and one for the heading. What is wrong is said and not taken over."""
+    """A field for each dimension, and one for the heading. Errors are shown and not applied."""
 
     changed = pyqtSignal(object)
-    """The layout with the dimensions as they are now, all of them possible."""
+    """The layout with the present dimensions, all of them valid."""
     turned = pyqtSignal(float)
     """The heading that the operator gave, degrees clockwise from north."""
     undo_requested = pyqtSignal()
-    """The operator wants the layout that was placed last taken back."""
+    """The operator wants to undo the placing of the last layout."""
     left = pyqtSignal()
-    """The operator is done here: the keys are the map's again."""
+    """The operator has finished here: the map gets the focus again."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
         self.setObjectName("fleet_layout_dimensions")
-        # The map keeps the keys until the operator comes here.
+        # The map keeps the focus until the operator comes here.
         self.setAttribute(Qt.WidgetAttribute.WA_ShowWithoutActivating)
         self._kind: type[Layout] | None = None
         self._fields: dict[str, NumberField | QComboBox] = {}
@@ -104,7 +104,7 @@ class LayoutDimensions(QDialog):
         self.resize(460, 480)
 
     def show_layout(self, layout: Layout, heading: float) -> None:
-        """Show the dimensions of ``layout`` for the operator to change."""
+        """Show the dimensions of ``layout`` for editing."""
         self._kind = type(layout)
         self.setWindowTitle(LAYOUT_TITLES[layout.NAME])
         self.standard.setText(standard_in_words(self._kind))
@@ -130,18 +130,18 @@ class LayoutDimensions(QDialog):
         self.show()
 
     def _lie_beside_the_map(self) -> None:
-        """Go to the lower left corner of the window: Qt would begin in its middle, where the cones go."""
+        """Move to the lower left corner of the window: Qt would begin in its middle, where the cones go."""
         window = self.parentWidget().window().geometry()
         self.move(window.left(), window.bottom() + 1 - self.height())
 
     def show_heading(self, heading: float) -> None:
-        """Show which way the layout is turned."""
+        """Show the heading of the layout."""
         self.heading.blockSignals(True)
         self.heading.setValue(heading)
         self.heading.blockSignals(False)
 
     def take_keys(self) -> None:
-        """Let the operator type here."""
+        """Set the focus in this window."""
         self.show()
         self.activateWindow()
         self.heading.setFocus()
@@ -186,7 +186,7 @@ class LayoutDimensions(QDialog):
         self._edited()
 
     def _edited(self, *_: object) -> None:
-        """Take over what stands in the fields, or say what is wrong with it."""
+        """Apply the values in the fields, or show what is wrong with them."""
         values = {name: _value(field) for name, field in self._fields.items()}
         wrong = []
         for one in self._kind.dimensions():
@@ -201,7 +201,7 @@ class LayoutDimensions(QDialog):
             self.changed.emit(self._kind.of(values))
 
     def _mark(self, one: Dimension, value: float, fault: DimensionFault | None) -> None:
-        """Show what is wrong, and what is not as the standard has it."""
+        """Mark an error, and a value that differs from the standard."""
         font = self._fields[one.name].font()
         font.setBold(value != one.standard)
         self._fields[one.name].setFont(font)
@@ -209,7 +209,7 @@ class LayoutDimensions(QDialog):
 
 
 def remembered(kind: type[Layout]) -> Layout:
-    """Return the layout with the dimensions that were given last, where there are any that it can have."""
+    """Return the layout with the dimensions used last, where there are any that are valid for it."""
     settings, values = QgsSettings(), {}
     for one in kind.dimensions():
         value = settings.value(_key(kind, one.name), None)
@@ -223,7 +223,7 @@ def remembered(kind: type[Layout]) -> Layout:
 
 
 def remember(kind: type[Layout], values: dict[str, float]) -> None:
-    """Keep the dimensions that differ from the standard's, in the user's profile."""
+    """Store the dimensions that differ from the standard's, in the user's profile."""
     settings = QgsSettings()
     for one in kind.dimensions():
         if values[one.name] == one.standard:

@@ -39,16 +39,16 @@ from ...ui.errors import FleetError, MapTransformError
 from ...ui.language import tr
 from ...ui.scheduling import BackgroundReading, Steps
 
-# --- The layer that the operator's cone layouts go into, and what they are checked against ---
+# --- The layer of the operator's cone layouts, and the checks of a layout ---
 
 MARK = "fleet/cones"
-"""The custom property of the layer."""
+"""The custom property that marks the layer."""
 
 OBSTACLE_DISTANCE_M = CONE_DISTANCE_M = 0.5
 
 
 class StandingCone(NamedTuple):
-    """A cone in the layer; ``number`` is its feature's, (x, y) in the CRS of the layer."""
+    """A cone in the layer; ``number`` is its feature's id, (x, y) is in the CRS of the layer."""
 
     number: int
     id: str
@@ -73,7 +73,7 @@ class StandingReader:
 
 
 class LayoutLayer:
-    """Finds or makes the layer of cones in a project."""
+    """Finds or creates the layer of cones in a project."""
 
     def __init__(self, project: QgsProject):
         self._project = project
@@ -101,13 +101,13 @@ class LayoutLayer:
         return canvas
 
     def prefix(self, name: str, standing: Sequence[StandingCone]) -> str:
-        """Return what the ids of one more layout ``name`` begin with: those of no ``standing`` cone do."""
+        """Return the id prefix of another layout ``name``: no ``standing`` cone has it."""
         ids = {cone.id.rpartition("-")[0] for cone in standing}
         taken = (f"{name}-{number}" for number in range(2, len(ids) + 3))
         return name if name not in ids else next(prefix for prefix in taken if prefix not in ids)
 
     def add(self, cones: Sequence[Cone], name: str, crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
-        """Add ``cones``, which are in ``crs``, to the layer; make it where there is none."""
+        """Add ``cones``, which are in ``crs``, to the layer; create it where there is none."""
         layer = self.layer() or self._made(crs)
         features = []
         for cone in cones:
@@ -130,7 +130,7 @@ class LayoutLayer:
         return layer
 
     def take_out(self, layer_id: str, ids: Collection[str]) -> Steps[bool]:
-        """Remove the cones ``ids`` from the layer ``layer_id``; false where none is there any more.
+        """Remove the cones ``ids`` from the layer ``layer_id``; false where it has none of them any more.
 
         :raises LayerReadingError: as :meth:`standing`.
         """
@@ -146,10 +146,10 @@ class LayoutLayer:
         return True
 
     def standing(self) -> Steps[list[StandingCone]]:
-        """Return the cones that stand already, in the CRS of their layer.
+        """Return the cones in the layer, in its CRS.
 
         :raises LayerReadingError: when the layer does not answer.
-        :raises MapTransformError: when it has become another one meanwhile.
+        :raises MapTransformError: when it has been replaced meanwhile.
         """
         layer = self.layer()
         if layer is None:
@@ -170,7 +170,7 @@ class LayoutLayer:
         return layer
 
 
-# --- The GeoPackage beside the project that keeps the operator's cones when the project is saved ---
+# --- The GeoPackage beside the project that stores the operator's cones when the project is saved ---
 
 TABLE = "cones"
 
@@ -178,7 +178,7 @@ TABLE = "cones"
 class LayoutFile(QObject):
     """Moves the layer of cones from memory into a file when its project is saved.
 
-    A layer that is in a file, here or wherever the user keeps it, is left alone. :meth:`remove` undoes the
+    A layer that is in a file already, here or elsewhere, is left alone. :meth:`remove` undoes the
     constructor.
     """
 
@@ -186,11 +186,11 @@ class LayoutFile(QObject):
         super().__init__(parent)
         self._project, self._notices = project, notices
         self._store = LayoutLayer(project)
-        # Comes before the layers are written, with the source that they have then.
+        # Emitted before the layers are written, with the source that they have then.
         project.writeProject.connect(self._keep_cones)
 
     def remove(self) -> None:
-        """Let projects be saved without it."""
+        """Stop acting on the saving of projects."""
         self._project.writeProject.disconnect(self._keep_cones)
 
     def _keep_cones(self, *_document: object) -> None:
@@ -210,17 +210,17 @@ class LayoutFile(QObject):
             )
 
     def _move(self, layer: QgsVectorLayer, path: Path) -> str:
-        """Write ``layer`` to ``path`` and let it be that file's; return what went wrong, if something did."""
+        """Write ``layer`` to ``path`` and switch it to that file; return an error text, empty on success."""
         options = QgsVectorFileWriter.SaveVectorOptions()
         options.driverName, options.layerName = "GPKG", TABLE
-        # Of the format's versions the one that GDAL 3.6 and older read.
+        # The version of the format that GDAL 3.6 and older read.
         options.datasourceOptions = ["VERSION=1.3"]
         context = self._project.transformContext()
         error, words, *_ = QgsVectorFileWriter.writeAsVectorFormatV3(layer, str(path), context, options)
         if error != QgsVectorFileWriter.WriterError.NoError:
             return tr("{path} cannot be written ({words})", path=path, words=words)
         source = f"{path}|layername={TABLE}"
-        # Before the layer in use lets go of the cones in memory.
+        # Before the layer in use drops the cones in memory.
         if not QgsVectorLayer(source, TABLE, "ogr").isValid():
             return tr("{path} cannot be read again", path=path)
         layer.setDataSource(source, layer.name(), "ogr", False)
@@ -228,7 +228,7 @@ class LayoutFile(QObject):
 
 
 def _free_path(project: QgsProject) -> Path | None:
-    """Return a file beside the project that is not there yet; None for a project that is no file."""
+    """Return an unused file name beside the project; None for a project that is no file."""
     if project.projectStorage() is not None or not project.absoluteFilePath():
         return None
     file = Path(project.absoluteFilePath())
@@ -236,7 +236,7 @@ def _free_path(project: QgsProject) -> Path | None:
     return next((path for name in names if not (path := file.with_name(name)).exists()), None)
 
 
-# --- What is wrong with a cone layout while it is still under the cursor, without the window waiting for it
+# --- Errors of a cone layout while it is still under the cursor, found without blocking the window ---
 
 Floats = npt.NDArray[np.float64]
 
@@ -249,7 +249,7 @@ class LayoutGround:
     obstacles: tuple[NamedGeometry, ...]
 
     def bad_cones(self, cones: Sequence[Cone], standing: Floats) -> Floats:
-        """Return where those of ``cones`` are that should not stand there, (n, 2); ``standing`` is (m, 2)."""
+        """Return the positions of ``cones`` that should not stand there, (n, 2); ``standing`` is (m, 2)."""
         xy = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
         if not len(xy):
             return xy
@@ -266,7 +266,7 @@ class LayoutGround:
         return xy[bad]
 
     def findings(self, cones: Sequence[Cone], standing: Sequence[StandingCone]) -> list[ConeFinding]:
-        """Return what is wrong with ``cones`` here, among those that stand already."""
+        """Return the findings on ``cones`` here, among those that stand already."""
         xy = np.array([(cone.x, cone.y) for cone in cones], dtype=np.float64).reshape(-1, 2)
         low, high = xy.min(axis=0) - OBSTACLE_DISTANCE_M, xy.max(axis=0) + OBSTACLE_DISTANCE_M
         surfaces = None if self.surfaces is None else _meeting(self.surfaces, self._surface_boxes, low, high)
@@ -306,10 +306,10 @@ def _meeting(
 
 
 class LayoutGroundReader(QObject):
-    """Reads the project's surfaces and obstacles beside the GUI thread, and again when a layer changed."""
+    """Reads the project's surfaces and obstacles in the background, and again when a layer has changed."""
 
     ready = pyqtSignal()
-    """What was asked for last has been read, or cannot be."""
+    """The ground requested last has been read, or cannot be."""
     forgotten = pyqtSignal()
     """A layer has changed."""
 
@@ -322,9 +322,9 @@ class LayoutGroundReader(QObject):
         self.why = ""
         """Why there is no ground; empty where there is one, or while it is being read."""
         self.unusable = False
-        """Whether that is what a layer is, and not what is in it."""
+        """Whether the cause is the layer itself, and not its content."""
         self._of: tuple[object, ...] = ()
-        """What the ground, or the reading that is under way, is of."""
+        """The parameters of the ground, or of the reading under way."""
         self._reading: BackgroundReading[LayoutGround | None] = BackgroundReading(self)
         self._reading.ended.connect(self._have_read)
 
@@ -338,12 +338,12 @@ class LayoutGroundReader(QObject):
         return self._ground
 
     def forget(self) -> None:
-        """Have the ground read again when it is asked for next."""
+        """Have the ground read again at the next request."""
         self._of, self._ground, self.why, self.unusable = (), None, "", False
         self._reading.stop()
 
     def remove(self) -> None:
-        """Watch no layer any longer."""
+        """Stop watching layers."""
         self._watch.changed.disconnect(self._changed)
         self._watch.remove()
         self.forget()

@@ -37,7 +37,7 @@ from .layout_layer import LayoutFile, LayoutGroundReader, LayoutLayer, StandingC
 # --- The map tool that places a cone layout: under the cursor, turned with the wheel, placed with a click
 
 STEP, FINE_STEP = 15.0, 1.0
-"""Degrees for one notch of the wheel, and with Shift held."""
+"""Degrees per notch of the wheel, and with Shift held."""
 
 NOTCH = 120.0
 
@@ -48,24 +48,24 @@ _TURNS = {
 
 
 GOOD, BAD = QColor("#f26a1b"), QColor("#b00020")
-"""Of cones that may stand where they are shown, and of those that should not."""
+"""Colours of cones that may stand where they are shown, and of those that should not."""
 CHECK_MS = 60
-"""Milliseconds that the mouse rests before the cones under it are checked."""
+"""Milliseconds that the mouse must rest before the cones under it are checked."""
 UNDO, REDO = QKeySequence.StandardKey.Undo, QKeySequence.StandardKey.Redo
 
 
 class PlacedLayout(NamedTuple):
-    """Cones that were placed at once."""
+    """Cones placed together."""
 
     cones: list[Cone]
     name: str
     crs: QgsCoordinateReferenceSystem
     layer: str
-    """The id of the layer that they are in: another project has cones of the same names."""
+    """The id of their layer: another project has cones with the same names."""
 
 
 class UncheckedLayout(NamedTuple):
-    """Cones in ``layer`` that have not been checked, among those that stood there before."""
+    """Cones in ``layer`` that have not been checked, among those placed there before."""
 
     cones: list[Cone]
     standing: Sequence[StandingCone]
@@ -74,15 +74,15 @@ class UncheckedLayout(NamedTuple):
 
 
 class LayoutTool(QgsMapTool):
-    """Places ``layout`` and says in ``notices`` what came of it. Nothing is sent by it.
+    """Places ``layout`` and shows the outcome in ``notices``. It sends nothing.
 
     Cones that should not stand where they are shown are marked in red once the mouse rests.
     """
 
     turned = pyqtSignal(float)
-    """The wheel or a key has turned the layout; degrees as :attr:`heading`."""
+    """The wheel or a key has turned the layout; degrees as in :attr:`heading`."""
     undo_changed = pyqtSignal(bool)
-    """Whether there is a layout to take back."""
+    """Whether there is a layout to undo."""
     dimensions_requested = pyqtSignal()
     """F2: the operator wants to type dimensions."""
 
@@ -98,14 +98,14 @@ class LayoutTool(QgsMapTool):
         self._placed: list[PlacedLayout] = []
         self._taken_back: list[PlacedLayout] = []
         self._changes: deque[Steps[None]] = deque()
-        """What is still to be done to the layer of cones."""
+        """Pending changes of the layer of cones."""
         self._changing = CooperativeTask(self)
         self._unchecked: list[UncheckedLayout] = []
         self._patience = QTimer(self)
         self._patience.setSingleShot(True)
         self._patience.timeout.connect(self._give_up_checking)
         self._standing = np.empty((0, 2))
-        """Where cones stand already, as far as that has been read; in the CRS of their layer."""
+        """Positions of cones in the layer, as far as read; in its CRS."""
         self._standing_reading: BackgroundReading[list[StandingCone]] = BackgroundReading(self)
         self._standing_reading.ended.connect(self._have_standing)
         self._ground = LayoutGroundReader(project, self)
@@ -127,24 +127,24 @@ class LayoutTool(QgsMapTool):
         self._show()
 
     def turn_to(self, heading: float) -> None:
-        """Let the layout point that many degrees clockwise from north."""
+        """Turn the layout to that heading, degrees clockwise from north."""
         self.heading = heading % 360.0
         self._show()
 
     def preview(self) -> np.ndarray:
-        """Return where the cones are shown, (n, 2) in the canvas's CRS."""
+        """Return the positions of the cones shown, (n, 2) in the canvas's CRS."""
         return _points_of(self._band)
 
     def bad_preview(self) -> np.ndarray:
-        """Return which of :meth:`preview` should not stand where they are shown, (n, 2)."""
+        """Return those of :meth:`preview` that should not stand where they are shown, (n, 2)."""
         return _points_of(self._bad)
 
     def undo(self) -> None:
-        """Take the layout that was placed last back out of its layer."""
+        """Remove the layout placed last from its layer."""
         self._change(self._undoing())
 
     def redo(self) -> None:
-        """Place again what was taken back last, where the cones' layer is in the same CRS still."""
+        """Place the layout undone last again, if the cones' layer still has the same CRS."""
         self._change(self._redoing())
 
     def activate(self) -> None:
@@ -152,7 +152,7 @@ class LayoutTool(QgsMapTool):
         self.canvas().installEventFilter(self)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        # QGIS's own Undo is about layers; over the map the tool in hand comes first.
+        # QGIS's own Undo is about layers; over the map the active tool takes precedence.
         is_ours = event.type() == QEvent.Type.ShortcutOverride
         if is_ours and any(event.matches(key) for key in (UNDO, REDO)):
             event.accept()
@@ -191,7 +191,7 @@ class LayoutTool(QgsMapTool):
         event.accept()
 
     def keyPressEvent(self, event: QKeyEvent) -> None:
-        """Do by keys what the mouse does: QGIS's own arrow keys move the map below the layout."""
+        """Provide the mouse's actions by keys: QGIS's own arrow keys move the map below the layout."""
         fine = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
         if event.key() == Qt.Key.Key_Escape:
             self.canvas().unsetMapTool(self)
@@ -211,7 +211,7 @@ class LayoutTool(QgsMapTool):
         event.accept()
 
     def remove(self) -> None:
-        """Take the preview off the canvas, and read no layers any more."""
+        """Remove the preview from the canvas, and stop reading layers."""
         self._changing.stop()
         self._patience.stop()
         self._standing_reading.stop()
@@ -219,7 +219,7 @@ class LayoutTool(QgsMapTool):
         self._clear()
 
     def _cones(self) -> tuple[list[Cone], QgsCoordinateTransform]:
-        """Return the cones at the cursor in their own CRS, and the way to the canvas's.
+        """Return the cones at the cursor in their own CRS, and the transform to the canvas's.
 
         :raises FleetError: when there is no CRS in metres.
         """
@@ -229,7 +229,7 @@ class LayoutTool(QgsMapTool):
         back = QgsCoordinateTransform(canvas_crs, crs, self._project.transformContext())
         place = self._cursor or self.canvas().center()
         ((x, y),) = transform_or_raise(np.array([[place.x(), place.y()]]), back)
-        # Of the names only those of cones that are placed matter.
+        # Names matter only for cones that are placed.
         cones = self.layout.cones(self.layout.NAME)
         return cones_at_pose(cones, float(x), float(y), theta_of(self.heading)), forward
 
@@ -238,7 +238,7 @@ class LayoutTool(QgsMapTool):
         self.turned.emit(self.heading)
 
     def _show(self) -> None:
-        """Draw the layout at the cursor; where that cannot be, nothing: a click there says why."""
+        """Draw the layout at the cursor; nothing where that is impossible: a click there shows why."""
         self._clear()
         if self.layout is None or self.canvas().mapTool() is not self:
             return
@@ -251,7 +251,7 @@ class LayoutTool(QgsMapTool):
         self._rest.start()
 
     def _mark_bad(self) -> None:
-        """Mark the cones that should not stand where they are shown now, as far as the layers are read."""
+        """Mark the cones that should not stand where they are shown, as far as the layers are read."""
         self._remove_bad()
         if self._band is None:
             return
@@ -289,7 +289,7 @@ class LayoutTool(QgsMapTool):
         self._change(self._placing(self.layout.NAME, cones, forward.sourceCrs()))
 
     def _change(self, change: Steps[None]) -> None:
-        """Do ``change`` to the layer of cones when those before it are done."""
+        """Apply ``change`` to the layer of cones when those before it are done."""
         self._changes.append(change)
         if not self._changing.is_busy:
             self._changing.begin(self._do_changes())
@@ -327,7 +327,7 @@ class LayoutTool(QgsMapTool):
         self._changed()
 
     def _redoing(self) -> Steps[None]:
-        # Cones are written here and now: to a layer that answers.
+        # Cones are written at once: the layer answers.
         yield from self._store.standing()
         if not self._taken_back:
             self._notices.info(tr("There is nothing to do again."))
@@ -340,10 +340,10 @@ class LayoutTool(QgsMapTool):
         self._placed.append(last._replace(layer=layer.id()))
         self._changed()
 
-    # --- what is wrong with cones that were placed ---
+    # --- Findings on cones that were placed ---
 
     def _check_placed(self) -> None:
-        """Check against the layers what was placed, as soon as these are read."""
+        """Check placed cones against the layers, as soon as these are read."""
         while self._unchecked:
             one = self._unchecked[0]
             ground = self._ground.ground(one.crs)
@@ -407,7 +407,7 @@ class LayoutTool(QgsMapTool):
         self._rest.start()
 
     def _changed(self) -> None:
-        """Show what the cones that stand now leave room for, and whether there is a layout to take back."""
+        """Check the preview against the cones that stand now, and update whether undo is possible."""
         self.undo_changed.emit(bool(self._placed))
         self._read_standing()
         self._rest.start()
@@ -430,14 +430,14 @@ def _unchecked_text(placed: UncheckedLayout, why: str) -> str:
 
 
 def _points_of(band: QgsRubberBand | None) -> np.ndarray:
-    """Return the points of ``band``, (n, 2); none where it is not there."""
+    """Return the points of ``band``, (n, 2); empty without one."""
     if band is None:
         return np.empty((0, 2))
     points = [band.getPoint(0, k) for k in range(band.numberOfVertices())]
     return np.array([(point.x(), point.y()) for point in points]).reshape(-1, 2)
 
 
-# --- The menu entries that put the cone layout tool into the operator's hand, one for each layout ---
+# --- The menu entries that activate the cone layout tool, one for each layout ---
 
 
 class LayoutAction:
@@ -475,14 +475,14 @@ class LayoutAction:
         iface.addPluginToMenu(menu, self.action)
 
     def start_tool(self, layout: Layout) -> None:
-        """Put the tool into the operator's hand, with ``layout`` and its dimensions to be changed."""
+        """Activate the tool with ``layout`` and its dimensions for editing."""
         self._iface.mapCanvas().setMapTool(self.tool)
         self.tool.show_layout(layout)
         self.dimensions.show_layout(layout, self.tool.heading)
         self._iface.mapCanvas().setFocus()
 
     def remove(self) -> None:
-        """Put the tool away and take the entries out of the menu."""
+        """Deactivate the tool and remove the entries from the menu."""
         self._iface.mapCanvas().unsetMapTool(self.tool)
         self._file.remove()
         self.tool.remove()
