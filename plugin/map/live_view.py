@@ -1,5 +1,5 @@
-"""Keeps the canvas true to the desk: the overlay up to twenty times a second, the vector layer once, the view
-on the robots that are followed."""
+"""Updates of the canvas from the desk: the overlay up to twenty times a second, the vector layer once, the
+view as followed robots move."""
 
 from __future__ import annotations
 
@@ -24,39 +24,39 @@ from .overlay.trails import Trails
 from .reported_layers import RobotLayer
 
 FRAME_MS = 15
-"""For what the operator does; what robots do is painted when it was pulled."""
+"""Delay of a repaint after an action of the operator; robots are painted with each update."""
 EVERY_SECOND = 1000 // PULL_EVERY_MS
 EVERY_HALF = EVERY_SECOND // 2
 PART_OF_THE_WINDOW = 0.5
-"""The part of the window's time that painting may take; on a slow computer frames come less often."""
+"""Fraction of the window's time that painting may take; on a slow computer frames come less often."""
 ZOOM_METRES = 30.0
 SOUGHT_FOR_S = 5.0
-"""Seconds for which the gateway is waited for, to tell where a robot is that was out of view."""
+"""Seconds to wait for the gateway's report of the position of a robot that was out of view."""
 NEW_PLANS = 50
-"""Plans that are made for one frame: a desk that connects is told of a thousand at once."""
+"""Plans made for one frame: a desk that connects receives a thousand at once."""
 
 
 class LiveView(QObject):
-    """Owns the overlay, the card under the mouse and the robot layer."""
+    """Owns the overlay, the hover card and the robot layer."""
 
     def __init__(self, desk: FleetController, parent: QObject | None = None):
         super().__init__(parent)
         self._desk = desk
         self._pulls = 0
         self.shown: tuple[int, int] = (0, 0)
-        """The generation and revision of the desk's picture that the overlay was given last."""
+        """The generation and revision of the desk's state that the overlay shows."""
         self._last_frame = self._took = 0.0
         self._placement: SiteToMapTransform | None = None
-        """The desk's, None when it has to be asked again, which copies all that the canvas has set."""
+        """The desk's transform, None when it must be fetched again, which copies the canvas's settings."""
         self._placer = SceneTransformer()
         self._plans = TaskPaths()
         self._trails = Trails()
         self.following = FollowMode.NOBODY
         self._sought: tuple[str, float] | None = None
-        """A robot to be shown once it is known where it is, and until when."""
+        """A robot to show once its position is known, and until when."""
         self._by_layer = False
         self.layer_every = EVERY_SECOND
-        """After how many pulls the layer of robots is written again."""
+        """Number of updates after which the layer of robots is written again."""
         self.overlay = FleetOverlay(desk.canvas, self._trails)
         self.layer = RobotLayer(desk.project, desk.canvas, self)
         self._project = ProjectWatch(desk.project, self)
@@ -84,7 +84,7 @@ class LiveView(QObject):
         self.layer.robots_selected.connect(self._selected_in_layer)
 
     def remove(self) -> None:
-        """Take the overlay and the card off the canvas and the layer out of the project."""
+        """Remove the overlay and the card from the canvas and the layer from the project."""
         self._frame.stop()
         self._after_pull.stop()
         self._after_frame.stop()
@@ -98,7 +98,7 @@ class LiveView(QObject):
             self.overlay.remove()
 
     def show_now(self) -> None:
-        """Paint what the desk knows at this moment."""
+        """Paint the desk's current state."""
         began = time.perf_counter()
         if self._desk.state.site is None:
             self.overlay.show_scene(None)
@@ -117,12 +117,12 @@ class LiveView(QObject):
         self.shown = self._desk.state.robots.generation, self._desk.state.robots.revision
 
     def draw_by_layer(self, on: bool) -> None:
-        """Let the style of the layer of robots draw them, where that is on the map, in place of arrows."""
+        """Let the style of the robot layer draw robots in place of arrows, where the layer is on the map."""
         self._by_layer = on
         self._frame.start()
 
     def zoom_to(self, *robots: str) -> None:
-        """Show ``robots`` and their surroundings; a selected one out of view as soon as it is known."""
+        """Show ``robots`` and their surroundings; a selected one out of view once its position is known."""
         self._sought = None
         now = self._desk.clock.steady()
         views = [self._desk.state.robots.view(robot, now) for robot in robots]
@@ -137,7 +137,7 @@ class LiveView(QObject):
         self._show(np.array([(view.report.x, view.report.y) for view in placed]))
 
     def _is_asked_for(self, robot: str) -> bool:
-        """Tell whether the gateway will say where a robot is that the desk does not know."""
+        """Return whether the gateway will report the position of a robot unknown to the desk."""
         robots = self._desk.state.robots
         is_out_of_view = robots.fleet is not None and robots.row(robot) is None
         return is_out_of_view and robot in self._desk.selection.robots
@@ -184,7 +184,7 @@ class LiveView(QObject):
 
     def _pulled(self) -> None:
         self._pulls += 1
-        # In a piece of its own: the lists that look at the news are painted in this one.
+        # In an event of its own: the lists that show the news are painted in this one.
         self._after_pull.start(0)
         self._show_sought()
 
@@ -198,7 +198,7 @@ class LiveView(QObject):
             self.show_now()
         if self._pulls % EVERY_HALF == 0:
             self._hovering.refresh()
-        # In a piece of its own: it takes as long as the frame.
+        # In an event of its own: it takes as long as the frame.
         self._after_frame.start(0)
         if self._pulls % EVERY_SECOND == 0:
             self._go_after()
@@ -207,7 +207,7 @@ class LiveView(QObject):
         if not self._project.is_reading:
             self.layer.show_site(self._desk.state.site)
         if self.shown[0] != self._desk.state.robots.generation:
-            # Not for a moment does the map show what another gateway told.
+            # The map must not show another gateway's reports even for a moment.
             self.overlay.show_scene(None)
             self.layer.clear()
             self._trails.clear()
@@ -220,7 +220,7 @@ class LiveView(QObject):
         self._frame.start()
 
     def _way_changed(self) -> None:
-        """Place everything again: the map has another CRS, or coordinates come to it by other operations."""
+        """Place everything again: the map's CRS, or the operations to it, have changed."""
         self._placement = None
         self._frame.start()
 
@@ -229,14 +229,14 @@ class LiveView(QObject):
         self._frame.start()
 
     def _selected_in_layer(self, robots: list[str]) -> None:
-        # The one that drafts are made for stays so as long as it is among them.
+        # The robot that drafts are made for remains so as long as it is among them.
         self._desk.selection.select_all(sorted(robots, key=lambda robot: robot == self._desk.selection.last))
 
     def _write_layer(self) -> None:
         if self._project.is_reading:
             return
         if self._desk.state.site is not None and self.layer.layer is None:
-            # The project that held it was closed; the robots are still there.
+            # The project with the layer was closed; the robots are still there.
             self.layer.show_site(self._desk.state.site)
         newcomers = len(self._desk.state.robots) != len(self.layer)
         if self._pulls % self.layer_every == 0 or newcomers:
@@ -249,7 +249,7 @@ class LiveView(QObject):
         if self.following is FollowMode.NOBODY or self._desk.state.site is None:
             return
         if self.following is FollowMode.ALL and self._desk.state.robots.fleet is not None:
-            # Those in view are no fleet to go after: the map would never show another one.
+            # Those in view are not the fleet: following them, the map would never show others.
             return
         robots = self._desk.state.robots.arrays(self._desk.clock.steady())
         xy = robots.xy
@@ -293,7 +293,7 @@ class LiveView(QObject):
         )
 
     def card_text(self, robot: str) -> str | None:
-        """Return what is known of a robot as rich text, None where it is not known any more."""
+        """Return a robot's details as rich text, None where it is no longer known."""
         view = self._desk.state.robots.view(robot, self._desk.clock.steady())
         if view is None or self._desk.state.site is None:
             return None

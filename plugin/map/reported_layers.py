@@ -1,4 +1,4 @@
-"""Layers of what the gateway reports: robots, closed roads, conflicts, placed cones."""
+"""Layers of the gateway's reports: robots, closed roads, conflicts, placed cones."""
 
 from __future__ import annotations
 
@@ -73,15 +73,15 @@ ALIASES = (
     tr("Command"),
     tr("Accuracy (m)"),
 )
-"""What people read for each of :data:`FIELDS`; expressions go by the fields' names."""
+"""Display names of :data:`FIELDS`; expressions use the fields' own names."""
 LABEL_OFFSET_MM = 6.5
-"""How far below a robot a label is: the live map's arrow and name are above that."""
+"""Distance of a label below its robot: the overlay's arrow and name are above that."""
 _STATE_WORDS = [state.value for state in STATES]
 NAME_AT, STATE_AT, AGE_AT = (FIELDS.index(field) for field in ("robot:string", "state:string", "age:double"))
 
 
 class RobotFeatures(NamedTuple):
-    """Some robots as the layer shows them: for each of :data:`FIELDS` their values; (n, 2) places in the
+    """Some robots as shown by the layer: for each of :data:`FIELDS` their values; (n, 2) places in the
     site's CRS, not finite where not known."""
 
     values: list[list[Any]]
@@ -93,21 +93,21 @@ class RobotFeatures(NamedTuple):
         return self.values[NAME_AT]
 
     def since(self, before: RobotFeatures) -> tuple[dict[int, dict[int, Any]], list[int]]:
-        """Return by robot the values that are others than in ``before``, by their fields' places; and which
-        of them are elsewhere."""
+        """Return by robot the values that differ from ``before``, by their fields' indices; and which
+        of them have moved."""
         changed: dict[int, dict[int, Any]] = defaultdict(dict)
         for at, (column, was) in enumerate(zip(self.values, before.values, strict=True)):
-            # Most columns are as they were, which Python sees at once.
+            # Most columns are unchanged, which Python detects at once.
             if column != was:
                 for robot in compress(range(len(column)), map(ne, column, was)):
                     changed[robot][at] = column[robot]
         place, was_at = self.places, before.places
-        # Nothing is equal to NaN.
+        # NaN is equal to nothing.
         is_other = (place != was_at) & ((place == place) | (was_at == was_at))
         return changed, np.flatnonzero(is_other[:, 0] | is_other[:, 1]).tolist()
 
     def is_only_age(self, robot: int, changed: Iterable[int]) -> bool:
-        """Tell whether it is only the age of a robot that talks: not worth writing all of them again."""
+        """Return whether only the age of a reporting robot changed: not worth writing all of them again."""
         return self.values[STATE_AT][robot] == RobotState.FRESH.value and [*changed] == [AGE_AT]
 
 
@@ -126,7 +126,7 @@ def made_layer(crs: QgsCoordinateReferenceSystem) -> QgsVectorLayer:
 
 
 def _labels() -> QgsPalLayerSettings:
-    """Return how labels look once the user switches them on: legible, and beside what the live map draws."""
+    """Return the style of labels once the user switches them on: legible, and beside the overlay's."""
     labels = QgsPalLayerSettings()
     labels.fieldName = "state"
     labels.placement = QgsPalLayerSettings.Placement.OverPoint
@@ -141,7 +141,7 @@ def _labels() -> QgsPalLayerSettings:
 
 
 def features_of(picture: RobotStates, now: float, rows: slice, frame: SiteFrame) -> RobotFeatures:
-    """Return what the layer has to say at ``now`` of the robots in ``rows`` of ``picture``."""
+    """Return the layer's features at ``now`` for the robots in ``rows`` of ``picture``."""
     robots = picture.arrays(now, rows)
     turn = frame.theta_to_crs(0.0)
     columns = [
@@ -175,7 +175,7 @@ def _or_none(column: npt.NDArray[np.float64]) -> list[float | None]:
 
 
 def _renderer() -> QgsCategorizedSymbolRenderer:
-    """Small dots: the live picture over the map draws the robots themselves."""
+    """Small dots: the overlay draws the robots themselves."""
     categories = []
     for state in STATES:
         symbol = QgsMarkerSymbol.createSimple(
@@ -193,13 +193,13 @@ def _renderer() -> QgsCategorizedSymbolRenderer:
 
 KIND = "robots"
 AT_ONCE = 100
-"""Robots that are written in one go; more take several, so that the window does not wait for them."""
+"""Robots that are written at once; more take several events, so that the window does not block."""
 
 
 class RobotLayer(QObject):
     """A memory layer in the site's CRS, in the group "Fleet", kept up to date by writes to its provider.
 
-    The way a user has styled it lasts as long as the project, saved with it.
+    The style set by the user lasts as long as the project, and is saved with it.
     """
 
     robots_selected = pyqtSignal(list)
@@ -214,11 +214,11 @@ class RobotLayer(QObject):
         self._style: QgsMapLayerStyle | None = None
         self._ids: dict[str, int] = {}
         self._written: dict[int, RobotFeatures] = {}
-        """What the layer has of the robots that are written in one go, by the row of the first."""
+        """The layer's content for each batch of robots, by the row of the first."""
         self._waiting = range(0)
         self._marking = False
         self.is_new = False
-        """Whether the last write brought robots that were not there before."""
+        """Whether the last write added robots."""
 
     def __len__(self) -> int:
         return len(self._ids)
@@ -229,7 +229,7 @@ class RobotLayer(QObject):
         return self._layer
 
     def show_site(self, site: SiteReport) -> None:
-        """Make the layer for ``site``, in place of one for another site."""
+        """Create the layer for ``site``, in place of one for another site."""
         frame = frame_of(site)
         if self._layer is not None and frame == self._frame:
             return
@@ -252,12 +252,12 @@ class RobotLayer(QObject):
         live_layers.leave_clean(self._project, was_dirty)
 
     def begin(self, robots: int) -> None:
-        """Have every one of the first ``robots`` rows written, unless the last round is still under way."""
+        """Start writing the first ``robots`` rows, unless the last round is still under way."""
         if not self._waiting:
             self._waiting = range(robots)
 
     def go_on(self, picture: RobotStates, now: float) -> None:
-        """Write some of those that wait; the canvas takes it up when all are written."""
+        """Write some of the pending rows; the canvas is updated when all are written."""
         self.is_new = False
         if self._layer is None or not self._waiting:
             return
@@ -267,7 +267,7 @@ class RobotLayer(QObject):
             self._show_written()
 
     def drop(self, robots: Iterable[str]) -> None:
-        """Take robots out of the layer that are there no more."""
+        """Remove robots from the layer that no longer exist."""
         known = [robot for robot in robots if robot in self._ids]
         if self._layer is not None and known:
             self._marking = True
@@ -276,12 +276,12 @@ class RobotLayer(QObject):
             self._show_written()
         for robot in known:
             del self._ids[robot]
-        # A round that is under way goes by rows that are others' now, as does what was written.
+        # The rows of a round under way, and those already written, are other robots' now.
         self._waiting = range(0)
         self._written.clear()
 
     def clear(self) -> None:
-        """Take every robot out of the layer."""
+        """Remove every robot from the layer."""
         if self._layer is not None and self._ids:
             self._marking = True
             self._layer.removeSelection()
@@ -302,7 +302,7 @@ class RobotLayer(QObject):
         self._marking = False
 
     def remove(self) -> None:
-        """Take the layer and, when nothing else is in it, the group out of the project."""
+        """Remove the layer and, when nothing else is in it, the group from the project."""
         if self._layer is None:
             return
         was_dirty = self._project.isDirty()
@@ -316,7 +316,7 @@ class RobotLayer(QObject):
         live_layers.leave_clean(self._project, was_dirty)
 
     def _write(self, first: int, robots: RobotFeatures) -> None:
-        """Write what is not in the layer yet, and no value that is: the provider looks at each one given."""
+        """Write new and changed values only: the provider processes each one given."""
         ids = [*map(self._ids.get, robots.names)]
         changed, moved = self._changes(first, robots)
         self._written[first] = robots
@@ -333,11 +333,11 @@ class RobotLayer(QObject):
             self._add(robots, new)
 
     def _changes(self, first: int, robots: RobotFeatures) -> tuple[dict[int, dict[int, Any]], list[int]]:
-        """Return what the layer does not have of ``robots``: as :meth:`RobotFeatures.since`, without those of
-        which only the age is another; that stays as it was written."""
+        """Return the changes of ``robots`` against the layer: as :meth:`RobotFeatures.since`, without those
+        of which only the age has changed; that stays as written."""
         before = self._written.get(first)
         if before is None or before.names != robots.names:
-            # Others stood in these rows: what the layer has of each is not at hand.
+            # Other robots were in these rows: the layer's values of each are not at hand.
             everything = enumerate(zip(*robots.values, strict=True))
             changed = {robot: dict(enumerate(values)) for robot, values in everything}
             return changed, [*changed]
@@ -349,7 +349,7 @@ class RobotLayer(QObject):
         return changed, moved
 
     def _add(self, robots: RobotFeatures, new: list[int]) -> None:
-        # Features that know their fields take twice as long to make; the provider knows them.
+        # Features with fields take twice as long to create; the provider knows the fields.
         made, values = [QgsFeature() for _ in new], [*zip(*robots.values, strict=True)]
         for feature, robot, geometry in zip(made, new, geometries_of(robots.places[new]), strict=True):
             feature.setAttributes([*values[robot]])
@@ -361,9 +361,9 @@ class RobotLayer(QObject):
         self.is_new = True
 
     def _show_written(self) -> None:
-        # A canvas that is still drawing would begin again and, on a slow map, never come to its end.
+        # A canvas that is still drawing would start again and, on a slow map, never finish.
         self._layer.triggerRepaint(self._canvas.isDrawing())
-        # An attribute table learns of writes in no other way; to look whether one is open takes 40 ms.
+        # An attribute table learns of writes in no other way; checking whether one is open takes 40 ms.
         self._layer.dataChanged.emit()
 
     def _selection_changed(self, selected: list[int]) -> None:
@@ -390,7 +390,7 @@ CONFLICT_FIELDS = (
 
 
 class RoadLayers(QObject):
-    """A layer of each, made when there is something to show and taken out with the plugin."""
+    """A layer of closed roads and one of conflicts, created when needed and removed with the plugin."""
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -406,7 +406,7 @@ class RoadLayers(QObject):
         state.site_changed.connect(self._show)
 
     def remove(self) -> None:
-        """Take both out of the project."""
+        """Remove both from the project."""
         self._closures.remove()
         self._conflicts.remove()
 
@@ -467,12 +467,12 @@ def _style_conflicts(layer: QgsVectorLayer) -> None:
 
 PLACED_CONE_FIELDS = "robot:string,label:string,placed_at:string,deviation_m:double"
 MOST = 2000
-"""Cones that are shown: of more the newest."""
+"""Cones that are shown: if there are more, the newest."""
 
 
 class StandingCones(QObject):
     """A layer of the cones that queues' tasks put down and nobody has collected, and of cone targets that
-    were reached, straight or along a path. :meth:`remove` takes it out of the project.
+    were reached, straight or along a path. :meth:`remove` removes it from the project.
     """
 
     def __init__(self, state: FleetState, project: QgsProject, parent: QObject | None = None):
@@ -487,7 +487,7 @@ class StandingCones(QObject):
         state.site_changed.connect(self._site_changed)
 
     def remove(self) -> None:
-        """Take the layer out of the project."""
+        """Remove the layer from the project."""
         self._layer.remove()
 
     def _add_reached(self, reports: Iterable[CommandReport]) -> None:
@@ -499,7 +499,7 @@ class StandingCones(QObject):
             self._show()
 
     def _site_changed(self) -> None:
-        # Another site's commands are out of the book by now.
+        # Another site's commands are out of the cache by now.
         self._reached = {
             command: one for command, one in self._reached.items() if command in self._state.commands
         }

@@ -1,4 +1,4 @@
-"""The panel of observations with the form of a review, and its menu entry."""
+"""The panel of observations with the review form, and its menu entry."""
 
 from __future__ import annotations
 
@@ -34,9 +34,9 @@ from ..ui.steady_widgets import ElidedText, ScrollingText
 from . import observation_views
 
 WORDS = ("traffic cone", "barrier", "bin", "bench", "column", "vehicle", "object")
-"""Offered besides what robots said; anything may be written. In English: robots read them on their maps."""
+"""Offered besides robots' own words; anything may be entered. In English: robots read them on their maps."""
 PICTURE = QSize(104, 110)
-"""Pixels that a picture fills at most, beside the fields and no higher than they are."""
+"""Greatest size of a picture in pixels, beside the fields and no higher than they are."""
 
 
 STANDS = tr("It stands there: draw it on the maps that robots get from now on")
@@ -58,7 +58,7 @@ class ReviewForm(QWidget):
         self.picture = QLabel()
         self.picture.setObjectName("fleet_observation_picture")
         self.picture.setAlignment(Qt.AlignmentFlag.AlignCenter)
-        # Kept free where there is none: the panel would be made wider by the first one that is looked at.
+        # Reserved even without a picture: the panel would be made wider by the first one.
         self.picture.setFixedSize(PICTURE)
         self.semantics = QComboBox()
         self.semantics.setObjectName("fleet_observation_semantics")
@@ -80,9 +80,9 @@ class ReviewForm(QWidget):
         self.show_report(None, (), pending=False)
 
     def show_report(self, report: ObservationReport | None, words: Iterable[str], *, pending: bool) -> None:
-        """Show ``report``; ``words`` are offered for what it is, ``pending`` while a review is on its way.
+        """Show ``report``; ``words`` are offered as names, ``pending`` while a review is being sent.
 
-        What the operator has written stays for as long as it is the same observation in the same state.
+        The operator's entries stay for as long as it is the same observation in the same state.
         """
         same = (report and (report.observation, report.state)) == (
             self._report and (self._report.observation, self._report.state)
@@ -109,7 +109,7 @@ class ReviewForm(QWidget):
         self.reason.setText((report.reason if report else "") or "")
 
     def show_picture(self, file: str) -> None:
-        """Show the picture in ``file``, none where that is empty; the tool tip has it as large as it is."""
+        """Show the picture in ``file``, none where that is empty; the tool tip has it in full size."""
         picture = QPixmap(file) if file else QPixmap()
         if not picture.isNull():
             picture = picture.scaled(
@@ -119,7 +119,7 @@ class ReviewForm(QWidget):
         self.picture.setToolTip(f'<img src="{QUrl.fromLocalFile(file).toString()}">' if file else "")
 
     def request(self, *, accept: bool) -> ReviewObservation | None:
-        """Return the review as it stands in the form, None without an observation."""
+        """Return the review in the form, None without an observation."""
         report = self._report
         if report is None:
             return None
@@ -161,7 +161,7 @@ class ReviewForm(QWidget):
 
 
 def _is_drawn(report: ObservationReport) -> bool:
-    """Tell whether it is drawn when it is accepted: it is no image, and nothing that is missing."""
+    """Return whether it is drawn when it is accepted: neither an image, nor a missing object."""
     return report.media_type is None and report.doubts is None
 
 
@@ -207,21 +207,21 @@ def _metres(name: str, largest: float) -> QDoubleSpinBox:
 
 
 SHOW_AFTER_MS = 250
-"""News of a crowd of robots are shown together."""
+"""Delay by which reports of many robots are shown together."""
 AROUND = 15.0
 """Metres around an observation that are shown with it."""
 
 ROWS = 3
-"""Observations that are seen at once at least."""
+"""Least number of observations visible at once."""
 
 
 class ObservationDock(ActionDock):
-    """Keeps list, form and layer true to what is known; :meth:`remove` undoes what it did elsewhere."""
+    """Updates list, form and layer; :meth:`remove` undoes what it did elsewhere."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(tr("Observations"), "fleet_observation_dock", parent)
         self._desk = desk
-        # It asks for what was seen before; what comes has a layer, and a number in the panel's title.
+        # Even while it is closed observations get a layer, and a number in the panel's title.
         self.thumbnails = observation_views.Thumbnails(self)
         self.feed = observation_views.ObservationFeed(desk, self.thumbnails, self)
         desk.state.observations_changed.connect(self.build)
@@ -256,7 +256,7 @@ class ObservationDock(ActionDock):
         self.layer.remove()
 
     def refresh(self) -> None:
-        """Show what is known now."""
+        """Show the current observations."""
         chosen = self.chosen
         cache = self._desk.state.observations
         everything = self.reviewed.isChecked()
@@ -279,12 +279,12 @@ class ObservationDock(ActionDock):
 
     @property
     def chosen(self) -> int | None:
-        """The number of the observation that is looked at, None for none."""
+        """The number of the selected observation, None for none."""
         index = self.list.currentIndex()
         return index.data(observation_views.NUMBER) if index.isValid() else None
 
     def choose(self, number: int) -> None:
-        """Look at an observation, if it is in the list."""
+        """Select an observation, if it is in the list."""
         row = self.model.row_of(number)
         if row is not None:
             self.list.setCurrentIndex(self.model.index(row))
@@ -333,7 +333,7 @@ class ObservationDock(ActionDock):
         self._show_chosen()
 
     def _reviewed(self, number: int) -> None:
-        # What was looked at is done: on to the next that waits.
+        # The reviewed one is done: continue with the next one pending.
         if number == self.chosen and not self.reviewed.isChecked():
             row = self.list.currentIndex().row()
             others = [*self.model.reports[row + 1 :], *reversed(self.model.reports[:row])]

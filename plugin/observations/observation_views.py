@@ -40,14 +40,14 @@ from ..ui.errors import FleetError
 from ..ui.language import date_and_time, time_of_day, tr
 
 SIDE = 256
-"""Pixels of the longer side of a picture."""
+"""Length in pixels of the longer side of a picture."""
 
 
 class Thumbnails(QObject):
-    """Makes the pictures beside the window, and keeps them in a folder that goes with the plugin."""
+    """Makes the pictures in the background, in a folder that is deleted with the plugin."""
 
     made = pyqtSignal(int)
-    """The picture of this observation is there."""
+    """The picture of this observation is ready."""
     failed = pyqtSignal(int)
     """The image of this observation cannot be read."""
 
@@ -58,7 +58,7 @@ class Thumbnails(QObject):
         self._made: set[int] = set()
 
     def has(self, number: int) -> bool:
-        """Tell whether the picture of an observation is there or being made."""
+        """Return whether the picture of an observation exists or is being made."""
         return number in self._made or number in self._tasks
 
     def file(self, number: int) -> str:
@@ -66,7 +66,7 @@ class Thumbnails(QObject):
         return str(self._path(number)) if number in self._made else ""
 
     def make(self, number: int, answer: dict) -> bool:
-        """Make a picture of the image in the gateway's ``answer``; False when there is none in it."""
+        """Make a picture of the image in the gateway's ``answer``; False when it contains none."""
         image = answer.get("image")
         if not isinstance(image, str) or not self._folder.isValid():
             return False
@@ -77,7 +77,7 @@ class Thumbnails(QObject):
         return True
 
     def keep(self, numbers: Set[int]) -> None:
-        """Forget the pictures of all other observations; what is being made of them is of no use any more."""
+        """Forget the pictures of all other observations; those being made of them are dropped."""
         for number in self._tasks.keys() - numbers:
             self._tasks.pop(number).cancel()
         for number in self._made - numbers:
@@ -112,7 +112,7 @@ class Thumbnails(QObject):
 
 
 class ThumbnailTask(DecodeTask):
-    """Makes an image of base64 and writes it, small, to ``file``; ``number`` is that of the observation."""
+    """Decodes a base64 image and writes it, reduced, to ``file``; ``number`` is that of the observation."""
 
     def __init__(self, number: int, text: str, file: Path):
         super().__init__(text)
@@ -130,14 +130,14 @@ class ThumbnailTask(DecodeTask):
 
 PAGE = 500
 REVIEWED = 200
-"""Reviewed ones that are asked for when a link begins."""
+"""Reviewed ones that are requested at the beginning of a link."""
 
 
 class ObservationFeed(QObject):
-    """Fetches all that wait for review, page by page, and one image after the other.
+    """Fetches all pending observations, page by page, and one image after the other.
 
-    ``reviewed`` has the number of an observation whose review the gateway took in, ``refused`` that and why
-    it did not.
+    ``reviewed`` has the number of an observation whose review the gateway accepted, ``refused`` the number
+    and the reason why it did not.
     """
 
     reviewed = pyqtSignal(int)
@@ -159,11 +159,11 @@ class ObservationFeed(QObject):
         thumbnails.failed.connect(self._without.add)
 
     def review(self, request: ReviewObservation) -> None:
-        """Tell the gateway what became of an observation; raises NotSentError when that cannot be sent."""
+        """Send the review of an observation to the gateway; raises NotSentError when that is impossible."""
         self._reviews[self._desk.orders.inquire(request)] = request.observation
 
     def awaits_answer(self, number: int) -> bool:
-        """Tell whether a review of this observation is on its way."""
+        """Return whether a review of this observation is being sent."""
         return number in self._reviews.values()
 
     def _link_changed(self) -> None:
@@ -180,7 +180,7 @@ class ObservationFeed(QObject):
         try:
             self._pages.add(self._desk.orders.inquire(request))
         except FleetError:
-            # The link is down again: all is asked again when it is back.
+            # The link is down again: everything is requested again when it is back.
             self._pages.clear()
 
     def _answered(self, answer: RequestResult) -> None:
@@ -215,14 +215,14 @@ class ObservationFeed(QObject):
         self._fetch_image()
 
     def _observations_changed(self, _numbers: list[int]) -> None:
-        # The book forgets those that were reviewed long ago, and a picture is a file of up to 0.2 MB.
+        # The cache forgets those reviewed long ago, and a picture is a file of up to 0.2 MB.
         known = {one.observation for one in self._desk.state.observations}
         self._thumbnails.keep(known)
         self._without &= known
         self._fetch_image()
 
     def _fetch_image(self) -> None:
-        """Ask for the next image that is not there yet, when no other is on its way."""
+        """Request the next missing image, when no other request is under way."""
         if self._image is not None or self._desk.state.link.phase is not ConnectionPhase.CONNECTED:
             return
         number = next(
@@ -253,14 +253,14 @@ FIELDS = (
 )
 COLOURS = {"pending": "255,179,0", "accepted": "46,125,50", "rejected": "117,117,117"}
 MARKS = {"pending": "diamond", "accepted": "circle", "rejected": "cross2"}
-"""A shape for each state besides its colour, for those who see no colours."""
+"""A shape for each state besides its colour, for colour-blind users."""
 STATES = {
     ObservationState.PENDING: tr("to be reviewed"),
     ObservationState.ACCEPTED: tr("accepted"),
     ObservationState.REJECTED: tr("rejected"),
 }
 PICTURES_FROM = 1000
-"""The scale from which on images are on the map themselves."""
+"""The scale from which images are shown on the map itself."""
 MAP_TIP = """
 <b>[% "object" %]</b> [% coalesce("label", '') %]<br>[% {state} %] · [% "robot" %] · [% "received" %]
 [% if("thumbnail" != '', '<br><img width="220" src="file:///' || "thumbnail" || '">', '') %]
@@ -268,7 +268,7 @@ MAP_TIP = """
 
 
 class ObservationLayer:
-    """The layer *Observations*, made when there is one and taken out with the plugin."""
+    """The layer *Observations*, created with the first one and removed with the plugin."""
 
     def __init__(self, project: QgsProject, thumbnails: Thumbnails):
         self._thumbnails = thumbnails
@@ -286,7 +286,7 @@ class ObservationLayer:
         self._live.show([([(one.x, one.y)], self._values(one)) for one in cache], site)
 
     def remove(self) -> None:
-        """Take the layer out of the project."""
+        """Remove the layer from the project."""
         self._live.remove()
 
     def _values(self, one: ObservationReport) -> list[Any]:
@@ -307,7 +307,7 @@ class ObservationLayer:
 
 
 def style_observations(layer: QgsVectorLayer) -> None:
-    """Give a layer of observations its looks: a mark for each state, images when looked at from near."""
+    """Style a layer of observations: a mark for each state, images at large scales."""
     root = QgsRuleBasedRenderer.Rule(None)
     pictures = QgsRuleBasedRenderer.Rule(_picture(), 0, PICTURES_FROM, "\"thumbnail\" != ''", tr("image"))
     root.appendChild(pictures)
@@ -339,7 +339,7 @@ def style_observations(layer: QgsVectorLayer) -> None:
 
 
 def _state_in_words() -> str:
-    """Return the expression of what the field ``state``, the same in all languages, is to an operator."""
+    """Return the expression that translates the field ``state``, which is the same in all languages."""
     words = (f"'{state.value}', {QgsExpression.quotedString(word)}" for state, word in STATES.items())
     return f'map_get(map({", ".join(words)}), "state")'
 
@@ -362,7 +362,7 @@ ICON = QSize(56, 42)
 
 
 class ObservationModel(QAbstractListModel):
-    """The observations in the order that they have to be reviewed; ``reports`` are its rows."""
+    """The observations in the order of review; ``reports`` are its rows."""
 
     def __init__(self, thumbnails: Thumbnails, parent: QObject | None = None):
         super().__init__(parent)
@@ -371,7 +371,7 @@ class ObservationModel(QAbstractListModel):
         self.reports: list[ObservationReport] = []
 
     def show(self, reports: list[ObservationReport]) -> None:
-        """Take over the rows."""
+        """Replace the rows."""
         if reports == self.reports:
             return
         if [one.observation for one in reports] == [one.observation for one in self.reports]:
@@ -389,7 +389,7 @@ class ObservationModel(QAbstractListModel):
         return next((row for row, one in enumerate(self.reports) if one.observation == number), None)
 
     def picture_came(self, number: int) -> None:
-        """Show the picture that was made of an observation's image."""
+        """Show the picture made of an observation's image."""
         row = self.row_of(number)
         if row is not None:
             self.dataChanged.emit(self.index(row), self.index(row))
@@ -425,7 +425,7 @@ class ObservationModel(QAbstractListModel):
 
 
 def observation_text(one: ObservationReport) -> str:
-    """Return two lines on an observation."""
+    """Return two lines of text on an observation."""
     kind = tr("image") if one.media_type else one.semantics or one.label or tr("object")
     if one.doubts is not None:
         kind = tr("not there any more: {what}", what=one.label or one.doubts)

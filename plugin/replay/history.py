@@ -1,4 +1,4 @@
-"""History: stored positions and commands of a span of time, as the replay reads them."""
+"""History: stored positions and commands of a span of time, as read by the replay."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ..ui.language import tr
 from ..ui.scheduling import CooperativeTask, SignallingTask, Steps
 
 AT_ONCE = 100
-"""Commands that are looked through in one step of a slice."""
+"""Commands processed in one step of a slice."""
 STATES = tuple(CommandState)
 _CODES = {state: code for code, state in enumerate(STATES)}
 Numbers = npt.NDArray[np.float64]
@@ -41,17 +41,17 @@ class TimelineMark:
 
     @property
     def at(self) -> float:
-        """When it was, in seconds since 1970."""
+        """Its time, in seconds since 1970."""
         return self.step.at
 
     @property
     def state(self) -> CommandState:
-        """What the command came to."""
+        """The new state of the command."""
         return self.step.state
 
     @property
     def text(self) -> str:
-        """Return it in words."""
+        """Return the step in words."""
         text = tr(
             "{robot}: {command} · {state} by {by}",
             robot=self.command.robot,
@@ -63,10 +63,10 @@ class TimelineMark:
 
 
 class TimelineMarks(Sequence[TimelineMark]):
-    """Marks from the oldest to the newest, (n,) columns: of thousands a :class:`TimelineMark` is made of one.
+    """Marks in order of time, (n,) columns: a :class:`TimelineMark` is created on access, there are many.
 
-    ``at`` is in seconds since 1970, ``commands`` and ``steps`` are the places of a mark's command among
-    ``reports`` and of its step among that one's, ``states`` are indices into :data:`STATES`.
+    ``at`` is in seconds since 1970, ``commands`` and ``steps`` are the indices of a mark's command in
+    ``reports`` and of its step in that one's, ``states`` are indices into :data:`STATES`.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class TimelineMarks(Sequence[TimelineMark]):
         return TimelineMark(report, report.steps[self._steps[place]])
 
     def of(self, state: CommandState) -> Numbers:
-        """Return when commands came to ``state``, seconds since 1970."""
+        """Return the times when commands reached ``state``, seconds since 1970."""
         return self.at[self._states == _CODES[state]]
 
     def between(self, since: float, until: float) -> TimelineMarks:
@@ -114,10 +114,10 @@ NO_MARKS = _no_marks()
 
 
 class PastCommands:
-    """What was known of commands when :func:`sort_commands` looked: a frame of the replay asks for all.
+    """The commands known when :func:`sort_commands` ran: each frame of the replay queries all.
 
-    ``reports`` are sorted by when they were asked for; (n,) ``begin`` and ``end`` are from when to when each
-    was under way, seconds since 1970.
+    ``reports`` are sorted by time of request; (n,) ``begin`` and ``end`` are the times between which
+    each was under way, seconds since 1970.
     """
 
     def __init__(
@@ -132,7 +132,7 @@ class PastCommands:
         self._marks = marks
 
     def under_way_at(self, moment: float) -> list[CommandReport]:
-        """Return what robots were doing at ``moment``: of each the newest command sent and not ended then."""
+        """Return the commands under way at ``moment``: of each robot the newest one sent and not ended."""
         rows = np.flatnonzero((self._begin <= moment) & (moment < self._end)).tolist()
         return list({self._reports[row].robot: self._reports[row] for row in rows}.values())
 
@@ -143,7 +143,7 @@ class PastCommands:
 
 
 def sort_commands(reports: Sequence[CommandReport]) -> Steps[PastCommands]:
-    """Look through commands, in steps."""
+    """Process commands, in steps."""
     reports = sorted((one for one in reports if one.steps), key=requested_at)
     begin, end = [], []
     marks: list[tuple[float, int, int, int]] = []
@@ -167,17 +167,17 @@ def _columns(reports: Sequence[CommandReport], marks: list[tuple[float, int, int
 
 
 def _ended_at(report: CommandReport) -> float:
-    """Return until when a robot had something to do by a command: an abort leaves it nothing."""
+    """Return the time at which a command left its robot idle: for an abort at once."""
     if report.op == Abort.__name__:
         return -np.inf
     return next((step.at for step in report.steps if not step.state.is_open), np.inf)
 
 
 class CommandSorter(QObject):
-    """Looks through a book beside what else the window does, and again when there was news meanwhile."""
+    """Processes the command cache in the background, and again when it has changed meanwhile."""
 
     done = pyqtSignal(object)
-    """:attr:`commands` are others now: those before."""
+    """:attr:`commands` has been replaced: the former ones."""
 
     def __init__(self, cache: CommandCache, parent: QObject | None = None):
         super().__init__(parent)
@@ -188,18 +188,18 @@ class CommandSorter(QObject):
 
     @property
     def is_busy(self) -> bool:
-        """Whether what is known by now is still being looked through."""
+        """Whether the present commands are still being processed."""
         return self._slices.is_busy
 
     def renew(self) -> None:
-        """Have in :attr:`commands` soon what the book knows now."""
-        # News that comes faster than one look takes would otherwise never be seen.
+        """Start updating :attr:`commands` from the cache."""
+        # Otherwise changes that come faster than one pass takes would never be seen.
         self._is_outdated = self._slices.is_busy
         if not self._is_outdated:
             self._slices.begin_soon(sort_commands(list(self._cache)), self._take)
 
     def forget(self) -> None:
-        """Have no commands any more."""
+        """Drop all commands."""
         self._slices.stop()
         self.commands = PastCommands()
 
@@ -211,13 +211,13 @@ class CommandSorter(QObject):
 
 
 SILENT_AFTER = 15.0
-"""Seconds between stored positions after which a robot counts as silent: while it is heard of, a gateway
+"""Seconds between stored positions after which a robot counts as silent: while it is heard, a gateway
 stores one at least every ten, unless its site.toml says otherwise."""
 _FRESH, _LOST = HISTORY_STATES.index(RobotState.FRESH), HISTORY_STATES.index(RobotState.LOST)
 
 
 class History:
-    """Positions of robots, taken in page by page, oldest first; each robot has one row in what is told."""
+    """Positions of robots, added page by page, oldest first; each robot has one row in the results."""
 
     def __init__(self) -> None:
         self.names: list[str] = []
@@ -239,7 +239,7 @@ class History:
 
     @property
     def is_arranged(self) -> bool:
-        """Whether :attr:`table` is there at once: making it of very many takes longer than a window waits."""
+        """Whether :attr:`table` is available at once: sorting a large one would block the window."""
         return self._sorted is not None
 
     @property
@@ -249,9 +249,9 @@ class History:
         return self._extent
 
     def add(self, places: Sequence[Sequence]) -> None:
-        """Take in places as the gateway gives them: robot, time, x, y, theta, v, and more.
+        """Add places as sent by the gateway: robot, time, x, y, theta, v, and more.
 
-        :raises ValueError: when one of them is none.
+        :raises ValueError: when one of them is invalid.
         """
         if not places:
             return
@@ -278,8 +278,8 @@ class History:
     def at(self, moment: float) -> RobotArrays:
         """Return every robot as it was at ``moment``, seconds since 1970.
 
-        Between two positions that are near in time a robot was on the straight line; before its first one it
-        has no place; after a longer silence it stays where it was last, lost, with its age.
+        Between two positions close in time a robot was on the straight line; before its first one it
+        has no place; after a longer silence it stays at its last one, lost, with its age.
         """
         table, count = self.table, len(self.names)
         last = self._last_before(moment)
@@ -298,7 +298,7 @@ class History:
         pose = now[:, 2:6] + step * part[:, None]
         pose[~known] = np.nan
         silent = known & ~joined & (age > SILENT_AFTER)
-        # A robot that is silent does not drive on.
+        # A silent robot does not drive on.
         pose[silent, 3] = 0.0
         return _arrays(self.names, pose, np.where(joined | ~known, 0.0, age), silent | ~known)
 
@@ -306,18 +306,18 @@ class History:
         if self._sorted is not None:
             return
         whole = np.concatenate(self._pages) if self._pages else np.empty((0, 6))
-        # They came oldest first: an order by robots alone, which keeps that, takes a tenth of the time.
+        # They came oldest first: a stable sort by robots alone takes a tenth of the time.
         whole = whole[np.argsort(whole[:, 0].astype(np.uint16), kind="stable")]
         self._first = np.searchsorted(whole[:, 0], np.arange(len(self.names) + 1))
         self._extent = _extent(whole)
-        # Further pages are newer than these of the same robot, so that nothing is held twice.
+        # Further pages are newer than these of the same robot, so that nothing is stored twice.
         self._pages = [whole]
         self._sorted = whole
 
     def _last_before(self, moment: float) -> npt.NDArray[np.intp]:
         """Return for each robot the row of its last position up to ``moment``, before its first if none.
 
-        All robots are searched at once: one after the other takes several milliseconds of a thousand.
+        All robots are searched at once: one after the other would take several milliseconds for a thousand.
         """
         times = self.table[:, 1]
         begin, end = self._first[:-1].copy(), self._first[1:].copy()
@@ -349,19 +349,19 @@ def _arrays(names: list[str], pose: Numbers, age: Numbers, silent: npt.NDArray[n
 
 
 PAGE = 1000
-"""Positions taken in at once: a few milliseconds of the window's time."""
+"""Positions added at once: a few milliseconds of the window's time."""
 MOST = 1_000_000
-"""Positions that are held; with more the rest is left out and that is said."""
+"""Positions that are kept; with more the rest is left out and that is reported."""
 COMMANDS = 1000
-"""The newest commands, which the time line shows besides those that the desk knows already."""
+"""The newest commands, which the time line shows besides those already known to the desk."""
 
 
 class HistoryDownload(QObject):
-    """One stretch after the other; the live link goes on beside it."""
+    """Downloads one span after the other; the live link continues beside it."""
 
     progressed = pyqtSignal()
     ended = pyqtSignal(str)
-    """All is there (an empty text), or not all, and why."""
+    """Everything has arrived (an empty text), or not everything, and why."""
 
     def __init__(self, requests: RequestTracker, parent: QObject | None = None):
         super().__init__(parent)
@@ -370,21 +370,21 @@ class HistoryDownload(QObject):
         self._query: GetTrajectory | None = None
         self._task: SortHistoryTask | None = None
         self._text = ""
-        """What is told when the task has ended well."""
+        """The message when the task has ended well."""
         self.history = History()
         self.reached = 0.0
-        """The time of the newest position that is there."""
+        """The time of the newest position received."""
         requests.answered.connect(self._answered)
 
     @property
     def is_busy(self) -> bool:
-        """Whether a page is on its way, or what came is being put in order."""
+        """Whether a page is being fetched or sorted."""
         return bool(self._key) or self._task is not None
 
     def begin(self, since: float, until: float, robots: list[str]) -> None:
-        """Fetch what robots (none named: all) did from ``since`` up to ``until``; forget what was there.
+        """Fetch positions of ``robots`` (all if empty) from ``since`` to ``until``; forget the former ones.
 
-        :raises NotSentError: when it cannot be asked for; what was there stays.
+        :raises NotSentError: when they cannot be requested; the former ones stay.
         """
         query = GetTrajectory(robots=robots, since=since, until=until, limit=PAGE)
         self._requests.inquire(GetCommands(limit=COMMANDS))
@@ -394,12 +394,12 @@ class HistoryDownload(QObject):
         self.history, self.reached = History(), since
 
     def stop(self) -> None:
-        """Ask for no more; what is there stays."""
+        """Stop fetching; the positions received stay."""
         if self._key:
             self._end(tr("Stopped: the rest of the time was not fetched."))
 
     def forget(self) -> None:
-        """Hold nothing: it is another site's."""
+        """Forget everything: it belongs to another site."""
         self._drop_task()
         self._key, self._query, self.history = "", None, History()
 
@@ -461,7 +461,7 @@ class HistoryDownload(QObject):
 
 
 class SortHistoryTask(SignallingTask):
-    """Puts a history in order beside the window; nobody else touches it meanwhile."""
+    """Sorts a history in the background; nobody else accesses it meanwhile."""
 
     def __init__(self, history: History):
         super().__init__(tr("Putting positions in order"), QgsTask.Flag.CanCancel)

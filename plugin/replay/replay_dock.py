@@ -23,7 +23,7 @@ PLAY, PAUSE = "/temporal_navigation/forward.svg", "/temporal_navigation/pause.sv
 
 
 class ReplayDock(ActionDock):
-    """Puts the parts together. :meth:`remove` undoes what they did outside of it."""
+    """Builds the parts. :meth:`remove` undoes what they did outside of it."""
 
     def __init__(self, desk: FleetController, parent: QWidget | None = None):
         super().__init__(tr("Replay"), "fleet_replay_dock", parent)
@@ -33,7 +33,7 @@ class ReplayDock(ActionDock):
         desk = self._desk
         self._status = ""
         self._showing = CooperativeTask(self, ONE_STEP)
-        """Shows a history that has just come."""
+        """Shows a history that has just arrived."""
         self._past = CommandSorter(desk.state.commands, self)
         self.fetching = HistoryDownload(desk.orders, self)
         self.clockwork = ReplayClock(desk.canvas, self)
@@ -58,7 +58,7 @@ class ReplayDock(ActionDock):
         self._say(tr("Choose a time and press Load."))
 
     def _take_out(self) -> None:
-        """Stop the clock, take the layer out of the project, leave the live map alone."""
+        """Stop the clock, remove the layer from the project, disconnect from the live map."""
         self._showing.stop()
         self._past.forget()
         self.fetching.forget()
@@ -68,11 +68,11 @@ class ReplayDock(ActionDock):
 
     @property
     def is_busy(self) -> bool:
-        """Whether something of a history is still being fetched or shown."""
+        """Whether a history is still being fetched or shown."""
         return any(part.is_busy for part in (self.fetching, self._showing, self._past, self.layer))
 
     def load(self) -> None:
-        """Fetch the time in the form and begin to show it."""
+        """Fetch the span in the form and show it."""
         since, until = self.form.stretch()
         self._desk.messages.end(REPLAY)
         if self._desk.state.site is None:
@@ -124,7 +124,7 @@ class ReplayDock(ActionDock):
         self.clockwork.play(not self.clockwork.is_playing)
 
     def _show_playing(self, on: bool) -> None:
-        # QGIS's own pictures: not every font has signs for playing and holding.
+        # QGIS's own icons: not every font has signs for play and pause.
         self.play.setIcon(QgsApplication.getThemeIcon(PAUSE if on else PLAY))
 
     def _progressed(self) -> None:
@@ -151,7 +151,7 @@ class ReplayDock(ActionDock):
         self._showing.begin_soon(self._parts())
 
     def _parts(self) -> Steps[None]:
-        """Show a history part by part: between two of them the window looks for events."""
+        """Show a history part by part: between two of them the window handles events."""
         parts = self._show_lines, self._show_all, self._show_robots, self._show_marks
         for number, show in enumerate(parts):
             show()
@@ -201,8 +201,8 @@ class ReplayDock(ActionDock):
     def _site_changed(self) -> None:
         if self._desk.state.robots.generation == self._generation:
             return
-        # Another site's history has no place here, nor another gateway's of the same site: other robots may
-        # bear the same names.
+        # Another site's history must not be shown, nor another gateway's of the same site: other robots may
+        # have the same names.
         self._generation = self._desk.state.robots.generation
         self.fetching.forget()
         self._showing.stop()
@@ -216,7 +216,7 @@ class ReplayDock(ActionDock):
         self._say(tr("Choose a time and press Load."))
 
     def _complain(self, text: str, *topics: Topic) -> None:
-        """Say what is wrong with what is loaded, until something else is."""
+        """Report an error about the loaded data, until other data is loaded."""
         self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
 
     def _say(self, text: str) -> None:

@@ -37,9 +37,9 @@ from .history import SILENT_AFTER, History, PastCommands
 from .time_controls import local_time
 
 OWN_LAYER = "replay"
-"""The kind of the live layer that is shown here; the others show what is now."""
+"""The kind of the live layer that is shown here; the others show the present."""
 AROUND = 10.0
-"""Metres that are shown around what was driven."""
+"""Metres that are shown around the driven paths."""
 JUMP = 20.0
 """Seconds over which a robot's trail is not drawn as if it had been seen driving."""
 
@@ -70,11 +70,11 @@ class ReplayMap(QgsMapCanvas):
         live.rotationChanged.connect(self.follow)
 
     def sizeHint(self) -> QSize:
-        # A canvas would ask for more room than the live one has.
+        # A canvas would request more room than the live one has.
         return QSize(340, 300)
 
     def remove(self) -> None:
-        """Draw nothing any more and leave the live map alone."""
+        """Stop drawing and disconnect from the live map."""
         self._soon.stop()
         self._live.layersChanged.disconnect(self.follow)
         self._live.destinationCrsChanged.disconnect(self.follow)
@@ -86,7 +86,7 @@ class ReplayMap(QgsMapCanvas):
             self.overlay.remove()
 
     def begin(self, site: SiteReport) -> None:
-        """Show what the live map shows; robots of ``site`` follow."""
+        """Show the live map's view; robots of ``site`` follow."""
         self._site, self._placement, self._moment = site, None, None
         self._trails.clear()
         self._plans = TaskPaths()
@@ -106,7 +106,7 @@ class ReplayMap(QgsMapCanvas):
         show_places(self, self._place().to_map(corners))
 
     def follow(self, *_what: object) -> None:
-        """Take over the live map's layers, CRS and rotation; what was driven lies above the layers."""
+        """Copy the live map's layers, CRS and rotation; driven paths are above the layers."""
         self.setDestinationCrs(self._live.mapSettings().destinationCrs())
         self.setRotation(self._live.rotation())
         own = [
@@ -123,7 +123,7 @@ class ReplayMap(QgsMapCanvas):
     def show_moment(
         self, history: History, commands: PastCommands, moment: float, chosen: tuple[str, ...]
     ) -> None:
-        """Draw robots, and what they were doing, as they were at ``moment``.
+        """Draw robots and their tasks as they were at ``moment``.
 
         :raises MapTransformError: when the site has no place in the map's CRS.
         """
@@ -154,7 +154,7 @@ class ReplayMap(QgsMapCanvas):
         self.overlay.show_scene(None)
 
     def _go_on(self) -> None:
-        """Have the moment as the map shows it now, and whole: while time is held nothing else follows."""
+        """Complete the current moment for the present view: while time is paused no other update follows."""
         self.overlay.prepare()
         if not self.overlay.is_whole:
             self._soon.start()
@@ -173,20 +173,20 @@ FIELDS = (
 MOST_LINES = 20_000
 """With more the lines are made longer."""
 PIECE = 5.0
-"""Seconds of a drive that one line is long, so that it appears as it is driven."""
+"""Duration of one line in seconds, so that a path appears as it is driven."""
 AT_ONCE = 100
-"""Lines written, or given back, in one step of a slice."""
+"""Lines written, or freed, in one step of a slice."""
 
 
 class ReplayLayer(QObject):
-    """The layer *Trajectories (replay)*, made beside the window and written bit by bit.
+    """The layer *Trajectories (replay)*, made in the background and written bit by bit.
 
     The replay's own map shows it; in the project it is not ticked.
     """
 
     failed = pyqtSignal(str)
     changed = pyqtSignal()
-    """The layer is in the project now, or out of it."""
+    """The layer was added to the project, or removed."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
@@ -196,13 +196,13 @@ class ReplayLayer(QObject):
         self._writing = CooperativeTask(self)
         self._freeing = CooperativeTask(self)
         self._lines: list[int] = []
-        """The ids of those that are written; to ask the layer for twenty thousand takes 10 ms."""
+        """The ids of the lines written; querying the layer for twenty thousand takes 10 ms."""
         self._out: list[tuple[QgsVectorLayer, list[int]]] = []
-        """Layers that are out of the project, and the lines that they still hold."""
+        """Layers removed from the project, and their remaining lines."""
 
     @property
     def layer(self) -> QgsVectorLayer | None:
-        """The layer, None while there is none, or the user took it out."""
+        """The layer, None while there is none, or the user removed it."""
         return self._project.mapLayer(self._id) if self._id is not None else None
 
     @property
@@ -211,7 +211,7 @@ class ReplayLayer(QObject):
         return self._task is not None or self._writing.is_busy
 
     def show(self, history: History, site: SiteReport) -> None:
-        """Show what is in ``history`` in place of what was shown."""
+        """Show ``history`` in place of the former one."""
         self.clear()
         if not len(history):
             return
@@ -223,7 +223,7 @@ class ReplayLayer(QObject):
         QgsApplication.taskManager().addTask(self._task)
 
     def clear(self) -> None:
-        """Take the layer out of the project; the memory of its lines is given back bit by bit."""
+        """Remove the layer from the project; the memory of its lines is freed bit by bit."""
         self._writing.stop()
         if self._task is not None:
             self._task.taskCompleted.disconnect(self._made)
@@ -240,19 +240,19 @@ class ReplayLayer(QObject):
         self.changed.emit()
 
     def remove(self) -> None:
-        """Take the layer out of the project and be done with it."""
+        """Remove the layer from the project for good."""
         self.clear()
         self._freeing.finish()
 
     def _free(self) -> Steps[None]:
-        """Give back the layers that are out: that of twenty thousand lines at once holds the window up."""
+        """Free the removed layers: freeing twenty thousand lines at once blocks the window."""
         while self._out:
             layer, lines = self._out[-1]
             while lines:
                 layer.dataProvider().deleteFeatures(lines[-AT_ONCE:])
                 del lines[-AT_ONCE:]
                 yield 0.0
-            # Others may hold it, as they may hold one that is removed from a project.
+            # Others may still use it, like any layer removed from a project.
             sip.delete(layer)
             self._out.pop()
 
@@ -264,7 +264,7 @@ class ReplayLayer(QObject):
         if not live_layers.give_style(self._project, layer):
             layer.loadNamedStyle(str(STYLE))
         self._project.addMapLayer(layer, False)
-        # What was has no place among what is: only who ticks the layer has it on the live map.
+        # The past must not mix with the present: the layer is on the live map only if it is ticked.
         live_layers.fleet_group(self._project).addLayer(layer).setItemVisibilityChecked(False)
         self._id = layer.id()
         live_layers.leave_clean(self._project, dirty)
@@ -280,7 +280,7 @@ class ReplayLayer(QObject):
         self.failed.emit(tr("The trajectories are not drawn: they could not be made into lines."))
 
     def _write(self, lines: deque[QgsFeature]) -> Steps[None]:
-        """Write ``lines``, which are used up, unless the user takes the layer out."""
+        """Write ``lines``, which are used up, unless the user removes the layer."""
         count = len(lines)
         while lines and self.layer is not None:
             batch = [lines.popleft() for _ in range(min(AT_ONCE, len(lines)))]
@@ -307,7 +307,7 @@ class LinesTask(QgsTask):
     def run(self) -> bool:
         xy = self._frame.to_crs(self._table[:, 2:4])
         times = self._table[:, 1]
-        # A robot that was heard of all the time has the most lines.
+        # A robot that reported all the time has the most lines.
         span = len(self._names) * (times.max() - times.min())
         for rows in line_pieces(self._table[:, 0], times, max(PIECE, span / MOST_LINES)):
             if self.isCanceled():
@@ -326,7 +326,7 @@ class LinesTask(QgsTask):
 
 
 def line_pieces(robots: np.ndarray, times: np.ndarray, seconds: float) -> list[np.ndarray]:
-    """Return the rows of each line: of one robot, without a silence, about ``seconds`` long at most.
+    """Return the rows of each line: of one robot, without a silence, ``seconds`` long at most.
 
     ``robots`` and ``times`` are sorted by robot and time. A piece begins where the one before it ends.
     """

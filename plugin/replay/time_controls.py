@@ -25,9 +25,9 @@ SPEEDS = (0.5, 1, 2, 5, 10, 30, 60, 300)
 
 
 class ReplayClock(QObject):
-    """Steers the temporal controller of ``canvas``, or one of its own where that has none.
+    """Controls the temporal controller of ``canvas``, or its own where that has none.
 
-    Who works QGIS's own panel works the same controller. Its times are those of this computer's clock, as
+    QGIS's own panel controls the same controller. Its times are those of this computer's clock, as
     QGIS compares them with the times of layers.
     """
 
@@ -46,7 +46,7 @@ class ReplayClock(QObject):
         self._speed = 1.0
         self.since = self.until = self.moment = 0.0
         self.controller.updateTemporalRange.connect(self._updated)
-        # PyQt cannot connect the controller's own signal of this in QGIS 3.22.
+        # PyQt cannot connect the controller's own signal for this in QGIS 3.22.
         self._was_playing = False
         self._look = QTimer(self)
         self._look.setInterval(LOOK_MS)
@@ -55,16 +55,16 @@ class ReplayClock(QObject):
 
     @property
     def is_set(self) -> bool:
-        """Whether there is a time to be played."""
+        """Whether there is a time range to play."""
         return self.until > self.since
 
     @property
     def is_playing(self) -> bool:
-        """Whether time goes on by itself."""
+        """Whether time is running."""
         return self.controller.animationState() != QgsTemporalNavigationObject.AnimationState.Idle
 
     def show(self, since: float, until: float) -> None:
-        """Have the time from ``since`` to ``until`` to be played, from its beginning."""
+        """Set the time range from ``since`` to ``until``, at its beginning."""
         self.since, self.until = since, until
         self.controller.pause()
         self.controller.setNavigationMode(QgsTemporalNavigationObject.NavigationMode.Animated)
@@ -72,7 +72,7 @@ class ReplayClock(QObject):
         self._set_frames(since)
 
     def set_speed(self, speed: float) -> None:
-        """Play ``speed`` times as fast as it was, from the moment that is shown."""
+        """Play at ``speed`` times real time, from the current moment."""
         self._speed = speed
         if self.is_set:
             self._set_frames(self.moment)
@@ -85,7 +85,7 @@ class ReplayClock(QObject):
             self.controller.setCurrentFrameNumber(min(max(0, frame), last))
 
     def play(self, on: bool) -> None:
-        """Let time go on, or hold it; at its end begin again."""
+        """Start or pause playing; at the end start again from the beginning."""
         if not on:
             self.controller.pause()
         elif self.is_set:
@@ -95,7 +95,7 @@ class ReplayClock(QObject):
         self._tell_playing()
 
     def remove(self) -> None:
-        """Leave QGIS's controller as it was found."""
+        """Restore QGIS's controller."""
         self._look.stop()
         if sip.isdeleted(self.controller):
             return
@@ -130,7 +130,7 @@ class ReplayClock(QObject):
 
 
 def local_time(at: float) -> QDateTime:
-    """Return seconds since 1970 by this computer's clock."""
+    """Return seconds since 1970 in this computer's local time."""
     return QDateTime.fromMSecsSinceEpoch(round(at * 1000))
 
 
@@ -144,7 +144,7 @@ FORMAT = "yyyy-MM-dd HH:mm:ss"
 
 
 class TimeRangeForm(QWidget):
-    """``requested`` asks for the time in the form, ``stop_requested`` for no more of it."""
+    """``requested`` asks for the time range in the form, ``stop_requested`` cancels that."""
 
     requested = pyqtSignal()
     stop_requested = pyqtSignal()
@@ -171,12 +171,12 @@ class TimeRangeForm(QWidget):
         self._last_changed()
 
     def stretch(self) -> tuple[float, float]:
-        """Return the time to be replayed, in seconds since 1970; "the last" ones end now."""
+        """Return the time range to replay, in seconds since 1970; "the last" ones end now."""
         self._last_changed()
         return tuple(box.dateTime().toMSecsSinceEpoch() / 1000.0 for box in (self.since, self.until))
 
     def show_busy(self, busy: bool) -> None:
-        """Offer to stop while positions are on their way."""
+        """Offer to stop while positions are being fetched."""
         self._is_busy = busy
         self.load.setText(tr("Stop") if busy else tr("Load"))
 
@@ -216,7 +216,7 @@ def _time(name: str) -> QDateTimeEdit:
 EDGE = 9.0
 """Pixels left and right of the line."""
 NEAR = 6.0
-"""Pixels within which the mouse means a mark."""
+"""Distance in pixels within which the mouse selects a mark."""
 PLAYHEAD = QColor(123, 31, 162)
 ENDED_OTHERWISE = QColor(239, 108, 0)
 COLOURS = {
@@ -227,22 +227,22 @@ COLOURS = {
     CommandState.ABORTED: ENDED_OTHERWISE,
     CommandState.FAILED: QColor(198, 40, 40),
 }
-"""Of marks, in the order in which they are painted: what failed lies on top."""
+"""Colours of marks, in the order of painting: failures are on top."""
 LENGTH = 13
-"""Pixels of a mark, from the line on."""
+"""Length in pixels of a mark, from the line."""
 STEP, LONG_STEP = 1.0, 10.0
-"""Seconds that an arrow key goes, alone and with Shift."""
+"""Seconds per press of an arrow key, alone and with Shift."""
 
 
 class TimeLine(QWidget):
-    """``requested`` has the moment that was clicked or gone to by keys.
+    """``requested`` has the moment that was clicked or selected by keys.
 
-    What was sent is a mark upwards, what became of it one downwards.
+    A command sent is a mark upwards, its outcome one downwards.
     """
 
     requested = pyqtSignal(float)
     play_requested = pyqtSignal()
-    """Space was pressed: that time goes on, or is held."""
+    """Space was pressed: play or pause."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -257,22 +257,22 @@ class TimeLine(QWidget):
         return QSize(400, 40)
 
     def show_time(self, since: float, until: float) -> None:
-        """Be the line from ``since`` to ``until``."""
+        """Set the time range of the line from ``since`` to ``until``."""
         self.since, self.until = since, until
         self.update()
 
     def show_marks(self, marks: TimelineMarks) -> None:
-        """Show these commands."""
+        """Show the marks of these commands."""
         self.marks = marks
         self.update()
 
     def show_moment(self, moment: float) -> None:
-        """Show which moment is shown."""
+        """Mark the current moment."""
         self.moment = moment
         self.update()
 
     def pixel(self, moment: float | npt.NDArray[np.float64]) -> float | npt.NDArray[np.float64]:
-        """Return where on the line a moment is, or each of many."""
+        """Return the position of a moment on the line, or of many."""
         span = max(self.until - self.since, 1e-9)
         return EDGE + (self.width() - 2 * EDGE) * (moment - self.since) / span
 
@@ -285,7 +285,7 @@ class TimeLine(QWidget):
         return self.marks[nearest] if away[nearest] <= NEAR else None
 
     def columns(self, state: CommandState) -> npt.NDArray[np.float64]:
-        """Return the pixels from left to right where commands came to ``state``: however many, each once."""
+        """Return the pixels from left to right where commands reached ``state``, without duplicates."""
         return np.unique(np.rint(self.pixel(self.marks.of(state))))
 
     def paintEvent(self, event: QPaintEvent) -> None:

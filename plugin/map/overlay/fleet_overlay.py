@@ -1,4 +1,4 @@
-"""The canvas item of the overlay, the order in which a scene is painted, and the card beside the mouse."""
+"""The canvas item of the overlay, its painting order, and the hover card."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from .trails import TrailImage, Trails
 
 
 class ScenePainter:
-    """Paints scenes; keeps the pictures that it paints again and again."""
+    """Paints scenes; caches the images that it paints repeatedly."""
 
     def __init__(self, trails: Trails | None = None) -> None:
         self._labels = Labels()
@@ -51,13 +51,13 @@ class ScenePainter:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is left to be painted by more frames."""
+        """Whether everything is painted, so that no more frames are needed."""
         return self._plans.is_whole
 
     def prepare(self, placed: MapScene | None, screen: Screen) -> None:
-        """Take in a new scene: what is drawn once for each and not for each time it is painted.
+        """Prepare a new scene: draw what is needed once and not in each frame.
 
-        The same scene is taken in again while it is not whole, or when it is seen on another screen.
+        The same scene is prepared again while it is not complete, or when the screen has changed.
         """
         if placed is None:
             self._trails.forget()
@@ -85,7 +85,7 @@ class ScenePainter:
         self._borders.paint(painter, placed, screen)
 
     def _view(self, placed: MapScene, screen: Screen) -> InView:
-        """Return what of the robots is on ``screen``, computed once for each scene and screen."""
+        """Return the robots in view on ``screen``, computed once for each scene and screen."""
         if self._viewed is None or self._viewed[0] is not placed or self._viewed[1] != screen:
             self._viewed = placed, screen, in_view(placed, screen)
         return self._viewed[2]
@@ -93,11 +93,11 @@ class ScenePainter:
 
 _FILLED = Qt.WidgetAttribute.WA_OpaquePaintEvent
 NEAR = 18.0
-"""Pixels within which a click means a robot."""
+"""Distance in pixels within which a click selects a robot."""
 
 
 class FleetOverlay(QgsMapCanvasItem):
-    """Covers the whole viewport and paints the scene it was last given, in the map's CRS."""
+    """Covers the whole viewport and paints the latest scene, in the map's CRS."""
 
     def __init__(self, canvas: QgsMapCanvas, trails: Trails | None = None):
         super().__init__(canvas)
@@ -105,9 +105,9 @@ class FleetOverlay(QgsMapCanvasItem):
         self._placed: MapScene | None = None
         self._painter = ScenePainter(trails)
         self.took = 0.0
-        """Seconds that painting took last."""
+        """Duration of the last painting, seconds."""
         self.frames = 0
-        """How often it was painted."""
+        """Number of paintings."""
         self.setZValue(90)
 
     def show_scene(self, placed: MapScene | None) -> None:
@@ -116,15 +116,15 @@ class FleetOverlay(QgsMapCanvasItem):
         self.prepare()
 
     def prepare(self) -> None:
-        """Go on with what is not whole of the scene, and have it as the canvas shows it now."""
+        """Continue with incomplete parts of the scene, for the present view of the canvas."""
         viewport = self._canvas.viewport()
-        # Qt fills a viewport before the scene does so itself: a sixth of what painting the map takes.
+        # Qt fills a viewport before the scene does so itself: a sixth of the time for painting the map.
         viewport.setAttribute(_FILLED, self._canvas.backgroundBrush().isOpaque())
         self._painter.prepare(self._placed, self.screen(viewport.devicePixelRatioF()))
         self.update()
 
     def remove(self) -> None:
-        """Take it off the canvas, which is as it was before."""
+        """Remove the item from the canvas, which is restored."""
         self._canvas.viewport().setAttribute(_FILLED, False)
         self._canvas.scene().removeItem(self)
 
@@ -151,16 +151,16 @@ class FleetOverlay(QgsMapCanvasItem):
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is left to be painted by more frames."""
+        """Whether everything is painted, so that no more frames are needed."""
         return self._painter.is_whole
 
     def magnify(self, times: float) -> None:
-        """Draw robots so many times as large as they come."""
+        """Draw robots magnified by this factor."""
         self._painter.robots.set_magnification(times)
         self.update()
 
     def draw_arrows(self, on: bool) -> None:
-        """Draw an arrow for each robot, or leave that to the layer; the rest is drawn always."""
+        """Draw an arrow for each robot, or leave that to the layer; the rest is always drawn."""
         self._painter.robots.draw_arrows(on)
 
     def robot_at(self, x: float, y: float) -> str | None:
@@ -173,20 +173,20 @@ class FleetOverlay(QgsMapCanvasItem):
         return self._placed.scene.robots.names[nearest] if away[nearest] <= NEAR else None
 
     def robots_in(self, area: QRect) -> list[str]:
-        """Return the robots whose places are in ``area``, in pixels."""
+        """Return the robots whose positions are in ``area``, in pixels."""
         x, y = self._pixels().T
         inside = (x >= area.left()) & (x <= area.right()) & (y >= area.top()) & (y <= area.bottom())
         return [self._placed.scene.robots.names[row] for row in np.flatnonzero(inside).tolist()]
 
     def robots_beyond(self, x: float, y: float) -> list[str]:
-        """Return the robots beyond the border that the arrow at pixel (x, y) points to."""
+        """Return the robots beyond the border that the arrow at pixel (x, y) stands for."""
         for hint in self._painter.hints if self._placed else []:
             if np.hypot(hint.x - x, hint.y - y) <= NEAR:
                 return [self._placed.scene.robots.names[row] for row in hint.rows.tolist()]
         return []
 
     def screen(self, ratio: float = 1.0) -> Screen:
-        """Return what of the map the canvas shows now."""
+        """Return the screen for the present view of the canvas."""
         return screen_of(self._canvas, self, ratio)
 
     def _pixels(self) -> np.ndarray:
@@ -196,11 +196,11 @@ class FleetOverlay(QgsMapCanvasItem):
 
 
 AWAY = QPoint(18, 14)
-"""From the mouse to the card."""
+"""Offset of the card from the mouse."""
 
 
 class HoverCard(QLabel):
-    """A card over the canvas that lets every click through."""
+    """A card over the canvas, transparent for clicks."""
 
     def __init__(self, parent: QWidget):
         super().__init__(parent)
@@ -215,9 +215,9 @@ class HoverCard(QLabel):
         self.hide()
 
     def show_at(self, text: str, mouse: QPoint) -> None:
-        """Show ``text`` beside the mouse, whole.
+        """Show ``text`` beside the mouse, completely visible.
 
-        Not below it at the right as long as there is another place: that is where map tools have their tips.
+        Below it at the right only if there is no other place: map tools show their tips there.
         """
         self.setText(text)
         self.adjustSize()
@@ -231,7 +231,7 @@ class HoverCard(QLabel):
 
 
 def card(view: RobotView, task: CommandReport | None, remaining: float | None, frame: SiteFrame) -> str:
-    """Return what is known of a robot as rich text; what it has not said is left out."""
+    """Return a robot's details as rich text; unreported ones are left out."""
     report = view.report
     colour = (UNSURE_COLOUR if view.shown_as == UNSURE else STATE_COLOURS[view.state]).name()
     state = robot_state_in_words(view)
@@ -269,7 +269,7 @@ def card(view: RobotView, task: CommandReport | None, remaining: float | None, f
 
 
 def _smaller(font: QFont) -> QFont:
-    """Return a size less than ``font``: a card covers a part of the map."""
+    """Return ``font`` one size smaller: a card covers a part of the map."""
     less = QFont(font)
     less.setPointSizeF(max(7.5, font.pointSizeF() - 1.0))
     return less
@@ -277,18 +277,18 @@ def _smaller(font: QFont) -> QFont:
 
 _MOVE = QEvent.Type.MouseMove
 _ENDS = (QEvent.Type.Leave, QEvent.Type.MouseButtonPress)
-"""Looked up once: every event of the canvas comes by here, and there are many to a frame."""
+"""A constant, as every event of the canvas is compared with it, many per frame."""
 
 
 class CardTexts(Protocol):
-    """Who knows what stands on the cards of robots."""
+    """The provider of the texts of cards."""
 
     def card_text(self, robot: str) -> str | None:
-        """Return the text of a robot's card, None when it is not known any more."""
+        """Return the text of a robot's card, None when it is no longer known."""
 
 
 class HoverTracker(QObject):
-    """Shows the card of the robot under the mouse, with the text that ``cards`` has of it."""
+    """Shows the card of the robot under the mouse, with its text from ``cards``."""
 
     def __init__(
         self,
@@ -306,7 +306,7 @@ class HoverTracker(QObject):
         self._viewport.installEventFilter(self)
 
     def remove(self) -> None:
-        """Take the card off the canvas."""
+        """Remove the card from the canvas."""
         self._mouse = None
         if not sip.isdeleted(self._viewport):
             self._viewport.removeEventFilter(self)
@@ -315,7 +315,7 @@ class HoverTracker(QObject):
             self._card.deleteLater()
 
     def refresh(self) -> None:
-        """Show the card of the robot that is now under the mouse, which may not have moved."""
+        """Show the card of the robot now under the mouse, which may not have moved."""
         robot = None
         if self._mouse is not None:
             robot = self._overlay.robot_at(self._mouse.x(), self._mouse.y())
@@ -328,7 +328,7 @@ class HoverTracker(QObject):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         kind = event.type()
         if kind == _MOVE:
-            # While something is dragged a card would be in the way.
+            # While dragging a card would be in the way.
             free = event.buttons() == Qt.MouseButton.NoButton
             self._mouse = event.pos() if free else None
             self.refresh()

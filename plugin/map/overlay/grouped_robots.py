@@ -1,4 +1,4 @@
-"""Robots that are not drawn one by one: arrows to those beyond the map's border, and the density of many."""
+"""Robots that are not drawn one by one: border arrows to those off the map, and the density of many."""
 
 from __future__ import annotations
 
@@ -27,16 +27,16 @@ Rows = npt.NDArray[np.intp]
 # --- Arrows at the map's border to the robots beyond it ---
 
 ARROW_SIZE = 0.95
-"""In cells."""
+"""Size in cells."""
 ARROW_TURNS = 40
-"""Directions that the arrows point in."""
+"""Number of directions in which arrows are drawn."""
 MARGIN = 14.0
 APART = 56.0
 """Pixels of the border that share one arrow."""
 FIND_EVERY = 0.25
-"""Seconds for which the arrows and their numbers stay as they are unless the view moves."""
+"""Seconds for which arrows and their numbers stay unless the view moves."""
 _URGENT = np.array([1, 3, 4, 0, 2])
-"""The rank of each look: an arrow for several robots has the colour of the one to worry about."""
+"""The rank of each display state: an arrow for several robots has the colour of the most critical."""
 _BY_RANK = np.argsort(_URGENT)
 
 
@@ -49,7 +49,7 @@ def arrow_atlas(pixel_ratio: float, state: RobotState, is_chosen: bool) -> Cells
 
 @dataclass(frozen=True)
 class Hint:
-    """One arrow: where, which way it points (radians clockwise from +x), and the rows it stands for."""
+    """One arrow: position, direction (radians clockwise from +x), and the rows of its robots."""
 
     x: float
     y: float
@@ -58,15 +58,15 @@ class Hint:
 
     @cached_property
     def area(self) -> tuple[float, float, float, float]:
-        """About what the arrow and its text cover: left, top, right, bottom."""
-        # A single robot has its name there, several their number.
+        """Approximate area of the arrow and its text: left, top, right, bottom."""
+        # A single robot has its name there, several have their number.
         inward, wide = (48.0, 44.0) if len(self.rows) == 1 else (24.0, 16.0)
         x, y = self.x - inward * math.cos(self.turn), self.y - inward * math.sin(self.turn)
         return min(x, self.x) - wide, min(y, self.y) - 14.0, max(x, self.x) + wide, max(y, self.y) + 14.0
 
 
 def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
-    """Return the arrows for the robots in rows ``beyond``; ``pixels`` (n, 2) is where each robot is."""
+    """Return the arrows for the robots in rows ``beyond``; ``pixels`` (n, 2) is each robot's position."""
     if len(beyond) == 0:
         return []
     middle = np.array([screen.width, screen.height]) / 2.0
@@ -74,7 +74,7 @@ def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
     reach = (middle - MARGIN) / np.maximum(np.abs(way), 1e-9)
     at = middle + way * np.minimum(reach[:, 0], reach[:, 1])[:, None]
     across, down = np.round(np.maximum(at, 0.0) / APART).T
-    # Of 16 bits, enough for a screen of 14 000 pixels square: numpy sorts those in a tenth of the time.
+    # 16 bits, enough for a screen of 14 000 pixels square: numpy sorts those in a tenth of the time.
     slot = (across * (screen.height // APART + 2) + down).astype(np.uint16)
     order = np.argsort(slot, kind="stable")
     first = np.flatnonzero(np.diff(slot[order], prepend=slot[order[0]] + 1))
@@ -86,7 +86,7 @@ def hints(pixels: Points, beyond: Rows, screen: Screen) -> list[Hint]:
 
 
 class BorderHints:
-    """Finds the arrows a few times a second, and paints them from an atlas."""
+    """Finds the arrows a few times per second, and paints them from an atlas."""
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
@@ -96,12 +96,12 @@ class BorderHints:
         self._found_at = -np.inf
         self.hints: list[Hint] = []
         self._chosen: tuple[str, ...] | None = None
-        """For which selection it was made ready what is painted; None when it has to be made again."""
+        """The selection for which the painting was prepared; None when it must be prepared again."""
         self._arrows: list[tuple[Sprites, Points, Rows]] = []
         self._texts: list[tuple[QPointF, QPixmap]] = []
 
     def find(self, placed: MapScene, view: InView, screen: Screen) -> bool:
-        """Find the arrows for robots that are not in view, unless that was done just now; tell whether."""
+        """Find the arrows for robots out of view, unless that was just done; return whether it was done."""
         now, names = placed.scene.now, placed.scene.robots.names
         is_new = self._found_for is None or self._found_for[0] != screen or self._found_for[1] != names
         if not is_new and abs(now - self._found_at) < FIND_EVERY:
@@ -125,7 +125,7 @@ class BorderHints:
     def _made(
         self, placed: MapScene, screen: Screen
     ) -> tuple[list[tuple[Sprites, Points, Rows]], list[tuple[QPointF, QPixmap]]]:
-        """Return the arrows as :meth:`_coloured` has them, and the texts where they are painted."""
+        """Return the arrows as returned by :meth:`_coloured`, and the texts with their positions."""
         rows = np.concatenate([hint.rows for hint in self.hints])
         first = np.cumsum([0, *(len(hint.rows) for hint in self.hints[:-1])])
         ranks = np.maximum.reduceat(_ranks(placed)[rows], first)
@@ -137,13 +137,13 @@ class BorderHints:
     def _coloured(
         self, placed: MapScene, rows: Rows, first: Rows, screen: Screen
     ) -> list[tuple[Sprites, Points, Rows]]:
-        """Return for each colour the arrow, the places where it stands, and its cells.
+        """Return for each colour the arrow, its positions, and its cells.
 
-        ``rows`` are the robots of all hints, and ``first`` where those of each hint begin.
+        ``rows`` are the robots of all hints, and ``first`` the index where those of each hint begin.
         """
         chosen = [placed.scene.rows[name] for name in placed.scene.chosen if name in placed.scene.rows]
         looks = _BY_RANK[np.maximum.reduceat(_URGENT[placed.scene.robots.shown_as[rows]], first)]
-        # As that of a stale one: an arrow has no outline that could be broken.
+        # As for a stale one: an arrow has no outline that could be broken.
         states = np.where(looks == UNSURE, STATES.index(RobotState.STALE), looks)
         is_chosen = np.logical_or.reduceat(np.isin(rows, chosen), first)
         turns = np.array([hint.turn for hint in self.hints]) / (2 * np.pi)
@@ -156,7 +156,7 @@ class BorderHints:
         return found
 
     def _arrow(self, state: int, to_chosen: bool, ratio: float) -> Sprites:
-        """Return the arrow to robots in a state, made when it is needed first."""
+        """Return the arrow to robots in a state, created on first use."""
         if ratio != self._ratio:
             self._atlases.clear()
             self._ratio = ratio
@@ -166,7 +166,7 @@ class BorderHints:
 
 
 def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
-    """Return how much each robot is to be noticed: a selected one most, then one to worry about."""
+    """Return the priority of each robot: a selected one first, then critical ones."""
     ranks = _URGENT[placed.scene.robots.shown_as]
     rows = placed.scene.rows
     ranks[[rows[name] for name in placed.scene.chosen if name in rows]] = len(_URGENT)
@@ -174,7 +174,7 @@ def _ranks(placed: MapScene) -> npt.NDArray[np.int64]:
 
 
 def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPointF, QPixmap]]:
-    """Leave out what would lie over a text before it; its arrow stays, and says by a click who it is."""
+    """Remove texts that overlap an earlier one; the arrow stays, and a click on it shows its robots."""
     first = np.array([(place.x(), place.y()) for place, _ in texts]).reshape(-1, 2)
     last = first + np.array([(text.width(), text.height()) for _, text in texts]).reshape(-1, 2) / ratio
     overlaps = ((first[:, None] < last) & (first < last[:, None])).all(axis=2)
@@ -187,7 +187,7 @@ def _apart(texts: list[tuple[QPointF, QPixmap]], ratio: float) -> list[tuple[QPo
 
 
 def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tuple[QPointF, QPixmap]:
-    """Return the robot's name, or how many there are, and where it is whole on the arrow's inner side."""
+    """Return the robot's name, or the number of robots, and its place, fully visible inside of the arrow."""
     text = names[hint.rows[0]] if len(hint.rows) == 1 else str(len(hint.rows))
     picture = labels.picture(text, screen.ratio)
     width, height = picture.width() / screen.ratio, picture.height() / screen.ratio
@@ -199,16 +199,16 @@ def _beside(labels: Labels, hint: Hint, names: list[str], screen: Screen) -> tup
     return QPointF(x, y), picture
 
 
-# --- Robots that are too many to be drawn one by one: cells as dark as there are robots in them ---
+# --- Robots that are too many to be drawn one by one: cells shaded by their number of robots ---
 
 FAINTEST, DARKEST = 0.3, 0.9
-"""How much of the map a cell with one robot covers, and the fullest one."""
+"""Opacity of a cell with one robot, and of the fullest one."""
 LEGEND_AT = 12
-"""Pixels of the legend from the left and from below."""
+"""Distance in pixels of the legend from the left and from below."""
 
 
 class DensityPainter:
-    """Paints the density of a scene, and says beneath what it is."""
+    """Paints the density of a scene, and a legend beneath."""
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
@@ -218,7 +218,7 @@ class DensityPainter:
         """(3, 2): the first corner of the grid in the map, the one along its x, and the one along its y."""
 
     def paint(self, painter: QPainter, placed: MapScene, screen: Screen) -> None:
-        """Paint it, where the scene has one."""
+        """Paint the density, where the scene has one."""
         fleet = placed.scene.fleet
         if fleet is None or fleet.density is None:
             self._made = None
@@ -254,13 +254,13 @@ def _corners(density: Density, transform: SiteToMapTransform) -> Points:
 
 
 def _picture(density: Density) -> QImage:
-    """Return a pixel for each cell: its colour is that of its robots' states, its cover by how many."""
+    """Return an image with a pixel per cell: its colour from its robots' states, its opacity by number."""
     counts = np.array([density.fresh, density.silent, density.offline], dtype=np.float64)
     total = counts.sum(axis=0)
     colours = [STATE_COLOURS[state] for state in (RobotState.FRESH, RobotState.LOST, RobotState.OFFLINE)]
     rgb = np.array([(c.red(), c.green(), c.blue()) for c in colours], dtype=np.float64)
     mixed = (counts / np.maximum(total, 1.0)).T @ rgb
-    # By the root: a cell with four times as many covers twice as much, and the emptiest ones are seen.
+    # By the square root: four times as many robots double the opacity, and the emptiest cells are visible.
     cover = FAINTEST + (DARKEST - FAINTEST) * np.sqrt(total / total.max(initial=1.0))
     pixels = np.zeros((density.rows * density.columns, 4), dtype=np.uint8)
     cells = np.array(density.cells, dtype=np.intp)
@@ -268,5 +268,5 @@ def _picture(density: Density) -> QImage:
     pixels[cells, :3] = (mixed * cover[:, None])[:, ::-1]
     pixels[cells, 3] = 255 * cover
     image = QImage(pixels.tobytes(), density.columns, density.rows, 4 * density.columns, FORMAT)
-    # Of its own: what it was made of goes.
+    # A copy: the array it was made of is freed.
     return image.copy()

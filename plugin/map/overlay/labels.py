@@ -1,4 +1,4 @@
-"""Labels: short texts as pictures, the room for them, and robots' names."""
+"""Labels: short texts as images, their placement, and robots' names."""
 
 from __future__ import annotations
 
@@ -22,33 +22,33 @@ from .scene import InView, MapScene, Screen
 
 INK = QColor("#101418")
 MOST = 600
-"""Pictures that are kept: about twice as many as fit on a screen."""
+"""Images that are kept: about twice as many as fit on a screen."""
 MARGIN = 4
 CASING = 1.6
-"""Pixels of light around the letters."""
+"""Width in pixels of the halo around the letters."""
 _AT = QPointF(MARGIN, MARGIN)
 _AROUND = [
     _AT + QPointF(CASING * math.cos(turn), CASING * math.sin(turn))
     for turn in (k * math.pi / 4 for k in range(8))
 ]
-"""Where the letters stand in their picture, and where the light around them."""
+"""Offsets of the letters in their image, and of the halo around them."""
 HEIGHT = 18
-"""Logical pixels that a text needs from the one below it."""
+"""Line spacing in logical pixels."""
 
 
 class Labels:
-    """Makes each picture once; painting text again for each robot and frame would cost more than all else."""
+    """Renders each text once; painting text for each robot and frame would cost more than all else."""
 
     def __init__(self) -> None:
         self._pictures: dict[tuple[str, float], QPixmap] = {}
 
     def picture(self, text: str, ratio: float) -> QPixmap:
-        """Return ``text`` as a picture for ``ratio`` device pixels per logical pixel."""
+        """Return ``text`` as an image for ``ratio`` device pixels per logical pixel."""
         key = (text, ratio)
         picture = self._pictures.pop(key, None)
         if picture is None:
             picture = _drawn(text, ratio)
-        # Those longest unused stand first, and go first.
+        # The least recently used come first, and are dropped first.
         self._pictures[key] = picture
         if len(self._pictures) > MOST:
             del self._pictures[next(iter(self._pictures))]
@@ -56,7 +56,7 @@ class Labels:
 
 
 def age_in_words(seconds: float) -> str:
-    """Return how long ago, as in ``12 s``, ``5 min``, ``3 h``, ``2 d``."""
+    """Return an age, as in ``12 s``, ``5 min``, ``3 h``, ``2 d``."""
     if seconds < 60:
         return tr("{seconds:.0f} s", seconds=seconds)
     if seconds < 3600:
@@ -90,7 +90,7 @@ def _font() -> QFont:
 
 
 def _size(text: str, metrics: QFontMetricsF) -> tuple[int, int]:
-    """Return the width and the height of a text's picture, in logical pixels."""
+    """Return the width and the height of a text's image, in logical pixels."""
     width = math.ceil(metrics.horizontalAdvance(text)) + 2 * MARGIN
     return width, math.ceil(metrics.height()) + 2 * MARGIN
 
@@ -99,7 +99,7 @@ def _write(painter: QPainter, text: str) -> None:
     written = QStaticText(text)
     written.setTextFormat(Qt.TextFormat.PlainText)
     painter.setPen(PAPER)
-    # To stroke the letters' outlines would take six times as long as to write them eight times.
+    # Stroking the letters' outlines would take six times as long as writing them eight times.
     for beside in _AROUND:
         painter.drawStaticText(beside, written)
     painter.setPen(INK)
@@ -108,11 +108,11 @@ def _write(painter: QPainter, text: str) -> None:
 
 Points = npt.NDArray[np.float64]
 LINE = 96
-"""Logical pixels of a text that stand on one line of the picture below: longer ones go on on the next."""
+"""Logical pixels of a text that are on one line of the image below: longer ones continue on the next."""
 FEWEST_LINES, MOST_LINES = 64, 1200
-"""Between which the picture has room for more texts as they come: about four times what fits on a screen."""
+"""Range of the number of lines of the image as texts are added: about four times what fits on a screen."""
 AROUND_INK = CASING + 1.5
-"""Pixels about the letters in which their light, and what is smooth of it, is."""
+"""Pixels around the letters that hold their halo and its antialiasing."""
 HIGHEST = 30_000
 """Device pixels: Qt paints no farther than to 32767."""
 
@@ -121,8 +121,8 @@ Part = tuple[int, int, int, int, int, int]
 
 
 class WrittenText(NamedTuple):
-    """A text in a :class:`TextAtlas`: the logical pixels of its whole picture, and the parts of it on which
-    something is drawn: from the left and the top of the whole, and their left, top, width and height in the
+    """A text in a :class:`TextAtlas`: the size of its whole image in logical pixels, and its inked parts:
+    the offset of each from the left and the top of the whole, and its left, top, width and height in the
     atlas, all in device pixels."""
 
     width: float
@@ -131,10 +131,10 @@ class WrittenText(NamedTuple):
 
 
 class TextAtlas:
-    """Short texts in one picture, out of which many are painted at once; ``ratio`` device pixels are a
+    """Short texts in one image, out of which many are painted at once; ``ratio`` device pixels are a
     logical one.
 
-    To paint each from a picture of its own takes four times as long.
+    Painting each from an image of its own takes four times as long.
     """
 
     def __init__(self, ratio: float) -> None:
@@ -144,7 +144,7 @@ class TextAtlas:
         self._metrics = QFontMetricsF(self._font)
         self._width = round(LINE * ratio)
         self._used = 0
-        """Device pixels from above that have texts already."""
+        """Device pixels from the top that are in use."""
         self._picture = self._empty(0)
         self._fragments = Fragments(ratio)
 
@@ -152,18 +152,18 @@ class TextAtlas:
         return text in self._texts
 
     def provide(self, texts: Iterable[str], shown: Iterable[Iterable[str]]) -> None:
-        """Draw those of ``texts`` that are not there. Where there is no room, of the others only those
-        ``shown`` stay, and all stand elsewhere from then on."""
+        """Draw those of ``texts`` that are missing. If there is no room, of the other texts only those
+        ``shown`` are kept, and all are placed again."""
         for text in texts:
             if text not in self._texts:
                 self._add(text, shown)
 
     def written(self, text: str) -> WrittenText:
-        """Return a text that is there."""
+        """Return a text in the atlas."""
         return self._texts[text]
 
     def paint(self, painter: QPainter, corner: Points, parts: Points) -> None:
-        """Paint ``parts``, (n, 6) as in :class:`WrittenText`, of texts whose pictures begin at each left
+        """Paint ``parts``, (n, 6) as in :class:`WrittenText`, of texts whose images begin at each left
         upper ``corner``, (n, 2) logical pixels."""
         if len(parts) == 0:
             return
@@ -200,7 +200,7 @@ class TextAtlas:
         self._texts[text] = WrittenText(*whole, tuple(parts))
 
     def _make_room(self, height: int, shown: Iterable[Iterable[str]]) -> None:
-        """Begin another picture with room for ``height``: of all texts twice as large, or of at least half
+        """Begin another image with room for ``height``: twice as large for all texts, or at least half
         that size for those that are ``shown``, and for the newest."""
         before, picture = self._texts, self._picture
         fewest, most = (min(HIGHEST, round(n * HEIGHT * self.ratio)) for n in (FEWEST_LINES, MOST_LINES))
@@ -217,7 +217,7 @@ class TextAtlas:
         self._copy({text: before[text] for text in before if text in kept}, picture)
 
     def _copy(self, texts: dict[str, WrittenText], picture: QPixmap) -> None:
-        """Have ``texts``, whose parts are in ``picture``, in the atlas too."""
+        """Copy ``texts``, whose parts are in ``picture``, into the atlas too."""
         with painting(self._picture) as painter:
             painter.setCompositionMode(QPainter.CompositionMode.CompositionMode_Source)
             for text, one in texts.items():
@@ -241,15 +241,15 @@ def _height(parts: Iterable[Part]) -> int:
 Widths = npt.NDArray[np.float64]
 Cells = npt.NDArray[np.intp]
 GRID = 6.0
-"""Pixels of a cell that is taken or free as a whole."""
+"""Pixels of a cell of the occupancy grid."""
 LINES = int(HEIGHT // GRID) + 1
-"""Lines of cells that a text lies on, wherever it begins."""
+"""Lines of cells that a text covers, wherever it begins."""
 
 
 class LabelPlacer:
-    """What of the screen is taken, by (n, 2) ``robots`` in pixels and by texts.
+    """The areas of the screen taken by (n, 2) ``robots`` in pixels and by texts.
 
-    ``texts`` are left, top, right and bottom of those that are there already.
+    ``texts`` are left, top, right and bottom of existing texts.
     """
 
     def __init__(
@@ -258,14 +258,14 @@ class LabelPlacer:
         self._lines, self._columns = int(screen.height // GRID) + LINES, int(screen.width // GRID) + 2
         self._robots = self._counted(robots)
         self._taken = [0] * self._lines
-        """For each line the cells, a bit each, where no other text may lie that begins on it."""
+        """For each line the cells, as bits, that are blocked for texts that begin on it."""
         for left, top, right, bottom in texts:
             cells = _bits(max(0, int(left // GRID)), max(0, int(right // GRID) + 1))
             self._cover(int(top // GRID), int(bottom // GRID) + 1, cells)
 
     def cells(self, corner: Points, width: Widths) -> Cells:
-        """Return (3, n) the first line, the left cell, and the one just right of the texts that have so much
-        ``width`` and begin at the left upper ``corner``, (n, 2), all in pixels.
+        """Return (3, n) the first line, the left cell, and the one just right of texts of ``width``
+        that begin at the left upper ``corner``, (n, 2), all in pixels.
         """
         x, y = corner[:, 0], corner[:, 1]
         found = np.empty((3, len(corner)), dtype=np.intp)
@@ -276,13 +276,13 @@ class LabelPlacer:
         return found
 
     def without_robots(self, cells: Cells) -> npt.NDArray[np.bool_]:
-        """Tell which texts, as :meth:`cells` has them, cover no robot."""
+        """Return which texts, given as by :meth:`cells`, cover no robot."""
         line, left, right = cells
         stride = self._lines + 2
         return self._robots.take(right * stride + line) == self._robots.take(left * stride + line)
 
     def place_labels(self, cells: Cells) -> list[int]:
-        """Take one place after the other unless a text has a part of it; return the indices of those."""
+        """Place texts in order, except those that overlap an earlier one; return their indices."""
         found = []
         for index, (line, left, right) in enumerate(cells.T.tolist()):
             bits = _bits(left, right)
@@ -292,18 +292,18 @@ class LabelPlacer:
         return found
 
     def _cover(self, top: int, bottom: int, cells: int) -> None:
-        """Let no text lie on ``cells`` of the lines from ``top`` to before ``bottom``."""
+        """Block ``cells`` of the lines from ``top`` to before ``bottom``."""
         for line in range(max(0, top - LINES + 1), min(self._lines, bottom)):
             self._taken[line] |= cells
 
     def _counted(self, robots: Points) -> npt.NDArray[np.int32]:
-        """Return for each cell in how many of those left of it a text that begins on its line covers a robot:
-        where that differs between two cells, a robot is between them.
+        """Return for each cell the number of cells left of it in which a text beginning on its line covers a
+        robot: where that differs between two cells, a robot is between them.
         """
-        # What is beyond the screen goes to lines and columns that no text lies on.
+        # Positions off the screen go to lines and columns that no text covers.
         line = np.minimum(np.maximum(np.floor(robots[:, 1] * (1.0 / GRID)), -1), self._lines) + 1
         column = np.minimum(np.maximum(np.floor(robots[:, 0] * (1.0 / GRID)), -1), self._columns - 1) + 1
-        # Line beside line in memory: numpy sums up rows faster than along them.
+        # Row-major: numpy sums up rows faster than along them.
         shape = self._columns + 1, self._lines + 2
         stands = np.zeros(shape[0] * shape[1] + LINES, dtype=np.uint8)
         stands[(column * shape[1] + line).astype(np.intp)] = 1
@@ -314,34 +314,34 @@ class LabelPlacer:
 
 
 def _bits(left: int, right: int) -> int:
-    """Return a number with a bit for each cell from ``left`` to before ``right``."""
+    """Return an integer with the bits of the cells from ``left`` to before ``right`` set."""
     return (1 << right) - (1 << left)
 
 
 Rows = npt.NDArray[np.intp]
 
 CHOOSE_EVERY = 0.25
-"""Seconds for which the same robots keep their texts, so that names do not come and go as robots pass."""
+"""Seconds for which the same robots keep their texts, so that names do not flicker as robots pass."""
 NEW_IN_A_FRAME = 8
-"""Pictures of names are made by so many a frame: a map full of new ones must not hold up the window."""
+"""Images of names rendered per frame: a map full of new ones must not block the window."""
 BESIDE = (15.0, -12.0)
-"""Where a text begins, its middle, as seen from the robot."""
+"""Offset of a text's beginning, at its middle, from the robot."""
 LETTER = 8.0
-"""About what a letter is wide."""
+"""Approximate width of a letter."""
 SPOT = (36.0, 16.0)
-"""Pixels within which one text is tried."""
+"""Size in pixels of a spot, in which only one text is tried."""
 SPOTS = 10_000
 """More than any screen has from top to bottom."""
 STATE_LETTERS = 14.0
-"""Letters that a robot's state and age take at most, but for hours and days."""
+"""Letters that a robot's state and age take at most, except for hours and days."""
 _URGENT = np.array([5, 3, 1, 7, 3], dtype=np.int8)
-"""The rank of each look: the lost before the stale and the unsure before the fresh before those that are off,
-each with one before it for those that had their texts shown already. Small numbers: numpy sorts them
+"""The rank of each display state: lost, then stale and unsure, then fresh, then offline,
+each preceded by those whose texts were already shown. Small numbers: numpy sorts them
 faster."""
 
 
 class NamesPainter:
-    """Chooses which robots have their names shown, and paints them."""
+    """Chooses the robots whose names are shown, and paints them."""
 
     def __init__(self) -> None:
         self._named: Rows = np.empty(0, dtype=np.intp)
@@ -350,16 +350,16 @@ class NamesPainter:
         self._atlas = TextAtlas(1.0)
         self._shown: list[int] = []
         self._waiting: list[int] = []
-        """Of which of the written the pictures are there, and of which not yet."""
+        """Indices of the written texts whose images exist, and of those whose do not yet."""
         self._parts = np.empty((0, 6))
         self._of = np.empty(0, dtype=np.intp)
         self._beside = np.empty((0, 2))
-        """What of the atlas is painted, beside which of the written, and how far along and down."""
+        """The parts of the atlas to paint, the index of their text, and their offsets."""
         self._chosen_at = -np.inf
         self._screen: Screen | None = None
         self._names: list[str] = []
         self._lengths = np.empty(0)
-        """Of each of the names."""
+        """Length of each name."""
 
     def paint(
         self,
@@ -371,10 +371,10 @@ class NamesPainter:
         *,
         may_wait: bool = False,
     ) -> None:
-        """Paint names of those in view.
+        """Paint names of robots in view.
 
-        ``taken`` are left, top, right and bottom of what has texts already. Where it ``may_wait``, whose
-        names they are stays as it is unless the view moves: there is much else to do for this frame.
+        ``taken`` are left, top, right and bottom of areas with texts. If it ``may_wait``, the choice of
+        names stays unless the view moves: there is much else to do for this frame.
         """
         robots = placed.scene.robots
         now = placed.scene.now
@@ -391,7 +391,7 @@ class NamesPainter:
         self._atlas.paint(painter, corners.take(self._of, axis=0) + self._beside, self._parts)
 
     def _wait_for_pictures(self, ratio: float) -> None:
-        """Have at once what is written wherever its pictures are there already."""
+        """Paint at once the texts whose images exist already."""
         if ratio != self._atlas.ratio:
             self._atlas = TextAtlas(ratio)
         self._shown, self._waiting = [], []
@@ -400,7 +400,7 @@ class NamesPainter:
         self._arrange()
 
     def _make_pictures(self) -> None:
-        """Make some of the pictures that are waited for; the others come with the next frames."""
+        """Render some of the missing images; the others follow with the next frames."""
         new = NEW_IN_A_FRAME
         while self._waiting and new > 0:
             self._shown.append(self._waiting.pop(0))
@@ -409,7 +409,7 @@ class NamesPainter:
         self._arrange()
 
     def _arrange(self) -> None:
-        """Have what is shown painted beside its robots, its parts one after the other."""
+        """Arrange the parts of the texts shown beside their robots, one after the other."""
         parts, of, beside = [], [], []
         for k in self._shown:
             along = 0.0
@@ -424,7 +424,7 @@ class NamesPainter:
         self._beside = np.array(beside, dtype=np.float64).reshape(-1, 2)
 
     def _are_others(self, robots: RobotArrays) -> bool:
-        """Tell whether another robot stands in the row of one that was chosen."""
+        """Return whether the row of a chosen robot is another robot's now."""
         if robots.names is self._names:
             return False
         rows = self._named.tolist()
@@ -452,7 +452,7 @@ class NamesPainter:
         width = LETTER * (self._lengths.take(seen) + more)
         corner = _corners(view.there, width, screen)
         room = LabelPlacer(screen, view.there, taken)
-        # Texts that urge may cover a robot; the others stand where there is none.
+        # Urgent texts may cover a robot; the others are placed where there is none.
         cells = room.cells(corner, width)
         possible = np.flatnonzero((rank < 4) | room.without_robots(cells))
         order = possible[np.argsort(rank[possible], kind="stable")]
@@ -478,7 +478,7 @@ def _width(written: list[str]) -> float:
 
 
 def _corners(pixels: Points, width: npt.NDArray[np.float64], screen: Screen) -> Points:
-    """Return the left upper corners of texts beside robots at (n, 2) ``pixels``: where they are whole."""
+    """Return the left upper corners of texts beside robots at (n, 2) ``pixels``, moved to be complete."""
     right = pixels[:, 0] + BESIDE[0]
     top = pixels[:, 1] + (BESIDE[1] - HEIGHT / 2)
     corners = np.empty_like(pixels)
@@ -488,7 +488,7 @@ def _corners(pixels: Points, width: npt.NDArray[np.float64], screen: Screen) -> 
 
 
 def _first_of_each_spot(corner: Points) -> Rows:
-    """Return the indices of texts that begin where none before them does, to try no spot twice."""
+    """Return the indices of the first text in each spot, to try no spot twice."""
     across, down = np.floor(corner[:, 0] * (1.0 / SPOT[0])), np.floor(corner[:, 1] * (1.0 / SPOT[1]))
     _, first = np.unique(across * SPOTS + down, return_index=True)
     return np.sort(first)

@@ -1,4 +1,4 @@
-"""Robots, painted: out of atlases, many at once; selection, velocity and uncertainty."""
+"""Painting of robots from atlases, many at once; selection, velocity and uncertainty."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from .scene import InView, MapScene, Screen
 Points = npt.NDArray[np.float64]
 Rows = npt.NDArray[np.intp]
 
-# --- Sprites: drawings out of atlases, painted many at once ---
+# --- Sprites: drawings in atlases, painted many at once ---
 
 Cells = npt.NDArray[np.uint32]
 Draw = Callable[[QPainter], None]
@@ -47,8 +47,8 @@ def turned(draw: Draw, side: int, scale: float, turns: int) -> Cells:
     """Return (``turns``, side, side) pixels: in cell k the drawing points k / ``turns`` of a turn clockwise
     from +x.
 
-    ``draw`` draws around (0, 0), pointing along +x, and the same on both sides of that axis; ``scale`` device
-    pixels make one of its own. ``turns`` is a multiple of eight.
+    ``draw`` draws around (0, 0), pointing along +x, symmetric about that axis; ``scale`` device
+    pixels are one of its own. ``turns`` is a multiple of eight.
     """
     quarter, half = turns // 4, turns // 2
     cells = np.empty((turns, side, side), dtype=np.uint32)
@@ -63,7 +63,7 @@ def turned(draw: Draw, side: int, scale: float, turns: int) -> Cells:
 
 
 def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
-    """Return (side, side) pixels with the drawing around their middle, turned clockwise."""
+    """Return (side, side) pixels with the drawing centred, turned clockwise."""
     image = QImage(side, side, FORMAT)
     image.fill(0)
     with painting(image) as painter:
@@ -76,40 +76,40 @@ def drawn(draw: Draw, side: int, scale: float, degrees: float = 0.0) -> Cells:
 
 
 def pixels_of(image: QImage) -> Cells:
-    """Return (height, width) pixels of an image with 32 bits for each."""
+    """Return (height, width) pixels of an image with 32 bits each."""
     bits = image.constBits()
     bits.setsize(image.sizeInBytes())
     return np.frombuffer(bits, dtype=np.uint32).reshape(image.height(), image.width()).copy()
 
 
 def in_a_column(cells: Sequence[Cells]) -> QPixmap:
-    """Return (height, width) pixels each as one picture, from the top down: a cell's are near in memory."""
+    """Return cells of (height, width) pixels as one image, from the top down: contiguous in memory."""
     width = max(cell.shape[1] for cell in cells)
     column = np.zeros((sum(map(len, cells)), width), dtype=np.uint32)
     for bottom, cell in zip(accumulate(map(len, cells)), cells, strict=True):
         column[bottom - len(cell) : bottom, : cell.shape[1]] = cell
-    # A picture of its own: the image only looks at the array.
+    # A copy: the image only refers to the array.
     return QPixmap.fromImage(QImage(column.data, width, len(column), width * 4, FORMAT).copy())
 
 
 def trimmed(cell: Cells) -> tuple[slice, slice]:
-    """Return the lines and the columns of (side, side) pixels in which something is drawn, at least one."""
+    """Return the lines and the columns of (side, side) pixels that are inked, at least one."""
     drawn_on = [np.flatnonzero(cell.any(axis=axis)) for axis in (1, 0)]
     lines, columns = (slice(at[0], at[-1] + 1) if len(at) else slice(0, 1) for at in drawn_on)
     return lines, columns
 
 
 HEADINGS = 88
-"""Directions that robots are drawn in; between them nobody sees a difference."""
+"""Directions in which robots are drawn; finer steps would not be visible."""
 MARK_SIZE = 1.5625
-"""In cells."""
+"""Size in cells."""
 RING, OTHER_RING, TARGET, CONE_TARGET = range(4)
 _MARKS = ((18.0, SELECTED, 3.0), (16.0, SELECTED, 1.6), (4.0, PAPER, 2.2), (4.0, PAPER, 2.2))
 """Radius, colour and width of each mark's circle."""
 
 
 def cell(pixel_ratio: float, size: float = 1.0) -> int:
-    """Return the device pixels along a side of the square that a robot of ``size`` fits in."""
+    """Return the side in device pixels of the square that holds a robot of ``size``."""
     return round(CELL * size * pixel_ratio)
 
 
@@ -117,8 +117,8 @@ def robot_atlas(pixel_ratio: float, size: float, state: RobotState, *, unsure: b
     """Return a robot in ``state`` in cells of :func:`cell` device pixels; ``unsure`` as one that may be
     elsewhere.
 
-    In cell k it points k / :data:`HEADINGS` of a turn clockwise from +x; in the last one its heading is not
-    known. ``size`` 1 is the drawing as it is.
+    In cell k it points k / :data:`HEADINGS` of a turn clockwise from +x; in the last one its heading is
+    unknown. ``size`` 1 is the drawing's own size.
     """
     side = cell(pixel_ratio, size)
     scale = side / CELL
@@ -132,7 +132,7 @@ def robot_atlas(pixel_ratio: float, size: float, state: RobotState, *, unsure: b
 
 
 def mark_atlas(pixel_ratio: float, size: float = 1.0) -> Cells:
-    """Return the marks, a cell each: the ring of the selected robot that commands go to, that of others
+    """Return the marks, a cell each: the ring of the selected robot that receives commands, that of others
     selected with it, a target, and a cone target, both with their spot in the middle."""
     side = cell(pixel_ratio, MARK_SIZE * size)
     scale = side / (CELL * MARK_SIZE)
@@ -158,7 +158,7 @@ FIELDS = 10
 
 
 class Fragments:
-    """Parts of one picture, painted many at once; ``ratio`` device pixels are a logical one."""
+    """Parts of one image, painted many at once; ``ratio`` device pixels are a logical one."""
 
     def __init__(self, ratio: float) -> None:
         self.scale = 1.0 / ratio
@@ -169,13 +169,13 @@ class Fragments:
     def table(self, count: int) -> npt.NDArray[np.float64]:
         """Return the table of the parts to paint, (``count``, :data:`FIELDS`), with scale and opacity."""
         self._provide(count)
-        # What was painted before and is no more must not show: a size of nothing hides it.
+        # Parts painted before and gone now must not show: a size of zero hides them.
         self._table[count : self._painted, 4:6] = 0.0
         self._painted = count
         return self._table[:count]
 
     def paint(self, painter: QPainter, picture: QPixmap) -> None:
-        """Paint what was filled in out of ``picture``."""
+        """Paint the filled-in parts out of ``picture``."""
         painter.drawPixmapFragments(self._fragments, picture)
 
     def _provide(self, count: int) -> None:
@@ -192,10 +192,10 @@ class Fragments:
 
 
 class Sprites:
-    """Drawings out of one picture, ``ratio`` device pixels a logical one.
+    """Drawings out of one image, ``ratio`` device pixels a logical one.
 
-    ``atlases`` are (n, side, side) device pixels each; cells are counted through all of them. Of each no more
-    is kept, and painted, than what is drawn on.
+    ``atlases`` are (n, side, side) device pixels each; cells are numbered through all of them. Only the inked
+    part of each is kept, and painted.
     """
 
     def __init__(self, atlases: Sequence[Cells], ratio: float) -> None:
@@ -210,7 +210,7 @@ class Sprites:
         down = np.array([lines.start for lines, _ in parts]) + height / 2
         bottom = np.cumsum(height)
         self._cells = np.zeros((len(kept), FIELDS))
-        """Of each what a fragment says of it; its place is that of the middle of what is drawn as seen from
+        """The fragment's values of each cell; its position is that of the middle of the inked part from
         the left and upper border, in logical pixels."""
         places = across / ratio, down / ratio, np.zeros(len(kept)), bottom - height, width, height
         self._cells[:, :6] = np.column_stack(places)
@@ -228,7 +228,7 @@ class Sprites:
         """Paint ``cell``, (n,), around each ``centre``, (n, 2) logical pixels."""
         if len(centre) == 0:
             return
-        # All cells are there: to have numpy check that would copy the whole table once more.
+        # All cells exist: numpy's check would copy the whole table once more.
         table = self._fragments.table(len(centre))
         np.take(self._cells, cell, axis=0, out=table, mode="clip")
         half = self._half.take(cell)
@@ -244,29 +244,29 @@ class Sprites:
 # --- The robots on one screen ---
 
 SIZES = ((150, 1.0), (1500, 0.7), (np.inf, 0.46))
-"""Up to how many robots on the screen each is drawn in which size."""
+"""Up to which number of robots on the screen each is drawn in which size."""
 NOTICEABLE = 0.7
-"""No robot that needs to be noticed, because it is not fresh, is drawn smaller."""
+"""Least size of a robot that needs attention, because it is not fresh."""
 VELOCITY_SECONDS = 2.0
-"""A robot's line leads to where it will be after so long."""
+"""Seconds of driving that a robot's velocity line represents."""
 NOSE = 15.5
-"""Pixels that a robot drawn in full size reaches forward."""
+"""Pixels from the middle to the tip of a robot drawn in full size."""
 SHORTEST_VELOCITY = 4.0
-"""Pixels beyond the nose."""
+"""Pixels beyond the tip."""
 MOST_VELOCITIES = 1500
 FINE_VELOCITIES = 300
-"""With more of them the lines are thin: smooth ones would take half of the frame."""
+"""With more of them the lines are thin: antialiased ones would take half of the frame."""
 CORNERS = 32
 SMALLEST_CIRCLE = 12.0
 MOST_CIRCLES = 300
 _FRESH, _STALE, _LOST, _OFFLINE = range(len(STATES))
 _UPWARDS = (_OFFLINE, _FRESH, UNSURE, _STALE, _LOST)
-"""In which order robots are painted, the selected ones last: what needs to be noticed lies on top."""
+"""The order in which robots are painted, selected ones last: those that need attention are on top."""
 _LAYER = np.argsort(_UPWARDS).astype(np.uint16)
-"""The place of each look in that order."""
+"""The place of each display state in that order."""
 STRIP = 16
 STRIPS = 4096
-"""Pixels of a strip of the screen, and more strips than any screen has."""
+"""Height in pixels of a strip of the screen, and more strips than any screen has."""
 _TURNS = np.arange(HEADINGS + 1) % HEADINGS
 _CIRCLE = np.column_stack([f(np.arange(CORNERS) * 2 * np.pi / CORNERS) for f in (np.cos, np.sin)])
 
@@ -276,18 +276,18 @@ class RobotsPainter:
 
     def __init__(self) -> None:
         self._drawings: dict[tuple[float, int], Cells] = {}
-        """Of a size and a look; in the order in which they stand in :attr:`_sprites`."""
+        """By size and display state; in the order of :attr:`_sprites`."""
         self._sprites: Sprites | None = None
         self._marks: dict[float, Sprites] = {}
         self._made_for = 0.0, 0.0
-        """The pixel ratio and the magnification that the drawings are for: of others none is kept."""
+        """The pixel ratio and the magnification of the drawings: those for others are dropped."""
         self.magnification = 1.0
-        """How many times as large as they come robots are drawn."""
+        """The factor by which robots are magnified."""
         self.arrows = True
         """Whether the robots themselves are painted; their rings always are."""
 
     def set_magnification(self, times: float) -> None:
-        """Draw robots so many times as large as they come."""
+        """Draw robots magnified by this factor."""
         self.magnification = times
 
     def draw_arrows(self, on: bool) -> None:
@@ -306,7 +306,7 @@ class RobotsPainter:
         return self._marks[size]
 
     def prepare(self, placed: MapScene, view: InView, screen: Screen) -> None:
-        """Make the drawings that are missing for :meth:`paint`: that takes as long as all else in it."""
+        """Make the drawings that :meth:`paint` needs: that takes as long as all else in it."""
         self.marks(screen.ratio, self.magnification)
         size = _size(view)
         looks = np.bincount(placed.scene.robots.shown_as.take(view.rows))
@@ -320,7 +320,7 @@ class RobotsPainter:
         view: InView,
         screen: Screen,
     ) -> None:
-        """Paint those that are in view."""
+        """Paint the robots in view."""
         marks = self.marks(screen.ratio, self.magnification)
         robots, scene = placed.scene.robots, placed.scene
         size = _size(view)
@@ -347,7 +347,7 @@ class RobotsPainter:
         layer: npt.NDArray[np.uint16],
         size: float,
     ) -> None:
-        """Paint one of the ``cells`` of its drawing at each ``at``, layer upon layer."""
+        """Paint one of the ``cells`` of its drawing at each ``at``, layer by layer."""
         shown = {k: _drawing(k, size) for k in np.flatnonzero(np.bincount(layer)).tolist()}
         if not shown:
             return
@@ -360,7 +360,7 @@ class RobotsPainter:
         self._sprites.paint(painter, at.take(order, axis=0), cells.take(order))
 
     def _provide(self, drawings: set[tuple[float, int]]) -> None:
-        """Have what robots of a size and a look are like, drawn when the first of them is seen."""
+        """Have the drawings of robots of a size and a display state, made on first use."""
         missing = drawings - self._drawings.keys()
         if not missing:
             return
@@ -374,46 +374,46 @@ class RobotsPainter:
 
 
 def _size(view: InView) -> float:
-    """Return the size in which robots are drawn where so many are in view."""
+    """Return the size in which robots are drawn for this number in view."""
     return next(size for most, size in SIZES if len(view.rows) <= most)
 
 
 def _worth(look: int, size: float) -> float:
-    """Return the size of robots of a look where those that are as they should be are drawn in ``size``."""
+    """Return the size of robots of a display state where normal ones are drawn in ``size``."""
     return size if look == _FRESH else max(size, NOTICEABLE)
 
 
 def _drawing(layer: int, size: float) -> tuple[float, int]:
-    """Return the size and the look of the robots in a layer where most are drawn in ``size``."""
+    """Return size and display state of the robots in a layer where most are drawn in ``size``."""
     is_chosen, place = divmod(layer, len(_UPWARDS))
     look = _UPWARDS[place]
     return (1.0 if is_chosen else _worth(look, size)), look
 
 
 def _directions(heading: npt.NDArray[np.float32]) -> Rows:
-    """Return which of the :data:`HEADINGS` is each ``heading``, (n,) radians clockwise from +x."""
+    """Return the index among :data:`HEADINGS` of each ``heading``, (n,) radians clockwise from +x."""
     turns = np.rint(heading * np.float32(HEADINGS / (2 * np.pi)))
-    # numpy takes several times as long for %, and for whole numbers of 64 bits.
+    # numpy takes several times as long for %, and for integers of 64 bits.
     turns -= np.floor(turns * np.float32(1.0 / HEADINGS)) * np.float32(HEADINGS)
     return _TURNS.take(turns.astype(np.intp))
 
 
 def _from_the_top(layer: npt.NDArray[np.uint16], y: npt.NDArray[np.float64]) -> Rows:
-    """Return in which order to paint: layer after layer, each from the top of the screen to its bottom.
+    """Return the painting order: layer by layer, each from the top of the screen to its bottom.
 
-    Ten thousand robots painted here and there take half as long again: a screen's lines lie apart in memory.
-    Within a strip they keep their order, so that those that overlap do not change places all the time.
+    Ten thousand robots painted in random order take half as long again: a screen's lines are apart in memory.
+    Within a strip they keep their order, so that overlapping ones do not flicker.
     """
-    # What reaches in from above is less than a strip off the screen: cut off, that is the first one.
+    # A robot that reaches in from above is less than a strip off the screen: clipped, that is the first one.
     strip = (y * (1 / STRIP)).astype(np.uint16)
     # numpy sorts numbers of 16 bits in a fifth of the time.
     return np.argsort(layer * np.uint16(STRIPS) + strip, kind="stable")
 
 
 def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
-    """Return the rows of robots whose accuracy is known and can be seen, with (m, 2) corners on the map."""
+    """Return the rows of robots with a known accuracy large enough to see, with (m, 2) corners on the map."""
     robots = placed.scene.robots
-    # What is NaN compares false.
+    # NaN compares false.
     wide = view.rows[robots.accuracy.take(view.rows) * view.scale > SMALLEST_CIRCLE]
     if len(wide) > MOST_CIRCLES:
         wide = wide[np.argsort(-robots.accuracy[wide])[:MOST_CIRCLES]]
@@ -427,7 +427,7 @@ def circles(placed: MapScene, view: InView) -> list[tuple[int, Points]]:
 def paint_circles(
     painter: QPainter, found: list[tuple[int, Points]], placed: MapScene, screen: Screen
 ) -> None:
-    """Paint what :func:`circles` found: the robot is somewhere inside."""
+    """Paint the circles of :func:`circles`: the robot is somewhere inside."""
     for row, corners in found:
         look = placed.scene.robots.shown_as[row]
         colour = QColor(UNSURE_COLOUR if look == UNSURE else STATE_COLOURS[STATES[look]])
@@ -449,11 +449,11 @@ def _velocities(
     known: npt.NDArray[np.bool_],
     shortest: float,
 ) -> None:
-    """Draw a line from each robot to where it will be soon, unless that is less than ``shortest`` pixels.
+    """Draw a line from each robot to its expected position, unless that is less than ``shortest`` pixels.
 
-    ``speed`` is in metres a second, ``known`` whether there is a heading.
+    ``speed`` is in metres per second, ``known`` whether there is a heading.
     """
-    # What is NaN compares false.
+    # NaN compares false.
     long = np.flatnonzero(np.abs(speed) * view.scale > shortest / VELOCITY_SECONDS)
     long = long[known[long]]
     if len(long) == 0 or len(long) > MOST_VELOCITIES:

@@ -1,4 +1,4 @@
-"""Scene of all that is live: in the site frame, in the CRS of the map, and on the screen."""
+"""Scene of all live objects: in the site frame, in the CRS of the map, and on the screen."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ Points = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Screen:
-    """What of the map is seen, and how: two are equal when they show the same.
+    """The visible part of the map and its display: two are equal when they show the same.
 
     ``centre`` is in map coordinates; ``at`` is its place in logical pixels; ``right`` and ``up`` are the
-    pixels that one map unit along x and along y makes. ``width`` and ``height`` are logical pixels,
+    pixels of one map unit along x and along y. ``width`` and ``height`` are logical pixels,
     ``ratio`` device pixels for each.
     """
 
@@ -53,17 +53,17 @@ class Screen:
         return pixels
 
     def ways(self, xy: Points) -> Points:
-        """Return (n, 2) ways in map units as ways in logical pixels."""
+        """Return (n, 2) vectors in map units as vectors in logical pixels."""
         return xy @ self._axes
 
     def seen(self, pixels: Points, margin: float) -> npt.NDArray[np.bool_]:
-        """Tell which of (n, 2) ``pixels`` are on the screen, or no farther than ``margin`` off it."""
+        """Return which of (n, 2) ``pixels`` are on the screen, or no farther than ``margin`` off it."""
         x, y = pixels[:, 0], pixels[:, 1]
         return (x > -margin) & (x < self.width + margin) & (y > -margin) & (y < self.height + margin)
 
     def since(self, earlier: Screen) -> QTransform:
-        """Return what takes pixels of ``earlier`` to those of this screen, both without rounding."""
-        # Not by numpy's solver: on a busy machine that takes milliseconds now and then, in a frame.
+        """Return the transform from pixels of ``earlier`` to those of this screen, both without rounding."""
+        # Not by numpy's solver: on a busy machine that occasionally takes milliseconds, in a frame.
         (rx, ry), (ux, uy) = earlier.right, earlier.up
         scale = 1.0 / (rx * uy - ry * ux)
         to_map = QTransform(uy * scale, -ry * scale, -ux * scale, rx * scale, 0.0, 0.0)
@@ -84,7 +84,7 @@ class Screen:
 
 
 def screen_of(canvas: QgsMapCanvas, item: QgsMapCanvasItem, ratio: float) -> Screen:
-    """Return the screen that ``canvas`` is now, panning and rotation included."""
+    """Return the present screen of ``canvas``, panning and rotation included."""
     centre = canvas.center()
     at = item.toCanvasCoordinates(centre)
     axes = canvas.getCoordinateTransform().transform()
@@ -101,7 +101,7 @@ def screen_of(canvas: QgsMapCanvas, item: QgsMapCanvasItem, ratio: float) -> Scr
 
 
 def screen_image(screen: Screen, paint: Callable[[QPainter], None]) -> QImage:
-    """Return a clear image as large as ``screen`` with what ``paint`` paints there, in logical pixels."""
+    """Return a transparent image as large as ``screen`` painted on by ``paint``, in logical pixels."""
     width, height = round(screen.width * screen.ratio), round(screen.height * screen.ratio)
     image = QImage(width, height, QImage.Format.Format_ARGB32_Premultiplied)
     image.setDevicePixelRatio(screen.ratio)
@@ -112,15 +112,15 @@ def screen_image(screen: Screen, paint: Callable[[QPainter], None]) -> QImage:
 
 
 INSIDE = 0.5
-"""The part of the view, about its middle, in which a robot moves before the view moves."""
+"""Fraction of the view, about its middle, in which a robot moves before the view moves."""
 INSIDE_ALL = 0.96
-"""The same where several are followed, who need their room."""
+"""The same where several are followed, which need room."""
 AROUND = 1.25
-"""How much more than the robots is shown when the view has to grow."""
+"""Factor by which the view is larger than the robots' extent when it has to grow."""
 
 
 class FollowMode(Enum):
-    """Who is followed."""
+    """The robots that are followed."""
 
     NOBODY = "nobody"
     SELECTED = "selected"
@@ -128,7 +128,7 @@ class FollowMode(Enum):
 
 
 def keep_in_view(canvas: QgsMapCanvas, screen: Screen, places: Points) -> bool:
-    """Move the view where a robot leaves it, widen it where they do not all fit; tell whether it moved.
+    """Move the view where a robot leaves it, widen it where they do not all fit; return whether it moved.
 
     ``places`` (n, 2) are map coordinates; ``screen`` is what ``canvas`` shows now.
     """
@@ -150,9 +150,9 @@ def keep_in_view(canvas: QgsMapCanvas, screen: Screen, places: Points) -> bool:
 
 
 def show_places(canvas: QgsMapCanvas, places: Points) -> None:
-    """Show the smallest part of the map that has all of (n, 2) map coordinates, however it is rotated."""
+    """Show the smallest part of the map that contains all of (n, 2) map coordinates, at any rotation."""
     middle, half = _box(canvas, places)
-    # QGIS takes an extent for that of the map before it is rotated about its middle.
+    # QGIS takes an extent as that of the map before it is rotated about its middle.
     canvas.setExtent(QgsRectangle(*(middle - half).tolist(), *(middle + half).tolist()))
     canvas.refresh()
 
@@ -168,15 +168,15 @@ def _box(canvas: QgsMapCanvas, places: Points) -> tuple[Points, Points]:
 
 
 BACK = 5.0
-"""Metres by which a robot may seem to go back on its way: where a way crosses itself, it went on."""
+"""Metres by which a robot may seem to go back on its way: where a way crosses itself, it has gone on."""
 
 
 @dataclass(frozen=True, eq=False)
 class TaskPath:
     """One robot's task: (n, 2) ``points`` in metres of the site frame, the last one the target.
 
-    A target without a way has one point. What is computed along a way is so when it is first asked for: of
-    many plans only those of selected robots are.
+    A target without a way has one point. Derived values are computed on first use: of many plans
+    only for those of selected robots.
     """
 
     command: str
@@ -186,17 +186,17 @@ class TaskPath:
 
     @property
     def is_way(self) -> bool:
-        """Whether the robot was told which way to go."""
+        """Whether the robot was sent a path."""
         return len(self.points) > 1
 
     @cached_property
     def steps(self) -> Points:
-        """The way from each point to the next, (n - 1, 2)."""
+        """Vector from each point to the next, (n - 1, 2)."""
         return np.diff(self.points, axis=0)
 
     @cached_property
     def lengths(self) -> Points:
-        """Metres of each step, (n - 1,), more than nothing."""
+        """Metres of each step, (n - 1,), more than zero."""
         return np.maximum(np.hypot(*self.steps.T), 1e-9)
 
     @cached_property
@@ -206,7 +206,7 @@ class TaskPath:
 
 
 class TaskPaths:
-    """Makes the plans of commands once each, and follows the robots along them."""
+    """Makes the plans of commands once each, and tracks the robots along them."""
 
     def __init__(self) -> None:
         self._tasks: list[CommandReport] = []
@@ -214,14 +214,14 @@ class TaskPaths:
         self._known: dict[str, TaskPath | None] = {}
         self._driven: dict[str, float] = {}
         self._ways: dict[str, PathApproach] = {}
-        """How robots come to the first points of their ways."""
+        """The approaches of robots to the first points of their ways."""
         self.is_whole = True
-        """Whether every plan that was asked for last is made."""
+        """Whether every plan that was requested last is made."""
 
     def of(self, tasks: Iterable[CommandReport], at_once: int | None = None) -> list[TaskPath]:
-        """Return the plans of ``tasks`` that say a place, in one list for as long as they are the same.
+        """Return the plans of ``tasks`` that have a place, in one list for as long as they are the same.
 
-        At most ``at_once`` new ones are made, and the others when it is called again.
+        At most ``at_once`` new ones are made, and the others by further calls.
         """
         tasks = list(tasks)
         if tasks == self._tasks and self.is_whole:
@@ -237,9 +237,9 @@ class TaskPaths:
         return self._plans
 
     def remaining(self, plan: TaskPath, at: Points) -> float:
-        """Return the metres that a robot at (2,) ``at`` still has to go, along its way if it has one.
+        """Return the remaining metres of a robot at (2,) ``at``, along its way if it has one.
 
-        Before it has come to its way it goes to the first point of that.
+        Before it has come to its way it drives to the first point of that.
         """
         if not plan.is_way:
             return float(np.hypot(*(plan.points[-1] - at)))
@@ -259,9 +259,9 @@ class TaskPaths:
 
 
 def _first_near(away: Points) -> int:
-    """Return the step on which a robot has come to its way, by how far ``away`` it is from each.
+    """Return the step at which a robot has come to its way, from its distance ``away`` from each.
 
-    That is the earliest where a way ends as it begins, or crosses itself.
+    That is the earliest where a way ends at its beginning, or crosses itself.
     """
     near = away <= max(ON_PATH_M, float(away.min()))
     begin = int(near.argmax())
@@ -271,7 +271,7 @@ def _first_near(away: Points) -> int:
 
 
 def _near_ahead(away: Points, along: Points, driven: float) -> int:
-    """Return the step that a robot is on which has ``driven`` so many metres of its way."""
+    """Return the current step of a robot that has ``driven`` so many metres of its way."""
     ahead = along >= driven - BACK
     return int(np.where(ahead, away, np.inf).argmin() if ahead.any() else away.argmin())
 
@@ -295,10 +295,10 @@ _NOWHERE: Points = np.empty((0, 2))
 
 @dataclass(frozen=True)
 class SiteScene:
-    """Everything live, in the site frame, at ``now`` of the desk's clock.
+    """All live objects, in the site frame, at ``now`` of the desk's clock.
 
-    ``chosen`` are the selected robots, the one that commands go to last. ``remaining`` has for commands
-    the metres still to go.
+    ``chosen`` are the selected robots, the one that receives commands last. ``remaining`` has the
+    metres left for commands.
     """
 
     robots: RobotArrays
@@ -311,16 +311,16 @@ class SiteScene:
     fleet: FleetView | None = None
     """The whole fleet, where the robots are those in view."""
     rows: dict[str, int] = field(default_factory=dict)
-    """The rows of the robots that draft and selection name, and of those with a distance in ``remaining``."""
+    """The rows of the robots of draft and selection, and of those with a distance in ``remaining``."""
 
 
 @dataclass(frozen=True)
 class MapScene:
-    """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the way to 1 m before each
+    """The same in the map's CRS: (n, 2) coordinates for each part; ``metre`` is the vector to 1 m before each
     robot, or along the site's x of one whose heading is not known. It is empty where the axes of
-    ``transform``, which places more, tell it.
+    ``transform``, which places other things, give it.
 
-    Robots without a place have NaN.
+    Robots without a position have NaN.
     """
 
     scene: SiteScene
@@ -340,7 +340,7 @@ class SceneTransformer:
         self._plans: dict[TaskPath, Points] = {}
         self._of: list[TaskPath] | None = None
         self._ways: list[Points] = []
-        """Where the plans lead, of those in the list of the scene before."""
+        """The placed plans of the list in the previous scene."""
         self._outline: object = None
         self._draft = _NOWHERE
 
@@ -357,7 +357,7 @@ class SceneTransformer:
         is_known = outline is self._outline
         robots = scene.robots
         there = np.flatnonzero(np.isfinite(robots.xy[:, 0]) & np.isfinite(robots.xy[:, 1]))
-        # To take rows with [] instead takes numpy ten times as long.
+        # Taking rows with [] takes numpy ten times as long.
         known_places = robots.xy if len(there) == len(robots.xy) else robots.xy.take(there, axis=0)
         is_uneven = transform.axes is None
         parts = [
@@ -386,8 +386,8 @@ class SceneTransformer:
 
 
 def _forward(theta: npt.NDArray[np.float64]) -> Points:
-    """Return the way of 1 m in each heading, along x where it is not known."""
-    # Floats of half the size are exact enough for a heading; numpy is ten times as fast with them.
+    """Return the vector of 1 m in each heading, along x where it is not known."""
+    # Floats of half the size are precise enough for a heading; numpy is ten times as fast with them.
     turn = theta.astype(np.float32)
     turn[np.isnan(turn)] = 0.0
     way = np.empty((len(turn), 2))
@@ -396,7 +396,7 @@ def _forward(theta: npt.NDArray[np.float64]) -> Points:
 
 
 def _parted(whole: Points, parts: list[Points]) -> list[Points]:
-    """Return ``whole`` in pieces that are as long as ``parts``."""
+    """Return ``whole`` split into pieces with the lengths of ``parts``."""
     ends = accumulate(len(part) for part in parts)
     return [whole[end - len(part) : end] for end, part in zip(ends, parts, strict=True)]
 
@@ -416,16 +416,16 @@ def _points(points: Sequence[Point]) -> Points:
 Rows = npt.NDArray[np.intp]
 
 BESIDE = 12.0
-"""Pixels beyond the border at which a robot still reaches in."""
+"""Pixels beyond the border at which a robot is still partly visible."""
 
 
 @dataclass(frozen=True)
 class InView:
     """The robots of a scene on one screen, in logical pixels.
 
-    ``pixels`` (n, 2) is where each robot is, NaN where not known; ``rows`` (m,) are those that are seen.
-    Of these ``there`` (m, 2) is the place, ``heading`` (m,) radians clockwise from +x, and ``scale`` how many
-    pixels a metre has there, (m,) or the same for all. Where no heading is known it is that of the site's x.
+    ``pixels`` (n, 2) is each robot's position, NaN where not known; ``rows`` (m,) are the visible ones.
+    Of these ``there`` (m, 2) is the position, ``heading`` (m,) radians clockwise from +x, and ``scale`` the
+    pixels per metre there, (m,) or the same for all. An unknown heading is that of the site's x.
     """
 
     pixels: Points
@@ -436,19 +436,19 @@ class InView:
 
 
 def in_view(placed: MapScene, screen: Screen) -> InView:
-    """Return the robots of ``placed`` as they are on ``screen``."""
+    """Return the robots of ``placed`` that are visible on ``screen``."""
     pixels = screen.pixels(placed.robots)
     rows = np.flatnonzero(screen.seen(pixels, BESIDE))
-    # To take rows with [] instead takes numpy ten times as long.
+    # Taking rows with [] takes numpy ten times as long.
     there = pixels.take(rows, axis=0)
     axes = placed.transform.axes
     if axes is None:
         x, y = screen.ways(placed.metre.take(rows, axis=0)).T
-        # Floats of half the size are exact enough, and numpy is several times as fast with them. To take
+        # Floats of half the size are precise enough, and numpy is several times as fast with them.
         # np.hypot, safe from overflow, takes five times as long.
         heading = np.arctan2(y.astype(np.float32), x.astype(np.float32))
         return InView(pixels, rows, there, heading, np.sqrt(x * x + y * y))
-    # A canvas has one scale, and a site's axes are turned only: what holds for its x holds in each direction.
+    # A canvas has one scale, and a site's axes are only rotated: the scale along its x holds everywhere.
     (x, y), (to_x, to_y) = screen.ways(axes).tolist()
     turned = math.copysign(1.0, x * to_y - y * to_x)
     theta = placed.scene.robots.theta.take(rows).astype(np.float32)

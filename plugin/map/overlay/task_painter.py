@@ -1,4 +1,4 @@
-"""Painters of what robots are to do: the paths of commands, the pending command, and queues."""
+"""Painters of robots' tasks: the paths of commands, the pending command, and queues."""
 
 from __future__ import annotations
 
@@ -45,17 +45,17 @@ clicks get no rings.
 """
 Points = npt.NDArray[np.float64]
 Marks = Callable[[float, float], Sprites]
-"""Gives the marks of a pixel ratio and a size."""
+"""Returns the marks for a pixel ratio and a size."""
 SMALL = 0.5
 FILL_SECONDS = 0.003
-"""What painting ways may take of one frame."""
+"""Time limit for painting ways in one frame."""
 
 
 class PathsImage:
     """Shows a sheet of ways, moved along with the view, until the next one is filled.
 
-    Of a thousand robots some have new ways in every frame, and to paint all of them takes several frames. So
-    each sheet is filled to its end, and shows what was so when it was begun.
+    Of a thousand robots some have new ways in every frame, and painting all of them takes several frames. So
+    each sheet is filled completely, and shows the state at its beginning.
     """
 
     def __init__(self) -> None:
@@ -66,10 +66,10 @@ class PathsImage:
         self._shown: _PathsSheet | None = None
         self._next: _PathsSheet | None = None
         self.is_whole = True
-        """Whether nothing is left to be painted by more frames."""
+        """Whether everything is painted, so that no more frames are needed."""
 
     def prepare(self, placed: MapScene, screen: Screen) -> None:
-        """Paint some more of the ways into what is shown of them on ``screen``."""
+        """Paint some more of the ways visible on ``screen`` into the sheet."""
         if self._next is not None and self._next.transform is not placed.transform:
             self.forget()
         if self._next is None or (self._next.is_full and not self._next.is_of(placed, screen)):
@@ -80,7 +80,7 @@ class PathsImage:
             self._shown = self._next
 
     def paint(self, painter: QPainter, screen: Screen) -> None:
-        """Show what was prepared, where it is on ``screen``."""
+        """Show the prepared image at its place on ``screen``."""
         if self._shown is None or self._shown.image is None:
             return
         painter.save()
@@ -91,7 +91,7 @@ class PathsImage:
 
 
 class _PathsSheet:
-    """The ways of ``placed`` as ``screen`` shows them; made empty and filled bit by bit."""
+    """The ways of ``placed`` as visible on ``screen``; created empty and filled bit by bit."""
 
     def __init__(self, placed: MapScene, screen: Screen) -> None:
         self.screen = screen
@@ -109,7 +109,7 @@ class _PathsSheet:
         return not self._left
 
     def is_of(self, placed: MapScene, screen: Screen) -> bool:
-        """Tell whether it shows the plans of ``placed`` on this screen."""
+        """Return whether it shows the plans of ``placed`` on this screen."""
         return self._plans is placed.plans and self.screen == screen
 
     def fill(self) -> None:
@@ -131,13 +131,13 @@ class _PathsSheet:
 
 
 class PathsPainter:
-    """Keeps what changes only with the plans."""
+    """Caches everything that changes only with the plans."""
 
     def __init__(self, labels: Labels) -> None:
         self._labels = labels
         self._ways = PathsImage()
         self._of: list[Points] | None = None
-        """The plans, as they are placed, that these are of:"""
+        """The placed plans that the cache is for:"""
         self._ends = np.empty((0, 2))
         self._kinds = np.empty(0, dtype=np.intp)
         self.distances: list[tuple[float, float]] = []
@@ -145,11 +145,11 @@ class PathsPainter:
 
     @property
     def is_whole(self) -> bool:
-        """Whether nothing is left to be painted by more frames."""
+        """Whether everything is painted, so that no more frames are needed."""
         return self._ways.is_whole
 
     def prepare(self, placed: MapScene, screen: Screen, marks: Marks) -> None:
-        """Make what :meth:`paint` only puts there: in one piece both would hold up the window."""
+        """Prepare everything for :meth:`paint`: doing both at once would block the window."""
         plans = placed.scene.plans
         if not plans:
             self._ways.forget()
@@ -164,7 +164,7 @@ class PathsPainter:
     def paint(
         self, painter: QPainter, placed: MapScene, pixels: Points, screen: Screen, marks: Marks
     ) -> None:
-        """Paint every plan that was prepared; ``pixels`` (n, 2) is where each robot is."""
+        """Paint every plan that was prepared; ``pixels`` (n, 2) is each robot's position."""
         plans = placed.scene.plans
         self.distances = []
         if not plans:
@@ -212,7 +212,7 @@ def _of_chosen(placed: MapScene) -> list[int]:
 def _lines_to_targets(
     painter: QPainter, placed: MapScene, shown: Sequence[int], pixels: Points, targets: Points
 ) -> None:
-    """Paint broken lines from robots at ``pixels`` to ``targets`` to which no way leads."""
+    """Paint broken lines from robots at ``pixels`` to ``targets`` that have no way."""
     scene = placed.scene
     there = [k for k in shown if not scene.plans[k].is_way and scene.plans[k].robot in scene.rows]
     start = pixels[[scene.rows[scene.plans[k].robot] for k in there]]
@@ -225,7 +225,7 @@ MANY_LEGS, FAR_PX = 2000, 10000.0
 
 
 class PendingCommandPainter:
-    """Keeps an image of a large draft: to stroke a thousand legs again for each frame takes seconds."""
+    """Caches an image of a large draft: stroking a thousand legs again for each frame takes seconds."""
 
     def __init__(self) -> None:
         self._image: QImage | None = None
@@ -234,9 +234,9 @@ class PendingCommandPainter:
     def paint(
         self, painter: QPainter, placed: MapScene, robots: Points, screen: Screen, marks: Marks
     ) -> None:
-        """Paint the draft and the next leg to the mouse; ``robots`` (n, 2) is where each robot is, in pixels.
+        """Paint the draft and the next leg to the mouse; ``robots`` (n, 2) are robots' positions, in pixels.
 
-        ``marks`` gives the marks of a pixel ratio and a size.
+        ``marks`` returns the marks for a pixel ratio and a size.
         """
         draft = placed.scene.draft
         if draft is None:
@@ -305,7 +305,7 @@ def _drawn(points: Points, screen: Screen, colour: QColor, marks: Marks | None) 
 
 
 def _is_cheap(points: Points, screen: Screen) -> bool:
-    """Tell whether a route through (n, 2) pixels is painted soon: what is off the screen costs nothing."""
+    """Return whether a route through (n, 2) pixels is painted quickly: parts off the screen cost nothing."""
     low, high = np.minimum(points[:-1], points[1:]), np.maximum(points[:-1], points[1:])
     seen = (high > 0.0).all(axis=1) & (low < (screen.width, screen.height)).all(axis=1)
     length = np.hypot(*(high - low)[seen].T).sum()
@@ -313,9 +313,9 @@ def _is_cheap(points: Points, screen: Screen) -> bool:
 
 
 def _robot_of(draft: PendingCommand, placed: MapScene, robots: Points) -> Points:
-    """Return where the draft's robot is, (1, 2) pixels; (0, 2) where that is not known.
+    """Return the position of the draft's robot, (1, 2) pixels; (0, 2) where that is not known.
 
-    Nor while the way to a target is sought: a straight line would be taken for it.
+    Nor while the way to a target is sought: a straight line would be mistaken for it.
     """
     row = placed.scene.rows.get(draft.robot)
     if row is None or draft.way.kind is ApproachKind.SOUGHT or not np.isfinite(robots[row]).all():
@@ -353,11 +353,11 @@ def _paint_start(painter: QPainter, points: Points, colour: QColor) -> None:
 
 RADIUS = 9.0
 MOST_DOTTED = 60
-"""With more tasks the line between them is thin: dots on all of it would take longer than a frame."""
+"""With more tasks the line between them is thin: a dotted one would take longer than a frame."""
 MOST_NUMBERED = 200
-"""Tasks with a number; the line leads on through all."""
+"""Tasks with a number; the line continues through all."""
 BELOW_ROBOTS = 80
-"""Beneath the live picture, which lies at 90."""
+"""Beneath the live overlay, which is at 90."""
 INK = QColor(20, 24, 28)
 NOWHERE: Points = np.empty((0, 2))
 
@@ -371,7 +371,7 @@ class QueueMarks(QgsMapCanvasItem):
         super().__init__(desk.canvas)
         self._desk = desk
         self.places = NOWHERE
-        """Of the tasks in their order, (n, 2) in the map's CRS."""
+        """Places of the tasks in order, (n, 2) in the map's CRS."""
         self._image: QImage | None = None
         self._made_for: Screen | None = None
         self.setZValue(BELOW_ROBOTS)
@@ -382,7 +382,7 @@ class QueueMarks(QgsMapCanvasItem):
         desk.project.transformContextChanged.connect(self._place)
 
     def remove(self) -> None:
-        """Take it off the canvas."""
+        """Remove the item from the canvas."""
         self._desk.canvas.destinationCrsChanged.disconnect(self._place)
         self._desk.project.transformContextChanged.disconnect(self._place)
         if not sip.isdeleted(self._desk.canvas):
@@ -416,7 +416,7 @@ class QueueMarks(QgsMapCanvasItem):
             try:
                 self.places = self._desk.site_to_canvas.transform().to_map(np.array(points))
             except FleetError:
-                # The live picture says why nothing can be placed on this map.
+                # The live overlay reports why nothing can be placed on this map.
                 self.places = NOWHERE
         self.update()
 
@@ -437,7 +437,7 @@ def _paint(painter: QPainter, pixels: Points, screen: Screen) -> None:
     font.setBold(True)
     painter.setFont(font)
     numbered = pixels[:MOST_NUMBERED]
-    # The first on top: where several stand in one place it comes next.
+    # The first on top: where several are at one place it comes next.
     for number in np.flatnonzero(screen.seen(numbered, 2 * RADIUS))[::-1].tolist():
         _paint_number(painter, QPointF(*numbered[number].tolist()), number + 1)
 

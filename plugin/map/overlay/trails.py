@@ -1,4 +1,4 @@
-"""Trails: samples of where robots came from, and the image of them that follows the view."""
+"""Trails: samples of robots' past positions, and their image, which follows the view."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from .scene import Screen
 Points = npt.NDArray[np.float64]
 
 SHORTEST_STEP = 0.05
-"""Metres: a robot that stands adds nothing."""
+"""Metres: a standing robot adds no samples."""
 SHORTEST_WAIT = 0.4
 """Seconds between samples."""
 
 
 @dataclass(frozen=True)
 class TrailLength:
-    """How long trails are with so many robots: many long ones would hide the map."""
+    """Length of trails for up to this number of robots: many long ones would hide the map."""
 
     robots: float
     seconds: float
@@ -33,7 +33,7 @@ class TrailLength:
 
     @property
     def samples(self) -> int:
-        """How many samples that takes."""
+        """The number of samples for that length."""
         return int(self.seconds / SHORTEST_WAIT) + 2
 
 
@@ -45,17 +45,17 @@ LENGTHS = (
 
 
 class Trails:
-    """The last places of every robot in the site frame, with the time when each was seen.
+    """The last positions of every robot in the site frame, with their times.
 
-    One row a robot, as in :class:`~.gateway_client.robot_states.RobotArrays`; a ring of samples for each.
-    Samples taken at the same time stand side by side, as robots that tell of themselves together are sampled
+    One row per robot, as in :class:`~.gateway_client.robot_states.RobotArrays`; a ring of samples for each.
+    Samples taken at the same time are side by side, as robots that report together are sampled
     together.
     """
 
     def __init__(self) -> None:
         self.length = LENGTHS[0]
         self.generation = 0
-        """Counts how often something was forgotten, or trails got another length."""
+        """Counts how often something was forgotten, or the length of trails changed."""
         self._forget()
 
     def __len__(self) -> int:
@@ -63,7 +63,7 @@ class Trails:
 
     @property
     def taken(self) -> npt.NDArray[np.intp]:
-        """How many samples were taken of each robot so far."""
+        """The number of samples taken of each robot so far."""
         return self._taken.copy()
 
     def clear(self) -> None:
@@ -73,7 +73,7 @@ class Trails:
         self.generation += 1
 
     def drop(self, rows: npt.NDArray[np.intp]) -> None:
-        """Forget the trails of robots that are there no more; those below them move up."""
+        """Forget the trails of robots that no longer exist; those below them move up."""
         rows = rows[rows < len(self)]
         self._ring = np.delete(self._ring, rows, axis=1)
         self._taken = np.delete(self._taken, rows)
@@ -81,20 +81,20 @@ class Trails:
         self.generation += 1
 
     def extend(self, xy: Points, now: float) -> None:
-        """Take in where the robots are: (n, 2) metres in the site frame, NaN where not known."""
+        """Add the robots' positions: (n, 2) metres in the site frame, NaN where not known."""
         self._provide(len(xy))
         rows = self._due(xy, now)
         if len(rows) == 0:
             return
         samples = np.empty((len(rows), 3))
-        # To take rows with [] instead takes numpy ten times as long.
+        # Taking rows with [] takes numpy ten times as long.
         samples[:, :2], samples[:, 2] = xy.take(rows, axis=0), now
         self._last[rows], self._last_time[rows] = samples[:, :2], now
         self._ring[self._taken[rows] % len(self._ring), rows] = samples
         self._taken[rows] += 1
 
     def before(self, taken: npt.NDArray[np.intp]) -> Points:
-        """Return of the first robots the last of so many samples, (n, 3): x, y, time; NaN where gone."""
+        """Return for the first robots the last of ``taken`` samples, (n, 3): x, y, time; NaN where gone."""
         rows = np.arange(len(taken))
         sample = self._ring.reshape(-1, 3).take((taken - 1) % len(self._ring) * len(self) + rows, axis=0)
         sample[(taken < 1) | (taken <= self._taken[rows] - len(self._ring))] = np.nan
@@ -110,8 +110,8 @@ class Trails:
         return np.full((self.length.samples, robots, 3), np.nan)
 
     def _due(self, xy: Points, now: float) -> npt.NDArray[np.intp]:
-        """Return the rows of the robots that have gone on long enough after their last samples."""
-        # Of a robot without samples the last time is NaN, of which no comparison is true.
+        """Return the rows of the robots that have moved long enough after their last samples."""
+        # For a robot without samples the last time is NaN, which compares false.
         rows = np.flatnonzero(self._last_time <= now - SHORTEST_WAIT)
         if len(rows):
             away = np.abs(xy.take(rows, axis=0) - self._last.take(rows, axis=0))
@@ -124,12 +124,12 @@ class Trails:
     def _forget(self) -> None:
         self._ring = self._empty(0)
         self._taken = np.zeros(0, dtype=np.intp)
-        # Each one's newest sample again: to gather them out of the ring takes ten times as long.
+        # Each robot's newest sample again: gathering them from the ring takes ten times as long.
         self._last, self._last_time = np.empty((0, 2)), np.empty(0)
 
     def _provide(self, robots: int) -> None:
         length = next(length for length in LENGTHS if robots <= length.robots)
-        # They only grow shorter until all are forgotten: what was cut off does not come back.
+        # They only become shorter until all are forgotten: cut-off samples do not come back.
         if length.samples < self.length.samples:
             self._cut(length)
         missing = robots - len(self)
@@ -155,22 +155,22 @@ Shades = npt.NDArray[np.uint8]
 
 SHADES = 64
 FADED = SHADES - 1
-"""The last shade, of which nothing is seen."""
+"""The last shade, which is invisible."""
 BANDS = 16
-"""Frames after which the whole image has faded by as much as it has to: each does the same part of it."""
+"""Frames after which the whole image has been faded: each does the same fraction of it."""
 FILL_SECONDS = 0.003
-"""What filling may take of one frame."""
+"""Time limit for filling in one frame."""
 LONGEST_STEP = 4000
-"""Pixels: a longer step between two samples is a robot that was put elsewhere; no trail leads there."""
+"""Pixels: a longer step between two samples is a robot that was moved by hand; no trail is drawn."""
 MANY_SEEN = 0.15
-"""The part of the pixels with a trail from which on it is faster to colour all than to look for those."""
+"""Fraction of pixels with a trail above which it is faster to colour all than to search for those."""
 NEVER = -1e9
 
 
 class TrailSheet:
-    """The trails as ``screen`` shows them; ``transform`` takes metres of the site to map coordinates.
+    """The trails as visible on ``screen``; ``transform`` takes metres of the site to map coordinates.
 
-    It is made empty and filled from the newest to the oldest, over as many frames as that takes.
+    It is created empty and filled from the newest to the oldest, over as many frames as needed.
     """
 
     def __init__(self, trails: Trails, screen: Screen, transform: SiteToMapTransform, now: float) -> None:
@@ -193,14 +193,14 @@ class TrailSheet:
         self._taken = trails.taken
 
     def extend(self, pixels: Points, now: float) -> None:
-        """Draw on to (n, 2) ``pixels`` of its screen, where the robots are now, NaN where not known."""
+        """Extend the trails to (n, 2) ``pixels`` of its screen, robots' positions, NaN where not known."""
         here = pixels * self.screen.ratio
         if self._here is None:
             self._later = here[: len(self._taken)], np.full(len(self._taken), now)
         else:
             self._go_on(self._here, here[: len(self._here)], now)
         self._here = here
-        # What is filled in this frame is visible in this frame.
+        # Lines drawn in this frame are visible in this frame.
         bands = 1 if self.filled else BANDS
         self._fill()
         self._fade(now, bands)
@@ -226,17 +226,17 @@ class TrailSheet:
                 return
 
     def _go_on(self, start: Points, end: Points, now: float) -> None:
-        """Draw the lines from ``start`` to ``end``, (n, 2) device pixels: nothing is newer."""
+        """Draw the lines from ``start`` to ``end``, (n, 2) device pixels: they are the newest."""
         pixels, _ = _on_lines(start, end, self._times.shape)
         self._times.reshape(-1)[pixels] = now - self._epoch
         self._colour(pixels)
 
     def _stamp(self, start: Points, end: Points, times: Points) -> None:
-        """Note ``times`` in the pixels on the lines from ``start`` to ``end``, unless they are newer."""
+        """Record ``times`` in the pixels on the lines from ``start`` to ``end``, unless they are newer."""
         pixels, lines = _on_lines(start, end, self._times.shape)
         noted, drawn = self._times.reshape(-1), (times - self._epoch)[lines]
         newer = np.flatnonzero(drawn > noted[pixels])
-        # Of several robots on one pixel the last one written stays: the newest.
+        # Of several robots on one pixel the last one written remains: the newest.
         newer = newer[np.argsort(drawn[newer], kind="stable")]
         noted[pixels[newer]] = drawn[newer]
 
@@ -263,7 +263,7 @@ class TrailSheet:
             self._band = (self._band + 1) % BANDS
 
     def _colour_thin(self, top: int, bottom: int, now: float) -> None:
-        """Colour the pixels where robots were."""
+        """Colour the pixels of the trails."""
         times, band = self._times[top:bottom].reshape(-1), self._argb[top:bottom].reshape(-1)
         seen = times > np.float32(now - self._epoch - self._trails.length.seconds)
         if np.count_nonzero(seen) > len(seen) * MANY_SEEN:
@@ -283,7 +283,7 @@ class TrailSheet:
             return
         core = _spread(self._shade(times, now), self._reach)
         casing = _spread(core, self._reach)
-        # Most of a map has no trail: to look up only what has one is several times as fast.
+        # Most of a map has no trail: processing only pixels that have one is several times as fast.
         seen = np.flatnonzero(casing[inside] < FADED)
         shades = core[inside].ravel()[seen]
         around = self._casing[casing[inside].ravel()[seen]]
@@ -293,16 +293,16 @@ class TrailSheet:
         band[seen] = colours
 
     def _shade(self, times: npt.NDArray[np.float32], now: float) -> Shades:
-        """Return indices into the shades: 0 for what is new, :data:`FADED` for what has faded away."""
+        """Return indices into the shades: 0 for new pixels, :data:`FADED` for those that have faded away."""
         age = self._age(times, now)
         # np.clip takes ten times as long.
         np.minimum(age, FADED, out=age)
         return np.maximum(age, 0, out=age).astype(np.uint8)
 
     def _age(self, times: npt.NDArray[np.float32], now: float) -> npt.NDArray[np.float32]:
-        """Return how old ``times`` are, in shades, which end at :data:`FADED`.
+        """Return the age of ``times``, in shades, limited to :data:`FADED`.
 
-        To take shades by it with mode "clip" is twice as fast as to end it there before.
+        Indexing by it with mode "clip" is twice as fast as clipping it before.
         """
         age = np.float32(now - self._epoch) - times
         age *= np.float32(FADED / self._trails.length.seconds)
@@ -317,11 +317,11 @@ def _on_lines(start: Points, end: Points, shape: tuple[int, int]) -> tuple[Pixel
     # Columns apart: numpy is slow where it goes along rows of two.
     x, y, to_x, to_y = start[:, 0], start[:, 1], end[:, 0], end[:, 1]
     last_x, last_y = np.floor(to_x), np.floor(to_y)
-    # Most of ten thousand robots stay on their pixel from one frame to the next, or go on by one.
+    # Most of ten thousand robots stay on their pixel from one frame to the next, or move by one.
     lines = np.flatnonzero((np.floor(x) != last_x) | (np.floor(y) != last_y))
     x, y, to_x, to_y = x.take(lines), y.take(lines), to_x.take(lines), to_y.take(lines)
     reach = np.maximum(np.abs(to_x - x), np.abs(to_y - y))
-    # What is NaN compares false.
+    # NaN compares false.
     is_way = reach < LONGEST_STEP
     pixels, those = _inside(last_x.take(lines), last_y.take(lines), is_way, shape)
     long = np.flatnonzero((reach > 1.0) & is_way)
@@ -352,7 +352,7 @@ def _between(
 def _inside(
     x: Numbers, y: Numbers, selected: npt.NDArray[np.bool_] | bool, shape: tuple[int, int]
 ) -> tuple[Pixels, Pixels]:
-    """Return the places on the image of those that are ``selected``, and which of them these are."""
+    """Return the positions on the image of those that are ``selected``, and their indices."""
     height, width = shape
     those = np.flatnonzero((x >= 0) & (x < width) & (y >= 0) & (y < height) & selected)
     return (y * width + x).take(those).astype(np.intp), those
@@ -371,7 +371,7 @@ def _spread(shades: Shades, reach: int) -> Shades:
 
 
 def _shades(colour: QColor, strength: float) -> npt.NDArray[np.uint32]:
-    """Return ``colour`` from full to nothing, premultiplied ARGB."""
+    """Return ``colour`` from opaque to transparent, premultiplied ARGB."""
     alpha = np.linspace(colour.alphaF() * strength, 0.0, SHADES)
     red, green, blue = (np.round(part * alpha).astype(np.uint32) for part in colour.getRgb()[:3])
     return np.round(alpha * 255).astype(np.uint32) << 24 | red << 16 | green << 8 | blue
@@ -399,7 +399,7 @@ class TrailImage:
         now: float,
         pixels: Points | None = None,
     ) -> None:
-        """Draw on to (n, 2) ``xy``, where the robots are now in map coordinates, NaN where not known.
+        """Extend the trails to (n, 2) ``xy``, the robots' positions in map coordinates, NaN where not known.
 
         ``now`` is on the clock of the trails' samples. ``pixels`` is ``xy`` on the ``screen``, where that is
         computed already.
@@ -407,7 +407,7 @@ class TrailImage:
         view = (self._trails.generation, transform, screen)
         if view[:2] != self._made_for[:2]:
             self.forget()
-        # While the view moves a new sheet would be out of date before it is filled.
+        # While the view moves a new sheet would be outdated before it is filled.
         at_rest = view == self._view or self._newest is None
         self._view = view
         if view != self._made_for and at_rest:
@@ -420,13 +420,13 @@ class TrailImage:
             self._shown = self._newest
 
     def paint(self, painter: QPainter, screen: Screen) -> None:
-        """Draw the trails as far as they are known on ``screen``."""
+        """Draw the known trails on ``screen``."""
         if self._shown is None:
             return
         painter.save()
         if screen != self._shown.screen:
             painter.setTransform(screen.since(self._shown.screen), True)
-        # The image is one of device pixels; to tell it so would make it a copy of the array.
+        # The image is in device pixels; setting its pixel ratio would make it a copy of the array.
         painter.scale(1 / self._shown.screen.ratio, 1 / self._shown.screen.ratio)
         painter.drawImage(QPointF(0.0, 0.0), self._shown.image)
         painter.restore()

@@ -1,4 +1,4 @@
-"""Map tools of a click that draws nothing: robots selected, roads closed and opened."""
+"""Map tools that react to clicks without drawing: selecting robots, closing and opening roads."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ...ui.errors import FleetError
 from ...ui.language import time_of_day, tr
 from ..live_view import LiveView
 
-# --- Robots selected ---
+# --- Selection of robots ---
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier
 CONTROL = Qt.KeyboardModifier.ControlModifier
@@ -29,8 +29,8 @@ CONTROL = Qt.KeyboardModifier.ControlModifier
 class SelectTool(QgsMapTool):
     """A click selects a robot, a click beside all of them none; a rectangle selects those in it.
 
-    As with QGIS's own tools a click with Shift or Ctrl adds the robot or takes it away; a rectangle with
-    Shift adds, with Ctrl takes away, with both keeps only what was selected before. A double click goes to
+    As with QGIS's own tools a click with Shift or Ctrl adds or removes the robot; a rectangle with
+    Shift adds, with Ctrl removes, with both keeps only what was selected before. A double click goes to
     the robot.
     """
 
@@ -110,7 +110,7 @@ class SelectTool(QgsMapTool):
             self._band = None
 
 
-# --- Roads closed and opened ---
+# --- Closing and opening of roads ---
 
 TIMES = (
     (tr("until it is opened"), None),
@@ -121,15 +121,15 @@ TIMES = (
 )
 LONGEST_REASON = 200
 REACH = 12.0
-"""Pixels by which a click may miss a road."""
+"""Distance in pixels by which a click may miss a road."""
 LEAST_REACH = 3.0
-"""Metres by which it may miss one in any case: a road is wider than its middle."""
+"""Distance in metres by which it may miss one in any case: a road is wider than its centreline."""
 
 
 class ClosureTool(QgsMapTool):
-    """A click on a road asks why and for how long it is closed; a click on a closed one asks to open it.
+    """A click on a road asks for reason and duration of a closure; one on a closed road asks to open it.
 
-    Enter does what a click would: at the mouse, or in the middle of the map, which the arrow keys move.
+    Enter acts like a click: at the mouse, or in the middle of the map, which the arrow keys move.
     """
 
     def __init__(self, desk: FleetController, window: QWidget):
@@ -174,7 +174,7 @@ class ClosureTool(QgsMapTool):
         self._show_middle()
 
     def _show_middle(self) -> None:
-        """Show where Enter would click, unless that is where the mouse is."""
+        """Show where Enter would click, unless that is at the mouse."""
         self._clear_middle()
         if self._mouse is None:
             self._middle = QgsVertexMarker(self.canvas())
@@ -219,7 +219,7 @@ class ClosureTool(QgsMapTool):
     def _ask_to_close(self, place: Point, reach: float) -> None:
         dialog = ClosureDialog(self._window)
         dialog.confirmed.connect(lambda why, seconds: self._desk.close_road(place, reach, why, seconds))
-        # The place is another one on another site.
+        # On another site the numbers are another place.
         self._desk.state.forgotten.connect(dialog.reject)
         dialog.open()
 
@@ -242,7 +242,7 @@ class ClosureTool(QgsMapTool):
 
 
 class ClosureDialog(QuestionDialog):
-    """Asks why a road is closed and for how long.
+    """Asks why and for how long a road is closed.
 
     ``confirmed`` carries the reason and the seconds, None for no end.
     """

@@ -1,4 +1,4 @@
-"""Map tools that draw: what they share, and those of one point, a cone target and a start position."""
+"""Map tools that draw: base class, and those of one point, a cone target and a start position."""
 
 from __future__ import annotations
 
@@ -25,20 +25,20 @@ from ...ui.errors import FleetError, MapTransformError, NotSentError
 from ...ui.language import tr
 
 FINE_M, COARSE_M = 0.1, 1.0
-"""Metres a key press, with Ctrl, and with Ctrl and Shift."""
+"""Metres per key press, with Ctrl, and with Ctrl and Shift."""
 _ASIDE = {Qt.Key.Key_Left: (-1, 0), Qt.Key.Key_Right: (1, 0), Qt.Key.Key_Up: (0, -1), Qt.Key.Key_Down: (0, 1)}
 _PIXELS = 50
 
 
 def is_arrow_move(event: QKeyEvent) -> bool:
-    """Tell whether it is Ctrl with an arrow key."""
+    """Return whether the event is Ctrl with an arrow key."""
     return event.key() in _ASIDE and bool(event.modifiers() & Qt.KeyboardModifier.ControlModifier)
 
 
 def moved_by_arrow(event: QKeyEvent, desk: FleetController, point: Point) -> Point:
-    """Return where ``point`` of the site frame goes by Ctrl and an arrow key.
+    """Return ``point`` of the site frame moved by Ctrl and an arrow key.
 
-    Left is left on the screen, however map and site frame are turned.
+    Left is left on the screen, however map and site frame are rotated.
 
     :raises MapTransformError: when the point has no place on the map.
     """
@@ -62,9 +62,9 @@ PASTED_IN = "EPSG:4326"
 
 
 class DrawingTool(QgsMapTool):
-    """A tool that makes a draft. Nothing but Enter sends it: no click, no double click, no leaving.
+    """Base of tools that make a draft. Only Enter sends it: no click, no double click, no leaving.
 
-    Clicks snap as QGIS's snapping settings say.
+    Clicks snap as set in QGIS's snapping settings.
     """
 
     kind = ""
@@ -78,7 +78,7 @@ class DrawingTool(QgsMapTool):
 
     def activate(self) -> None:
         super().activate()
-        # No longer than the tool is in hand: its marker must not outlive the canvas.
+        # Only while the tool is active: its marker must not outlive the canvas.
         self._snapped = QgsSnapIndicator(self.canvas())
         self.canvas().installEventFilter(self)
         self.canvas().setFocus()
@@ -96,7 +96,7 @@ class DrawingTool(QgsMapTool):
 
     @property
     def on_map(self) -> PendingCommand | None:
-        """The draft that can be changed; one that was sent goes out as it is once it has been checked."""
+        """The draft if it can be changed; one being sent stays as it is until it has been checked."""
         return None if self.desk.checks.has_order else self.desk.drafts.draft
 
     @property
@@ -136,22 +136,22 @@ class DrawingTool(QgsMapTool):
             self.desk.drafts.set_command(None)
             event.ignore()
         elif self.key(event):
-            # An ignored event tells QGIS that the tool took it; else it deletes the selected features.
+            # An ignored event means to QGIS that the tool used it; else it deletes the selected features.
             event.ignore()
         else:
             super().keyPressEvent(event)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        # QGIS's own Undo and Paste are about layers; over the map a tool that draws comes first.
+        # QGIS's own Undo and Paste are about layers; over the map a drawing tool takes precedence.
         if event.type() == QEvent.Type.ShortcutOverride and _is_ours(event):
             event.accept()
         return False
 
     def hovered(self, event: QgsMapMouseEvent) -> None:
-        """Take in that the mouse moved; the event's map point is snapped."""
+        """Handle a move of the mouse; the event's map point is snapped."""
 
     def key(self, event: QKeyEvent) -> bool:
-        """Take in a key; false for one that means nothing here."""
+        """Handle a key; false for one without a meaning here."""
         if event.matches(UNDO):
             self._undo(self.desk.drafts.undo(), tr("There is nothing to take back."))
         elif event.matches(REDO):
@@ -165,29 +165,29 @@ class DrawingTool(QgsMapTool):
         return True
 
     def clicked(self, point: Point) -> None:
-        """Take in a click at a point of the site frame."""
+        """Handle a click at a point of the site frame."""
         raise NotImplementedError
 
     def finish(self) -> None:
-        """Take in a right click, which with QGIS's own tools ends drawing: what is drawn stays.
+        """Handle a right click, which with QGIS's own tools ends drawing: the draft stays.
 
-        A draft of one point is whole with its click, so there is nothing to end.
+        A draft of one point is complete with its click, so there is nothing to end.
         """
 
     def back(self) -> None:
-        """Take back the last click."""
+        """Undo the last click."""
         self.desk.drafts.set_command(None)
 
     def paste(self) -> None:
-        """Take what the clipboard holds, ``lat, lon`` in WGS 84, for a click there."""
+        """Use the clipboard's ``lat, lon`` in WGS 84 like a click there."""
         self._try(lambda: self._place(self._pasted))
 
     def add_point(self, point: Point) -> None:
-        """Take a point of the site frame, from wherever, for a click there."""
+        """Use a point of the site frame, of any origin, like a click there."""
         self._try(lambda: self._place(lambda: point))
 
     def set_command(self, draft: PendingCommand) -> None:
-        """Check a draft and make it the one.
+        """Check a draft and set it as the current one.
 
         :raises FleetError: when it cannot be checked.
         """
@@ -195,11 +195,11 @@ class DrawingTool(QgsMapTool):
 
     @staticmethod
     def is_drag(pressed: QPoint, now: QPoint) -> bool:
-        """Tell whether the mouse went further than in a click."""
+        """Return whether the mouse moved further than in a click."""
         return (now - pressed).manhattanLength() > QApplication.startDragDistance()
 
     def _place(self, where: Callable[[], Point]) -> None:
-        """Take in a click at the point that ``where`` returns, if there is somebody to send there."""
+        """Handle a click at the point that ``where`` returns, if a robot is selected."""
         self._check_robot()
         self.clicked(where())
 
@@ -233,24 +233,24 @@ def _is_ours(event: QKeyEvent) -> bool:
     return any(event.matches(key) for key in (UNDO, REDO, PASTE))
 
 
-# --- The way along the roads that leads to the mouse ---
+# --- Preview of the route along the roads to the mouse ---
 
 ALONG, STRAIGHT = QColor(21, 101, 192, 210), QColor(198, 40, 40, 210)
 CASING = QColor(255, 255, 255, 90)
-"""Beneath it: on the asphalt of a photograph the colour alone is lost."""
+"""Beneath it: on the asphalt of an aerial image the colour alone is hard to see."""
 WIDTH = 2
-"""Pixels: thinner, and paler, than any way that a robot drives or is about to be sent."""
+"""Pixels: thinner, and paler, than any path that a robot drives or is about to be sent."""
 BESIDE = QPoint(16, 16)
-"""Pixels from the mouse to what is said of the way."""
+"""Offset in pixels of the route's text from the mouse."""
 MOVED_M = 0.5
-"""Metres that a robot moves before the way from where it is now is asked for again."""
+"""Metres that a robot moves before its route is requested again."""
 
 
 class RoutePreview(QObject):
-    """What a map tool shows while the mouse moves. Without a robot, or a link, nothing is shown.
+    """The preview of a map tool while the mouse moves. Without a robot, or a link, nothing is shown.
 
-    It goes when the mouse leaves the map, when another robot is selected or none, when the draft is sent or
-    given up, when robots are told to stop, and when the link is lost. While the mouse stands still it follows
+    It vanishes when the mouse leaves the map, when another robot is selected or none, when the draft is sent
+    or given up, when robots must stop, and when the link is lost. While the mouse stands still it follows
     the robot that it begins at.
     """
 
@@ -261,7 +261,7 @@ class RoutePreview(QObject):
         self._mouse: QPoint | None = None
         self._question: RouteQuestion | None = None
         self._begins: Point | None = None
-        """Where the way that is shown begins, of one from where a robot is."""
+        """The beginning of the route shown, if it begins at a robot."""
         desk.preview.shown.connect(self._show)
         desk.selection.changed.connect(self.hide)
         desk.state.updated.connect(self._follow)
@@ -273,7 +273,7 @@ class RoutePreview(QObject):
         start: Point | None,
         wishes: RoutePreferences = SHORTEST,
     ) -> None:
-        """Have the way shown from ``start``, or from where the robot is, to where the mouse is."""
+        """Show the route from ``start``, or from the robot, to the mouse."""
         if self._mouse is None:
             self._desk.canvas.viewport().installEventFilter(self)
         self._mouse = QCursor.pos()
@@ -284,23 +284,23 @@ class RoutePreview(QObject):
             self._question = RouteQuestion(robot, start, goal, wishes=wishes)
             self._desk.preview.want(self._question)
         except (NotSentError, MapTransformError):
-            # A click says what is wrong; moving the mouse is no request to be told so.
+            # A click shows the error; a moving mouse should not.
             self.clear()
 
     def clear(self) -> None:
-        """Show nothing and ask nothing, until the mouse moves again."""
+        """Show nothing and query nothing, until the mouse moves again."""
         self.hide()
         self._desk.preview.forget()
 
     @property
     def line(self) -> list[QgsPointXY]:
-        """What is drawn now, in the canvas's CRS."""
+        """The line drawn now, in the canvas's CRS."""
         if self._band is None:
             return []
         return [QgsPointXY(self._band.getPoint(0, k)) for k in range(self._band.numberOfVertices())]
 
     def hide(self) -> None:
-        """Show nothing until the mouse moves again; what was asked is still answered."""
+        """Show nothing until the mouse moves again; a pending query is still answered."""
         if self._mouse is not None:
             QToolTip.hideText()
             viewport = self._desk.canvas.viewport()
@@ -320,7 +320,7 @@ class RoutePreview(QObject):
         self._band = None
 
     def _follow(self) -> None:
-        """Ask again from where the robot is now, when it has moved since it was asked."""
+        """Query again from the robot's present position, when it has moved since the last query."""
         question = self._question
         if self._band is None or self._begins is None or question is None or question.start is not None:
             return
@@ -363,7 +363,7 @@ class RoutePreview(QObject):
 
 
 class ConeTool(DrawingTool):
-    """A click puts the cone for the selected robot, another click moves it, as do Ctrl and the arrow keys.
+    """A click sets the cone target of the selected robot, another click, or Ctrl and an arrow key, moves it.
 
     With Shift held down the robot is sent straight there, and not along the roads.
     """
@@ -422,14 +422,14 @@ class ConeTool(DrawingTool):
 
 
 class StartTool(DrawingTool):
-    """A click puts the start position of the selected robot; a drag gives it the heading that it leads in."""
+    """A click sets the start position of the selected robot; a drag also sets its heading."""
 
     kind = START
 
     def __init__(self, desk: FleetController):
         super().__init__(desk)
         self._begun: tuple[SiteToMapTransform, Point] | None = None
-        """Where the mouse went down: the map may move, as it does after robots, before it comes up again."""
+        """Where the mouse was pressed: the map may move, when it follows robots, before the release."""
 
     def canvasPressEvent(self, event: QgsMapMouseEvent) -> None:
         super().canvasPressEvent(event)
@@ -463,7 +463,7 @@ class StartTool(DrawingTool):
     def _drawn(self, pressed: QPoint, end: QgsPointXY) -> None:
         self._check_robot()
         transform = self.desk.site_to_canvas.transform()
-        # Where it is not known, this says why.
+        # Without a transform, this reports why.
         begun = self._begun or (transform, transform.to_site(self.toMapCoordinates(pressed)))
         if begun[0] is not transform:
             raise FleetError(

@@ -25,24 +25,24 @@ from .route_tool import RouteTool
 
 
 class RoadRouteTool(RouteTool):
-    """The way along the roads follows the mouse; a click takes it, and the next leg goes on from there.
+    """The route along the roads follows the mouse; a click accepts it, and the next leg begins there.
 
-    The first leg begins where the robot is. Legs of this tool and of the one that draws can be mixed. Who
-    clicks faster than the gateway answers gets the legs one after the other.
+    The first leg begins at the robot. Legs of this tool and of the drawing one can be mixed. Clicks
+    that are faster than the gateway's answers add their legs one after the other.
     """
 
     def __init__(self, desk: FleetController):
         super().__init__(desk)
         self._way = RoutePreview(desk)
         self.wishes = SHORTEST
-        """What is wanted of the legs that are led from now on."""
+        """Preferences for the legs led from now on."""
         self._clicks: list[Point] = []
-        """Where ways are still to lead; the first of them is asked for."""
+        """Clicked goals still to be reached; the first of them is being queried."""
         desk.preview.answered.connect(self._take)
         desk.preview.refused.connect(self._refused)
 
     def lead_so(self, wishes: RoutePreferences) -> None:
-        """Lead legs by ``wishes`` from now on; what is shown to the mouse is asked for again."""
+        """Lead legs by ``wishes`` from now on; the preview to the mouse is queried again."""
         self.wishes = wishes
         self._way.clear()
 
@@ -59,7 +59,7 @@ class RoadRouteTool(RouteTool):
 
     def finish(self) -> None:
         if self._clicks:
-            # The ways to what was clicked are still to come, and belong to the route.
+            # The routes to the clicked places are still to come, and belong to the draft.
             self._is_finished = True
         else:
             super().finish()
@@ -72,7 +72,7 @@ class RoadRouteTool(RouteTool):
         if draft is not None and not self.is_for_selected(draft):
             return
         if not self.desk.preview.awaits_click:
-            # What was clicked before was given up, or its answer is lost.
+            # Earlier clicks were given up, or their answer is lost.
             self._clicks.clear()
         self._clicks.append(point)
         if len(self._clicks) == 1:
@@ -106,7 +106,7 @@ class RoadRouteTool(RouteTool):
             raise
 
     def _leave_out(self) -> None:
-        """Say that the way to the last click comes too late: the draft was sent, or is another."""
+        """Report that the route to the last click comes too late: the draft was sent, or replaced."""
         self._clicks.clear()
         self._way.clear()
         self.desk.warning.emit(
@@ -114,7 +114,7 @@ class RoadRouteTool(RouteTool):
         )
 
     def _from(self) -> tuple[str | None, Point | None]:
-        """Return whose the next leg is, and where it begins; None for where the robot is."""
+        """Return the robot of the next leg, and its beginning; None for the robot's position."""
         draft = self.draft
         if draft is None:
             return self.desk.selection.last, None
@@ -144,10 +144,10 @@ class RoadRouteTool(RouteTool):
 
 
 class SurfaceTool(QgsMapTool):
-    """Asks ``store`` for the project's road surfaces. It says in ``notices`` what it found.
+    """Queries ``store`` for the project's road surfaces, and shows the result in ``notices``.
 
-    Surfaces are read beside the window when the tool is taken up and when a layer has changed; a click that
-    comes before is answered as soon as they are there.
+    Surfaces are read in the background when the tool is activated and when a layer has changed; an earlier
+    click is answered as soon as they are there.
     """
 
     def __init__(self, canvas: QgsMapCanvas, store: SurfaceStore, notices: MessageBar):
@@ -155,7 +155,7 @@ class SurfaceTool(QgsMapTool):
         self._store = store
         self._notices = notices
         self._awaited: Key | None = None
-        """The layers that are being read for it."""
+        """The layers being read for it."""
         self._clicked: QgsPointXY | None = None
         self._listens = False
         self.setCursor(Qt.CursorShape.WhatsThisCursor)
@@ -196,7 +196,7 @@ class SurfaceTool(QgsMapTool):
             super().keyPressEvent(event)
 
     def remove(self) -> None:
-        """Let go of what is being read."""
+        """Drop the surfaces being read."""
         self._leave()
 
     def _leave(self) -> None:
@@ -212,7 +212,7 @@ class SurfaceTool(QgsMapTool):
         return self._store.kept(layers) if layers else None
 
     def _read(self) -> None:
-        """Begin to read the surfaces, unless that is under way.
+        """Start reading the surfaces, unless that is under way.
 
         :raises FleetError: when there are none, or a layer cannot be used.
         """
@@ -255,7 +255,7 @@ class SurfaceTool(QgsMapTool):
         )
 
     def _read_anew(self) -> None:
-        # Without layers there is nothing to read; a click says so.
+        # Without layers there is nothing to read; a click reports it.
         if self._store.layers():
             self._try(self._read)
 
@@ -305,7 +305,7 @@ class SurfaceAction:
         iface.addPluginToMenu(menu, self.action)
 
     def remove(self) -> None:
-        """Put the tool away and take the entry out of the menu."""
+        """Deactivate the tool and remove the entry from the menu."""
         self._iface.mapCanvas().unsetMapTool(self.tool)
         self.tool.remove()
         self.tool.deleteLater()

@@ -1,4 +1,4 @@
-"""Map tool that draws a route, with handles to drag its vertices and legs; how legs are led along roads."""
+"""Map tool that draws a route, with handles to drag its vertices and legs; preferences for road legs."""
 
 from __future__ import annotations
 
@@ -22,17 +22,17 @@ from ...ui.language import tr
 from .drawing_tools import DrawingTool, is_arrow_move, moved_by_arrow
 
 REACH = 9.0
-"""Pixels by which the mouse may miss a vertex or a leg."""
+"""Distance in pixels by which the mouse may miss a vertex or a leg."""
 MARK = QColor("#FFE14D")
 
 
 class RouteHandles:
-    """Finds vertices and legs near the mouse, and marks the vertex in hand."""
+    """Finds vertices and legs near the mouse, and marks the active vertex."""
 
     def __init__(self, desk: FleetController):
         self._desk = desk
         self._marker: QgsVertexMarker | None = None
-        # Which points were placed on the map last, how, the points themselves, and where they are.
+        # Cache of the last placement: which points, with which transform, and their coordinates.
         self._placed: tuple = (None, None, (), np.empty((0, 2)))
 
     def vertex_at(self, draft: PendingCommand, mouse: QPoint) -> int | None:
@@ -48,7 +48,7 @@ class RouteHandles:
         return found[nearest] if away[nearest] <= REACH else None
 
     def leg_at(self, draft: PendingCommand, mouse: QPoint) -> int | None:
-        """Return the end of the straight leg that the mouse is on, None where there is none."""
+        """Return the end of the straight leg under the mouse, None where there is none."""
         ends = [end for end in vertices(draft) if end > 0]
         if not ends:
             return None
@@ -84,7 +84,7 @@ class RouteHandles:
 
 
 def _on_screen(places: np.ndarray, canvas: QgsMapCanvas) -> np.ndarray:
-    """Return (n, 2) map coordinates as pixels, together: a route may have thousands of points."""
+    """Return (n, 2) map coordinates as pixels, all at once: a route may have thousands of points."""
     screen, centre = canvas.getCoordinateTransform(), canvas.center()
     unit = canvas.mapUnitsPerPixel() * 1000.0
     at = screen.transform(centre)
@@ -101,7 +101,7 @@ def middle(draft: PendingCommand, vertex: int) -> tuple[float, float]:
 
 
 class RouteDrag:
-    """What is dragged is shown as it would become; only letting go changes the route."""
+    """The route is shown as it would become while dragging; only releasing the mouse changes it."""
 
     def __init__(self, desk: FleetController, handles: RouteHandles):
         self._desk = desk
@@ -113,16 +113,16 @@ class RouteDrag:
 
     @property
     def holds(self) -> bool:
-        """Tell whether the mouse went down on something that can be dragged."""
+        """Return whether the mouse was pressed on something that can be dragged."""
         return self._from is not None
 
     @property
     def moves(self) -> bool:
-        """Tell whether it is dragged."""
+        """Return whether something is being dragged."""
         return self._shown is not None
 
     def press(self, draft: PendingCommand, mouse: QPoint) -> None:
-        """Take hold of what is under the mouse, if anything is."""
+        """Begin to drag the vertex or leg under the mouse, if any."""
         try:
             vertex = self._handles.vertex_at(draft, mouse)
             self._puts_in = vertex is None
@@ -134,7 +134,7 @@ class RouteDrag:
             self._from, self._vertex = draft, vertex
 
     def move(self, event: QgsMapMouseEvent) -> None:
-        """Show the route with what is held where the mouse is, snapped."""
+        """Show the route with the dragged vertex at the mouse, snapped."""
         assert self._from is not None
         change = pending_command.inserted if self._puts_in else pending_command.moved
         try:
@@ -148,20 +148,20 @@ class RouteDrag:
         self._handles.mark(self._shown, self._vertex)
 
     def release(self) -> PendingCommand | None:
-        """Let go and return the route as it becomes, None when nothing was dragged; shown is the old one."""
+        """End the drag and return the new route, None when nothing was dragged; the old one is shown."""
         shown = self._shown
         self.give_up()
         return shown
 
     def drop(self) -> None:
-        """Let go of a route that is not on the map any more: nothing of it comes back."""
+        """End the drag of a route that is no longer on the map: nothing of it is restored."""
         self._from = self._shown = None
 
     def give_up(self) -> None:
-        """Let go and show the route as it was."""
+        """Cancel the drag and show the former route."""
         before, moved = self._from, self._shown
         self._from = self._shown = None
-        # Another draft may have taken its place meanwhile.
+        # Another draft may have replaced it meanwhile.
         if moved is not None and self._desk.drafts.draft is moved:
             self._desk.drafts.renew(before)
 
@@ -172,11 +172,11 @@ BACKWARD, FORWARD = ("<", ","), (">", ".")
 class RouteTool(DrawingTool):
     """Each click adds a point to the route of the robot that was selected at the first click.
 
-    A vertex is dragged; a leg that is dragged gets a vertex there. The vertex in hand, under the mouse or
+    A vertex can be dragged; a dragged leg gets a vertex there. The active vertex, under the mouse or
     chosen by ``<`` and ``>``, is deleted by Delete and moved by Ctrl and the arrow keys; Insert puts one
-    before it; R turns the route round.
+    before it; R reverses the route.
 
-    A right click ends drawing: the next leg follows the mouse no more. Another click goes on from the end.
+    A right click ends drawing: no next leg follows the mouse. Another click continues from the end.
     """
 
     kind = ROUTE
@@ -227,11 +227,11 @@ class RouteTool(DrawingTool):
         try:
             self.desk.drafts.point_at(self.desk.site_to_canvas.transform().to_site(event.mapPoint()))
         except MapTransformError:
-            # A place the site frame cannot express has no preview; a click there says why.
+            # A place that the site frame cannot express has no preview; a click there shows why.
             self.desk.drafts.point_at(None)
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        # The canvas keeps keys from its tools while a mouse button is down.
+        # The canvas sends its tools no keys while a mouse button is down.
         if event.type() == QEvent.Type.KeyPress and self._drag.holds:
             if event.key() == Qt.Key.Key_Escape:
                 self._drag.give_up()
@@ -287,7 +287,7 @@ class RouteTool(DrawingTool):
             self.desk.drafts.set_command(None)
 
     def is_for_selected(self, draft: PendingCommand) -> bool:
-        """Tell whether the draft is for the robot that is selected; say so where it is for another."""
+        """Return whether the draft is for the selected robot; report where it is for another."""
         if self.desk.selection.last in (None, draft.robot):
             return True
         self.desk.warning.emit(
@@ -321,10 +321,10 @@ class RouteTool(DrawingTool):
         self._handles.mark(draft, vertex)
 
     def _changed(self) -> None:
-        # Where only a check has come to its end, the vertex stays in hand.
+        # If only a check has ended, the vertex stays active.
         draft = self.draft
         if draft is None and self._drag.holds:
-            # It was sent, or its site is not served any more: its numbers are other places on another one.
+            # It was sent, or its site is no longer served: its numbers are other places on another one.
             self._drag.drop()
             self._pressed_at = None
         if draft is None or draft.points is not self._points:
@@ -365,19 +365,19 @@ class RouteTool(DrawingTool):
             self._hold(self.draft, vertex)
 
 
-# --- Which ways the legs of a route are led along roads ---
+# --- Preferences for legs along roads ---
 
 ROUTE_CRITERIA = ((tr("the shortest"), False), (tr("the fastest"), True))
 WIDEST_ROAD = 50.0
 
 
 def surfaces_of(text: str) -> tuple[str, ...]:
-    """Return the names of surfaces in ``text``, which has commas between them, each once."""
+    """Return the names of surfaces in ``text``, separated by commas, without duplicates."""
     return tuple(dict.fromkeys(name.strip() for name in text.split(",") if name.strip()))
 
 
 class RoutePreferencesDialog(QuestionDialog):
-    """Begins with the ``wishes`` that hold; ``confirmed`` carries those that are to hold from now on."""
+    """Begins with the present ``wishes``; ``confirmed`` carries those for the future."""
 
     confirmed = pyqtSignal(object)
 
@@ -404,7 +404,7 @@ class RoutePreferencesDialog(QuestionDialog):
         self.accepted.connect(lambda: self.confirmed.emit(self.wishes()))
 
     def wishes(self) -> RoutePreferences:
-        """Return what stands in the fields."""
+        """Return the preferences in the fields."""
         return RoutePreferences(
             fastest=self._way.currentData(),
             surfaces=surfaces_of(self._surfaces.text()),
