@@ -15,7 +15,7 @@ from ...robot_bridge.core.sites.frame import SiteFrame, utm_zone_of
 from ..ui.errors import SiteCrsError
 from ..ui.language import tr
 
-# --- Which CRS carries the site, and which CRSs cannot ---
+# --- The CRS that carries the site, and CRSs that cannot ---
 
 
 def site_crs_for(
@@ -25,8 +25,8 @@ def site_crs_for(
 ) -> QgsCoordinateReferenceSystem:
     """Return the CRS that carries the site: ``chosen``, else the layers' own or the project's.
 
-    The layers' own wins over the project's when it is one engineering CRS, which nothing else relates to, and
-    where there is no project. The result is invalid when no CRS is known at all.
+    The layers' own wins over the project's when it is one engineering CRS, which has no transform to others,
+    and where there is no project. The result is invalid when no CRS is known at all.
 
     :raises SiteCrsError: when that CRS cannot carry a site, or the layers have several and nothing chooses.
     """
@@ -48,8 +48,8 @@ def site_crs_for(
 def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
     """Raise :class:`SiteCrsError` unless ``crs`` is a plane in true metres (design, section 4).
 
-    Projected CRSs in metres are, except Mercator ones such as EPSG:3857; so is an engineering CRS in metres,
-    which is a site frame already.
+    Projected CRSs in metres qualify, except Mercator ones such as EPSG:3857; so does an engineering CRS in
+    metres, which is a site frame already.
     """
     named = tr("The CRS {crs} cannot carry a site", crs=crs_name(crs))
     if crs.isGeographic() or crs.projectionAcronym() == "geocent":
@@ -82,20 +82,20 @@ def check_site_crs(crs: QgsCoordinateReferenceSystem) -> None:
 
 
 def is_mercator(crs: QgsCoordinateReferenceSystem) -> bool:
-    """Tell whether ``crs`` is a Mercator one, such as EPSG:3857: its metres are not metres on the ground."""
+    """Return whether ``crs`` is a Mercator one, such as EPSG:3857: its metres are not true on the ground."""
     return crs.projectionAcronym() in ("merc", "webmerc")
 
 
 def is_engineering(crs: QgsCoordinateReferenceSystem) -> bool:
-    """Tell whether ``crs`` is local by definition, with no known place on the Earth."""
+    """Return whether ``crs`` is local by definition, with no known place on the Earth."""
     wkt = crs.toWkt(QgsCoordinateReferenceSystem.WktVariant.WKT_PREFERRED)
     return wkt.startswith(("ENGCRS", "ENGINEERINGCRS", "LOCAL_CS"))
 
 
 def stated_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem:
-    """Return ``crs``, invalid where it only says that there is none.
+    """Return ``crs``, invalid where it only states that there is none.
 
-    A GeoPackage without a CRS comes as one called "Undefined SRS" or the like: a local one in metres, or one
+    A GeoPackage without a CRS comes as one named "Undefined SRS" or the like: a local one in metres, or one
     in degrees.
     """
     undefined = crs.description().startswith("Undefined ") and not crs.authid()
@@ -103,7 +103,7 @@ def stated_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSyste
 
 
 def crs_name(crs: QgsCoordinateReferenceSystem) -> str:
-    """Return the authority's code and the name of ``crs``, as far as it has them."""
+    """Return the authority's code and the name of ``crs``, as far as available."""
     if crs.authid() and crs.description():
         return f"{crs.authid()} ({crs.description()})"
     return crs.authid() or crs.description() or tr("without a name")
@@ -119,14 +119,14 @@ def _several(own: Sequence[QgsCoordinateReferenceSystem]) -> str:
 
 
 def _suggestion(crs: QgsCoordinateReferenceSystem) -> str:
-    """Return ``", EPSG:..."`` for the UTM zone in the middle of the CRS's area when that area is small."""
+    """Return ``", EPSG:..."`` for the UTM zone in the middle of the CRS's area, when that area is small."""
     area = crs.bounds()
     if area.isEmpty() or area.width() > 30.0:
         return tr(" (EPSG:326xx north, EPSG:327xx south of the equator)")
     return f", {utm_zone_of(area.center().x(), area.center().y())}"
 
 
-# --- The site frame that a project carries in its variables, so that it need not be typed for each export
+# --- The site frame stored in a project's variables, so that it need not be entered for each export
 
 CRS_VARIABLE = "fleet_site_crs"
 ORIGIN_VARIABLES = ("fleet_origin_x", "fleet_origin_y")
@@ -134,7 +134,7 @@ ROTATION_VARIABLE = "fleet_rotation_deg"
 
 
 def frame_in_project(project: QgsProject, crs: QgsCoordinateReferenceSystem) -> SiteFrame | None:
-    """Return the frame in the project's variables, None unless it is whole and in ``crs``."""
+    """Return the frame in the project's variables, None unless it is complete and in ``crs``."""
     frame = own_frame(project)
     if frame is None or not crs.isValid() or QgsCoordinateReferenceSystem(frame.crs) != crs:
         return None
@@ -142,7 +142,7 @@ def frame_in_project(project: QgsProject, crs: QgsCoordinateReferenceSystem) -> 
 
 
 def own_frame(project: QgsProject) -> SiteFrame | None:
-    """Return the frame in the project's variables in whatever CRS, None unless it is whole."""
+    """Return the frame in the project's variables in whatever CRS, None unless it is complete."""
     variables = project.customVariables()
     named = str(variables.get(CRS_VARIABLE) or "")
     if not named:

@@ -24,15 +24,15 @@ from ...robot_bridge.core.robotmap.parametric_shapes import ramp_normal
 from ..ui.language import tr, tr_count
 from .roles import RAMP, STAIRS
 
-# --- Plain arrays to and from well-known binary, which geometry libraries speak (OGC 06-103r4, section 8)
+# --- Plain arrays to and from well-known binary, the format of geometry libraries (OGC 06-103r4, section 8)
 
 _POINT, _LINE, _POLYGON, _MULTI_POINT, _MULTI_LINE, _MULTI_POLYGON = range(1, 7)
 _HEAD, _COUNT = struct.Struct("<BI"), struct.Struct("<I")
 _BEFORE_POINTS = _HEAD.size + _COUNT.size
 _POINT_BYTES = (16, 24, 24, 32)
-"""Bytes of a point without Z and M, with Z, with M, and with both: a thousand between their kinds."""
+"""Bytes of a point without Z and M, with Z, with M, and with both: the type codes differ by a thousand."""
 _OLD_Z = 0x80000000
-"""What a kind with Z has besides itself in older files."""
+"""Bit of the type code for Z in older files."""
 _POINTS = frozenset(
     _HEAD.pack(1, kind + more) for kind in (_POINT, _MULTI_POINT) for more in (0, 1000, 2000, 3000, _OLD_Z)
 )
@@ -44,13 +44,13 @@ _USUAL = (
     (_ONE_LINE, False),
     (_HEAD.pack(1, _MULTI_LINE) + _ONE + _ONE_LINE, False),
 )
-"""What most geometries begin with, which have one ring or line and no Z and M, and whether it is closed."""
+"""Headers of the most common geometries, with one ring or line and no Z and M, and whether it is closed."""
 
 
 class Rings(NamedTuple):
     """The rings or lines of one geometry: ``points`` holds x and y of each as bytes of float64.
 
-    ``inner`` says of each whether it is a hole of the ring before it; lines are not ``closed``.
+    ``inner`` is whether each is a hole of the ring before it; lines are not ``closed``.
     """
 
     points: list[bytes]
@@ -59,7 +59,7 @@ class Rings(NamedTuple):
 
 
 def rings_of(wkb: bytes) -> Rings | None:
-    """Return what a line, a polygon or several of them are made of; Z and M are dropped.
+    """Return the rings or lines of a line, a polygon or several of them; Z and M are dropped.
 
     None for everything else: points, curves, collections, and big-endian ones.
     """
@@ -92,7 +92,7 @@ def rings_of(wkb: bytes) -> Rings | None:
 
 
 def are_points(wkb: bytes) -> bool:
-    """Tell whether a geometry is a point, or several of them."""
+    """Return whether a geometry is a point, or several of them."""
     return wkb[: _HEAD.size] in _POINTS
 
 
@@ -101,7 +101,7 @@ def _flat(points: bytes, size: int) -> bytes:
 
 
 def geometry_of(wkb: bytes) -> QgsGeometry:
-    """Return the geometry that ``wkb`` is of."""
+    """Return the geometry encoded in ``wkb``."""
     geometry = QgsGeometry()
     geometry.fromWkb(wkb)
     return geometry
@@ -113,12 +113,12 @@ def line_wkb(points: bytes) -> bytes:
 
 
 def multi_line_wkb(lines: Sequence[bytes]) -> bytes:
-    """Return lines, as :func:`line_wkb` takes each, as one multi line string."""
+    """Return lines, each as for :func:`line_wkb`, as one multi line string."""
     return _HEAD.pack(1, _MULTI_LINE) + _COUNT.pack(len(lines)) + b"".join(map(line_wkb, lines))
 
 
 def polygon_wkb(rings: Sequence[bytes]) -> bytes:
-    """Return closed rings, the outer one first, as a polygon; each as :func:`line_wkb` takes a line."""
+    """Return closed rings, the outer one first, as a polygon; each as a line for :func:`line_wkb`."""
     pieces = [_HEAD.pack(1, _POLYGON), _COUNT.pack(len(rings))]
     for ring in rings:
         pieces += (_COUNT.pack(len(ring) // _POINT_BYTES[0]), ring)
@@ -126,7 +126,7 @@ def polygon_wkb(rings: Sequence[bytes]) -> bytes:
 
 
 def polygon_heads(lengths: np.ndarray) -> list[bytes]:
-    """Return what comes before the points of polygons of one ring each, which has so many points."""
+    """Return the headers of polygons of one ring each, with these numbers of points."""
     heads = np.empty(len(lengths), [("order", "u1"), ("kind", "<u4"), ("rings", "<u4"), ("points", "<u4")])
     heads["order"], heads["kind"], heads["rings"], heads["points"] = 1, _POLYGON, 1, lengths
     data, size = heads.tobytes(), heads.itemsize
@@ -161,7 +161,7 @@ class GeometryParts(NamedTuple):
 
 
 def parts_of(geometry: QgsGeometry) -> GeometryParts:
-    """Return what ``geometry`` is made of: collections opened, rings closed, Z and M dropped.
+    """Return the parts of ``geometry``: collections opened, rings closed, Z and M dropped.
 
     A null geometry has no parts.
     """
@@ -202,16 +202,16 @@ def _closed(ring: np.ndarray) -> np.ndarray:
     return ring
 
 
-# --- The rings of many geometries looked at together ---
+# --- The rings of many geometries processed together ---
 
 
 class RingTable:
-    """The rings and lines of n features: how many points each has, and which features are ``sound``, (n,).
+    """The rings and lines of n features: the number of points of each, and which features are ``sound``.
 
-    ``points`` is x and y of each ring as bytes of float64. Of the features ``counts`` says how many each has,
-    ``closed`` which are no lines, and ``valid`` which may be taken as they are, as far as GEOS tells. Sound
-    are those that need no repair and no word: closed rings of three corners or more that are valid together,
-    lines without repeated points, every coordinate a number on Earth.
+    ``points`` is x and y of each ring as bytes of float64. ``counts`` is the number of rings of each feature,
+    ``closed`` is true unless they are lines, and ``valid`` where GEOS finds them valid. Sound features need
+    neither repair nor note: closed rings of three corners or more that are valid together, lines without
+    repeated points, every coordinate finite and on Earth.
     """
 
     def __init__(
@@ -227,7 +227,7 @@ class RingTable:
         self.sound[np.repeat(np.arange(len(of_each)), of_each)[odd]] = False
 
     def rings(self, first: int, last: int) -> slice:
-        """Return which rings are those of features ``first`` to ``last``."""
+        """Return the slice of the rings of features ``first`` to ``last``."""
         return slice(int(self._first_ring[first]), int(self._first_ring[last]))
 
     def coordinates(self, rings: slice) -> np.ndarray:
@@ -235,12 +235,12 @@ class RingTable:
         return self._coordinates[self._first_point[rings.start] : self._first_point[rings.stop]]
 
     def apart(self, coordinates: np.ndarray, k: int) -> list[np.ndarray]:
-        """Return the rings of feature ``k``, whose points are where they are in ``coordinates`` of all."""
+        """Return the rings of feature ``k``, cut out of the ``coordinates`` of all."""
         edges = self._first_point[self._first_ring[k] : self._first_ring[k + 1] + 1].tolist()
         return [coordinates[first:last] for first, last in pairwise(edges)]
 
     def _odd_rings(self, closed: np.ndarray) -> np.ndarray:
-        """Tell of each ring whether it needs a closer look; ``closed`` says which of them are no lines."""
+        """Return which rings need a closer check; ``closed`` is false for lines."""
         odd: np.ndarray = self.lengths < np.where(closed, 4, 2)
         xy = self._coordinates
         if not len(xy):
@@ -250,17 +250,17 @@ class RingTable:
         ends = np.clip(self._first_point[1:] - 1, 0, last)
         odd |= closed & (xy[starts] != xy[ends]).any(axis=1)
         ring = np.repeat(np.arange(len(odd)), self.lengths)
-        # So that what is no number is none on Earth either.
+        # NaN then compares as not on Earth either.
         odd[ring[~(np.abs(xy) <= FARTHEST_M).all(axis=1)]] = True
         repeated = (xy[1:] == xy[:-1]).all(axis=1) & (ring[1:] == ring[:-1]) & ~closed[ring[1:]]
         odd[ring[1:][repeated]] = True
         return odd
 
 
-# --- Repairs polygons and lines where that is safe, and says what it did or could not do ---
+# --- Repairs of polygons and lines where that is safe, with notes of repairs and failures ---
 
 STRAIGHT_M = 0.02
-"""How far a riser's middle points may be from the line between its ends."""
+"""Greatest distance in metres of a riser's middle points from the line between its ends."""
 
 
 def repair_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.ndarray]], list[str]]:
@@ -275,7 +275,7 @@ def repair_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.
     geometry = _as_geometry(kept)
     if not kept or geometry.isGeosValid():
         return kept, notes
-    # Each by itself: together, what two parts have in common would become a hole of both.
+    # Separately: together, the overlap of two parts would become a hole of both.
     repaired = QgsGeometry.unaryUnion([_as_geometry([polygon]).makeValid() for polygon in kept])
     parts = parts_of(repaired) if not repaired.isNull() else GeometryParts([], [], [])
     if not parts.polygons:
@@ -284,7 +284,7 @@ def repair_polygons(polygons: Sequence[list[np.ndarray]]) -> tuple[list[list[np.
 
 
 def lines_with_length(lines: Sequence[np.ndarray]) -> tuple[list[np.ndarray], list[str]]:
-    """Return lines without repeated points, and a note for each that is one point and left out."""
+    """Return lines without repeated points, and a note for each that is a single point and left out."""
     kept, notes = [], []
     for number, line in enumerate(lines, 1):
         moves = np.ones(len(line), dtype=bool)
@@ -304,7 +304,7 @@ def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
     """Return the two ends of each line, (2 n, 2), and a note for each line that is not straight.
 
     ``lines`` are two or more risers, bottom first. Seen from the bottom each runs from left to right,
-    whichever way it was drawn (paper 1, section II).
+    in whichever direction it was drawn (paper 1, section II).
     """
     notes = []
     for number, line in enumerate(lines, 1):
@@ -325,7 +325,7 @@ def risers_of(lines: Sequence[np.ndarray]) -> tuple[np.ndarray, list[str]]:
 
 
 def _encloses_nothing(ring: np.ndarray) -> bool:
-    """Tell whether all points of a closed ring lie on one line; a ring that crosses itself does enclose."""
+    """Return whether all points of a closed ring lie on one line; a ring that crosses itself does enclose."""
     if len(np.unique(ring, axis=0)) < 3:
         return True
     x, y = (ring - ring[0]).T
@@ -364,21 +364,21 @@ def _as_geometry(polygons: Sequence[list[np.ndarray]]) -> QgsGeometry:
 
 
 def _fault(geometry: QgsGeometry) -> str:
-    """Return what GEOS finds wrong first, and where."""
+    """Return the first error that GEOS finds, and its place."""
     for error in geometry.validateGeometry(Qgis.GeometryValidationEngine.Geos):
         place = _place(error.where().x(), error.where().y()) if error.hasWhere() else ""
         return tr("the polygon is broken{place}: {what}", place=place, what=error.what())
     return tr("the polygon is broken{place}: {what}", place="", what=geometry.lastError() or tr("not valid"))
 
 
-# --- Which way the surface of a ramp faces, where its polygon says how high its corners are ---
+# --- The direction that a ramp's surface faces, where its polygon has the heights of its corners ---
 
 NORMAL = "n"
 """The extra of a ramp: the upward unit normal of its surface in the site frame (paper 1, section II)."""
 
 
 def corner_heights(geometry: QgsGeometry) -> dict[tuple[float, float], float]:
-    """Return the Z of each corner (x, y) of ``geometry``; NaN for one that has two, as of a step."""
+    """Return the Z of each corner (x, y) of ``geometry``; NaN where two Z differ, as at a step."""
     heights: dict[tuple[float, float], float] = {}
     for point in geometry.vertices() if geometry.constGet().is3D() else ():
         z = point.z()
@@ -389,10 +389,10 @@ def corner_heights(geometry: QgsGeometry) -> dict[tuple[float, float], float]:
 
 
 def normal_extra(points: np.ndarray, z: np.ndarray, notes: list[str]) -> dict[str, str]:
-    """Return the extra of a ramp whose outline is ``points``, (n, 2) in the site frame, ``z``, (n,), high.
+    """Return the extra of a ramp with outline ``points``, (n, 2) in the site frame, at heights ``z``, (n,).
 
     There is none without a height for each corner, nor where all are equal: such a polygon was drawn in 3D
-    without its heights. A surface that cannot be driven on is told in ``notes``.
+    without its heights. A surface that cannot be driven on is reported in ``notes``.
     """
     if not np.isfinite(z).all() or not np.ptp(z):
         return {}
@@ -406,7 +406,7 @@ def normal_extra(points: np.ndarray, z: np.ndarray, notes: list[str]) -> dict[st
 # --- From one QGIS geometry to the rings, lines and risers of a robot map ---
 
 SAGITTA_M = 0.02
-"""How far a chord may be from the curve it stands for (design, section 6)."""
+"""Greatest distance in metres of a chord from its curve (design, section 6)."""
 
 NO_PLACE = tr(
     "has a coordinate that is no number, has no place in the site's CRS or lies beyond 100 000 km; "
@@ -417,7 +417,7 @@ NO_PLACE = tr(
 class FeatureShape(NamedTuple):
     """One outline: ``points`` is (n, 2) in the geometry's coordinates, rings repeat their first point.
 
-    ``z`` is (n,), the height of each point of a ramp in metres, NaN where the geometry does not say it.
+    ``z`` is (n,), the height of each point of a ramp in metres, NaN where the geometry has none.
     """
 
     points: np.ndarray
@@ -432,7 +432,7 @@ class FeatureShape(NamedTuple):
 
 
 class FeatureShapes(NamedTuple):
-    """What was found in a geometry, and a note for each thing that was repaired or left out."""
+    """The outlines in a geometry, and a note for each repair or omission."""
 
     shapes: list[FeatureShape]
     notes: list[str]
@@ -442,8 +442,8 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> FeatureShapes:
     """Return the outlines in ``geometry``, which is in metres, for a layer of ``role``.
 
     Curves become chords with a sagitta of 2 cm. Rings and lines without extent are left out, a ring that
-    crosses itself is repaired; ``notes`` says so for each. Several lines of a stairs layer are one flight,
-    a riser each, bottom first; a single one stays a low wall, which is what the paper makes of a riser.
+    crosses itself is repaired, each with an entry in ``notes``. Several lines of a stairs layer are one
+    flight, a riser each, bottom first; a single one stays a low wall, as the paper treats a riser.
     """
     curved = geometry.constGet().hasCurvedSegments()
     if curved:
@@ -452,7 +452,7 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> FeatureShapes:
     parts = parts_of(geometry)
     if not parts.on_earth:
         return FeatureShapes([], [NO_PLACE])
-    # Valid as a whole is the rule and quickly told; GEOS takes a ring without points for valid, too.
+    # Valid as a whole is the rule and quickly checked; GEOS takes a ring without points for valid, too.
     sound = parts.rings_have_points and geometry.isGeosValid()
     polygons, polygon_notes = (parts.polygons, []) if sound else repair_polygons(parts.polygons)
     lines, line_notes = lines_with_length(parts.lines)
@@ -469,7 +469,7 @@ def shapes_of(geometry: QgsGeometry, role: str = "") -> FeatureShapes:
 
 
 def polygons_of(shapes: Sequence[FeatureShape]) -> list[list[np.ndarray]]:
-    """Return the rings of each polygon among ``shapes``, its outer ring first; lines are passed over."""
+    """Return the rings of each polygon among ``shapes``, its outer ring first; lines are ignored."""
     polygons: list[list[np.ndarray]] = []
     for shape in shapes:
         if shape.courtyard:

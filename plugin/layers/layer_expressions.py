@@ -27,24 +27,24 @@ from ..ui.errors import ExpressionError
 from ..ui.language import tr
 from .roles import RAMP, LayerExpressions, expressions_of
 
-# --- OpenStreetMap tags that a layer keeps together in one field, read as fields of their own ---
+# --- OpenStreetMap tags that a layer keeps together in one field, read as separate fields ---
 # GDAL's OSM driver gives each layer a few fields and writes all other tags into ``other_tags``: as hstore
-# (``"oneway"=>"yes","width"=>"6"``), from GDAL 3.7 on as JSON where that was asked for.
+# (``"oneway"=>"yes","width"=>"6"``), from GDAL 3.7 on as JSON if requested.
 
 TAG_FIELDS = ("other_tags", "all_tags")
-"""Fields that hold several tags, as GDAL calls them."""
+"""Fields that hold several tags, by GDAL's names."""
 TAG_KEYS = (
     "access", "amenity", "barrier", "bridge", "building", "building:levels", "building_levels", "direction",
     "emergency", "height", "highway", "junction", "lanes", "layer", "man_made", "maxspeed", "min_height",
     "name", "natural", "oneway", "step_count", "surface", "tunnel", "width",
 )  # fmt: skip
-"""Tags that say something of an obstacle or a road; they become fields where the layer has none of them."""
+"""Tags relevant to an obstacle or a road; they become fields where the layer has none of these names."""
 LONGEST_TEXT = 100_000
-"""Characters of tags of one feature; no object of OpenStreetMap has a tenth of it."""
+"""Limit on characters of tags of one feature; no object of OpenStreetMap has a tenth of it."""
 
 
 class TaggedFields:
-    """The ``fields`` of a layer: its ``own_count`` own ones, behind them the tags that one of these holds."""
+    """The ``fields`` of a layer: its ``own_count`` own ones, then the tags in one of these."""
 
     def __init__(self, fields: QgsFields) -> None:
         self.fields = QgsFields(fields)
@@ -75,7 +75,7 @@ class TaggedFields:
         return values
 
     def feature(self, feature: QgsFeature, values: list[Any] | None = None) -> QgsFeature:
-        """Return ``feature`` with ``values``, or what :meth:`values` says, as its attributes.
+        """Return ``feature`` with ``values``, or those of :meth:`values`, as its attributes.
 
         The feature itself where the layer has no tags.
         """
@@ -128,42 +128,42 @@ _PURE = frozenset(
         "substr", "title", "to_int", "to_real", "to_string", "trim", "upper",
     )
 )  # fmt: skip
-"""Functions that say the same of the same arguments, wherever and whenever they are asked."""
+"""Pure functions: equal arguments always give equal results."""
 _MOST_KNOWN = 10_000
-"""Values that are remembered of one thing: a city says few different things many times."""
+"""Values cached per cache: a city has few different values many times."""
 UNKNOWN = object()
 
 
 class Memory:
-    """What was found of ``rules`` together, by the values of the fields that they are about.
+    """Cache of the results of ``rules`` together, by the values of the fields that they read.
 
-    Nothing where one of them is about more than fields.
+    Disabled where one of them reads more than fields.
     """
 
     def __init__(self, rules: Iterable[Rule | None]) -> None:
         some = [rule for rule in rules if rule is not None]
         places = sorted({place for rule in some for place in rule.places})
         self.is_used = bool(places) and all(rule.is_pure for rule in some)
-        """Whether anything is ever remembered."""
+        """Whether the cache is enabled."""
         self._chosen = itemgetter(*places) if self.is_used else None
         self._is_single = len(places) == 1
         self._known: dict[Any, Any] = {}
 
     def known(self, attributes: list[Any]) -> tuple[Any, Any]:
-        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        """Return the cached result for ``attributes``, :data:`UNKNOWN` if none, and the key for it."""
         if self._chosen is None:
             return UNKNOWN, None
         try:
             chosen = self._chosen(attributes)
-            # 1, 1.0 and true are equal, and text of them is not.
+            # 1, 1.0 and true are equal, but as text they are not.
             key = (chosen, type(chosen)) if self._is_single else (chosen, *map(type, chosen))
             return self._known.get(key, UNKNOWN), key
         except (IndexError, TypeError):
-            # Fewer values than fields, or lists.
+            # Fewer values than fields, or unhashable lists.
             return UNKNOWN, None
 
     def keep(self, key: Any, value: Any) -> None:
-        """Remember ``value``; not by a key with a nought, which may be less than nought in text."""
+        """Store ``value``; not by a key with a zero, which may be a negative zero in text."""
         if key is None or 0 in (key[:1] if self._is_single else key[0]):
             return
         if len(self._known) >= _MOST_KNOWN:
@@ -172,17 +172,17 @@ class Memory:
 
 
 class Rule:
-    """An ``expression`` about ``fields``, prepared.
+    """A prepared ``expression`` that reads ``fields``.
 
-    Where it is about nothing but fields, what it says of their values is remembered: to evaluate one takes
-    longer than all else that is done of most features.
+    Where it reads nothing but fields, its results are cached by their values: evaluating one takes
+    longer than all else that is done for most features.
     """
 
     def __init__(self, expression: QgsExpression, fields: QgsFields) -> None:
         self.expression = expression
         columns = expression.referencedColumns()
         self.places = sorted(fields.lookupField(name) for name in columns)
-        """Which of the fields it is about."""
+        """Indices of the fields that it reads."""
         self.is_pure = (
             bool(columns)
             and QgsFeatureRequest.ALL_ATTRIBUTES not in columns
@@ -191,14 +191,14 @@ class Rule:
             and not expression.referencedVariables()
             and expression.referencedFunctions() <= _PURE
         )
-        """Whether it is about fields alone."""
+        """Whether it depends on fields alone."""
         self._memory = Memory([self])
         self._field = self.places[0] if self.is_pure and expression.isField() else None
 
     def known(self, attributes: list[Any]) -> tuple[Any, Any]:
-        """Return what is remembered of ``attributes``, :data:`UNKNOWN` if nothing, and what to keep it by.
+        """Return the cached result for ``attributes``, :data:`UNKNOWN` if none, and the key for it.
 
-        The field itself where the expression is no more than its name.
+        The field's own value where the expression is only its name.
         """
         if self._field is None:
             return self._memory.known(attributes)
@@ -209,7 +209,7 @@ class Rule:
         return (value, None) if isinstance(value, _PLAIN) else (UNKNOWN, None)
 
     def keep(self, key: Any, value: Any) -> None:
-        """Remember ``value`` by ``key``, which :meth:`known` told."""
+        """Store ``value`` by ``key``, which :meth:`known` returned."""
         self._memory.keep(key, value)
 
 
@@ -227,9 +227,9 @@ class LayerRules:
         self.warnings: list[str] = []
 
     def rule(self, what: str, text: str) -> Rule | None:
-        """Return the prepared expression, None for an empty one or one about fields the layer lacks.
+        """Return the prepared expression, None for an empty one or one that reads fields the layer lacks.
 
-        :raises ExpressionError: when ``text`` is no expression.
+        :raises ExpressionError: when ``text`` is not an expression.
         """
         if not text.strip():
             return None
@@ -253,7 +253,7 @@ class LayerRules:
     def needed_rule(self, what: str, text: str) -> Rule | None:
         """Return the prepared expression, None for an empty one.
 
-        :raises ExpressionError: when ``text`` is no expression, or is about fields that the layer lacks.
+        :raises ExpressionError: when ``text`` is not an expression, or reads fields that the layer lacks.
         """
         if not text.strip():
             return None
@@ -275,7 +275,7 @@ class LayerRules:
         return Rule(expression, self._fields)
 
     def at(self, feature: QgsFeature) -> None:
-        """Let :meth:`value` speak of ``feature`` from now on."""
+        """Set ``feature`` as the one that :meth:`value` evaluates."""
         self._feature, self._values, self._is_set = feature, None, False
 
     def value(
@@ -285,7 +285,7 @@ class LayerRules:
         notes: list[str],
         otherwise: str = DEFAULT_IS_USED,
     ) -> Any:
-        """Return what ``rule`` says of the feature, None for nothing; a failure becomes a note."""
+        """Return the result of ``rule`` for the feature, None for no value; a failure becomes a note."""
         if rule is None:
             return None
         key = None
@@ -307,19 +307,19 @@ class LayerRules:
                 )
             )
             return None
-        # Numbers and texts first: to compare them with NULL takes longer than to evaluate most expressions.
+        # Numbers and texts first: comparing them with NULL takes longer than evaluating most expressions.
         value = None if value is None or (not isinstance(value, _PLAIN) and value == NULL) else value
         rule.keep(key, value)
         return value
 
     def known(self, memory: Memory) -> tuple[Any, Any]:
-        """Return what ``memory`` has of the feature, :data:`UNKNOWN` if nothing, and what to keep it by."""
+        """Return the result cached in ``memory`` for the feature, :data:`UNKNOWN` if none, and its key."""
         return memory.known(self._attributes()) if memory.is_used else (UNKNOWN, None)
 
     def metres(self, what: str, rule: Rule | None, notes: list[str]) -> float | None:
-        """Return the metres above 0 that ``rule`` says of the feature, None where it says none.
+        """Return the result of ``rule`` for the feature in metres above 0, None where there is none.
 
-        What is no such number becomes a note.
+        An invalid number becomes a note.
         """
         value = self.value(what, rule, notes)
         if value is None or value == "":
@@ -337,9 +337,9 @@ class LayerRules:
         return metres
 
     def column(self, *names: str) -> str:
-        """Return the expression that reads the first of the fields ``names`` that is there, else nothing.
+        """Return the expression that reads the first existing field of ``names``, empty if none exists.
 
-        Fields of the layer come before tags in one of its fields.
+        Fields of the layer take precedence over tags in one of its fields.
         """
         return self.own_column(*names) or self._column(names)
 
@@ -378,14 +378,14 @@ class LayerRules:
         return expression
 
     def _missing(self, expression: QgsExpression) -> str:
-        """Return the fields that ``expression`` reads and the layer lacks, nothing where there are none."""
+        """Return the fields that ``expression`` reads and the layer lacks, empty where there are none."""
         names = {name.lower() for name in self._fields.names()}
         columns = expression.referencedColumns() - {QgsFeatureRequest.ALL_ATTRIBUTES}
         return ", ".join(sorted(name for name in columns if name.lower() not in names))
 
 
 def as_flag(value: Any) -> bool | None:
-    """Return whether ``value`` says true, also as text such as ``yes``; None where it is neither."""
+    """Return ``value`` as a truth value, also from text such as ``yes``; None where it is neither."""
     return _FLAGS.get(str(value).strip().lower())
 
 
@@ -412,13 +412,13 @@ def _number(text: str) -> float:
     return float(text.replace(",", "."))
 
 
-# --- Which features of a layer count: those that its filter is true of ---
+# --- The features of a layer that count: those for which its filter is true ---
 
 
 class FeatureFilter:
     """The filter ``text`` of the layer called ``layer``; an empty one keeps every feature.
 
-    :raises ExpressionError: when ``text`` is no expression, or is about fields that the layer lacks.
+    :raises ExpressionError: when ``text`` is not an expression, or reads fields that the layer lacks.
     """
 
     def __init__(self, layer: str, fields: QgsFields, text: str, context: QgsExpressionContext):
@@ -427,13 +427,13 @@ class FeatureFilter:
 
     @classmethod
     def of_layer(cls, layer: QgsVectorLayer, context: QgsExpressionContext) -> FeatureFilter:
-        """Return the filter that ``layer`` keeps itself; ``context`` is what it sees besides the layer."""
+        """Return the filter stored in ``layer``; ``context`` is available to it besides the layer."""
         scoped = QgsExpressionContext(context)
         scoped.appendScope(QgsExpressionContextUtils.layerScope(layer))
         return cls(layer.name(), layer.fields(), expressions_of(layer).filter, scoped)
 
     def keeps(self, feature: QgsFeature, notes: list[str]) -> bool:
-        """Tell whether ``feature`` counts; one that the filter cannot tell of does not, with a note."""
+        """Return whether ``feature`` counts; one for which the filter fails does not, with a note."""
         if self._rule is None:
             return True
         self._rules.at(feature)
@@ -451,14 +451,14 @@ class FeatureFilter:
 # --- Height, foot, label and outdoor flag of each feature, by expression ---
 
 HEIGHT_FIELDS = ("height", "height_m")
-"""Fields that hold a height in metres where no expression says otherwise."""
+"""Fields with a height in metres, used where no expression is given."""
 
 
 class ObstacleValues(NamedTuple):
-    """What a robot map says of one feature.
+    """The values of one feature in a robot map.
 
-    ``height`` is ``estimated`` where it is not told, and ``unknown`` where nothing but the default is left.
-    ``base`` is how many metres above the ground it begins; ``height`` counts from there.
+    ``height`` is ``estimated`` where it is not given, and ``unknown`` where only the default is left.
+    ``base`` is the metres above the ground at which it begins; ``height`` counts from there.
     """
 
     height: float
@@ -473,7 +473,7 @@ class ObstacleValues(NamedTuple):
 class FeatureValues:
     """Evaluates the expressions of one layer of obstacles. Ramps have no height (paper 1, section II).
 
-    :raises ExpressionError: when one of the expressions is none.
+    :raises ExpressionError: when one of the expressions is invalid.
     """
 
     def __init__(
@@ -493,13 +493,13 @@ class FeatureValues:
         self._semantics = rules.rule("semantics", expressions.semantics)
         self._outdoor = rules.rule("outdoor", expressions.outdoor)
         self._base = rules.rule("base", expressions.base)
-        # Once: to translate a text takes longer than to evaluate most expressions.
+        # Once: translating a text takes longer than evaluating most expressions.
         self._default_is_used = tr("the default is used")
         self._memory = Memory([self._height, self._estimate, self._semantics, self._outdoor, self._base])
         self._no_height = tr("the estimate is used") if self._estimate is not None else self._default_is_used
 
     def of(self, feature: QgsFeature) -> ObstacleValues:
-        """Return the values of ``feature``; what is missing or not understood gets the default and a note."""
+        """Return the values of ``feature``; missing or unreadable ones get the default and a note."""
         self._rules.at(feature)
         values, key = self._rules.known(self._memory)
         if values is UNKNOWN:
@@ -557,7 +557,7 @@ class FeatureValues:
 
     def _semantics_of(self, notes: list[str]) -> str:
         value = self._rules.value("semantics", self._semantics, notes)
-        # A city has few different labels, and keeps each once.
+        # A city has few different labels; equal ones share one object.
         return self._layer if value is None else sys.intern(str(value))
 
     def _outdoor_of(self, notes: list[str]) -> bool:

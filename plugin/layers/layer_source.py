@@ -40,17 +40,17 @@ from .reading import IN_MEMORY, begin_reading, deleted_in, error_of_gdal, has_fe
 from .roles import EXPRESSIONS, FURNITURE, LayerExpressions, LayerSetup, plain_name, setup_of
 from .site_transform import LayerToSiteTransform
 
-# --- A layer as it is read: everything that must be taken from it while the main thread holds it ---
+# --- A snapshot of a layer for reading: everything that must be fetched from it in the main thread ---
 
 
 @dataclass(frozen=True)
 class ObstacleSource:
     """One obstacle layer, readable from any thread.
 
-    ``name`` is unique among the layers read together, so that ``name:id`` names one feature. ``provider`` and
-    ``uri`` say where its features are stored; there is no ``uri`` while it has changes that are not.
-    ``count`` is negative where only its server or file knows: to ask that may take for ever. ``stored`` is
-    how it is opened once more whatever its changes are, which delete ``deleted`` of its features.
+    ``name`` is unique among the layers read together, so that ``name:id`` identifies a feature. ``provider``
+    and ``uri`` are where its features are stored; ``uri`` is empty while it has unsaved changes. ``count`` is
+    negative where only its server or file knows: querying that may block for ever. ``stored`` is the source
+    to open it again regardless of its changes, which delete ``deleted`` of its features.
     """
 
     name: str
@@ -68,7 +68,7 @@ class ObstacleSource:
 
 
 Setups = Callable[[QgsVectorLayer], LayerSetup]
-"""Tells what a layer is: by what it keeps itself, by a profile, by a dialog."""
+"""Returns the setup of a layer: from its own properties, a profile, or a dialog."""
 
 
 def obstacle_sources(
@@ -77,12 +77,12 @@ def obstacle_sources(
     context: QgsExpressionContext,
     setups: Setups = setup_of,
 ) -> list[ObstacleSource]:
-    """Return what is read of ``layers``; to be called in the thread that they belong to.
+    """Return the sources of ``layers``; must be called in their thread.
 
-    An expression that ``setups`` has for a layer wins over the one in ``general``. ``context`` is what
-    expressions see besides the layer.
+    An expression that ``setups`` has for a layer wins over the one in ``general``. ``context`` is available
+    to expressions besides the layer.
 
-    :raises LayerTypeError: naming the layer that holds neither lines nor polygons; points are furniture only.
+    :raises LayerTypeError: naming a layer that holds neither lines nor polygons; points only for furniture.
     """
     for layer in layers:
         _check(layer, setups(layer).role)
@@ -147,7 +147,7 @@ def _source(
 
 
 def _unique(names: Sequence[str]) -> list[str]:
-    """Return ``names`` with a number after each one that was there before."""
+    """Return ``names`` with a number appended to duplicates."""
     taken: set[str] = set()
     unique = []
     for name in names:
@@ -160,18 +160,18 @@ def _unique(names: Sequence[str]) -> list[str]:
     return unique
 
 
-# --- Whether a layer could be read: QGIS tells of no file that is gone
+# --- Whether a layer could be read: QGIS does not report a file that is gone
 
 
 def count_stored(source: ObstacleSource) -> int:
-    """Return how many features are stored, below 0 where nobody knows; from any thread, and it may hang."""
+    """Return the number of stored features, negative where unknown; from any thread, and it may hang."""
     return source.count if source.count >= 0 else open_again(source.provider, source.stored).featureCount()
 
 
 def check_readable(source: ObstacleSource) -> None:
-    """Raise :class:`LayerTypeError` where ``source`` could not be read, or only in part; after reading it.
+    """Raise :class:`LayerTypeError` where ``source`` could not be read, or only in part; call after reading.
 
-    Of a damaged file QGIS passes on what comes before the damage, and no error.
+    Of a damaged file QGIS returns the features before the damage, and no error.
     """
     error = error_of_gdal() if source.provider == "ogr" else ""
     if not _is_there(source):
@@ -204,7 +204,7 @@ def _half_read(name: str, error: str) -> LayerTypeError:
     )
 
 
-# --- Features of a layer that have no geometry: a window, which is asked for by place, never has them ---
+# --- Features of a layer without geometry: a query by window never returns them ---
 
 _NONE = "is_empty_or_null($geometry)"
 
@@ -212,12 +212,12 @@ _NONE = "is_empty_or_null($geometry)"
 def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
     """Yield the features of ``source`` whose geometry is missing or empty; from any thread.
 
-    Files and databases that know of it by themselves are asked; of others every feature is looked at.
+    Files and databases that can find them are queried; for others every feature is checked.
     """
     ids = rows_without_index(source.uri) if source.provider == "ogr" and source.uri else None
     if ids is not None:
         found = source.features.getFeatures(QgsFeatureRequest().setFilterFids(ids)) if ids else []
-        # Of rows that were deleted there is nothing; those that are there come in any order.
+        # Deleted rows are not there; the others come in any order.
         yield from sorted((QgsFeature(one) for one in found), key=QgsFeature.id)
         return
     subset = subset_without_geometry(source.provider, source.uri) if source.uri else ""
@@ -226,7 +226,7 @@ def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
         options.loadDefaultStyle = False
         layer = QgsVectorLayer(subset, source.name, source.provider, options)
         if layer.isValid():
-            # Named, since its features do not keep it alive.
+            # Held in a variable, since its features do not keep it alive.
             features = QgsVectorLayerFeatureSource(layer)
             yield from features.getFeatures(QgsFeatureRequest())
             return
@@ -234,16 +234,16 @@ def without_geometry(source: ObstacleSource) -> Iterator[QgsFeature]:
 
 
 _MOST_GAPS = 10_000
-"""Rows that an index may lack for each of them to be asked for; a layer that lost many has as many gaps."""
+"""Rows missing in an index up to which each is queried; a layer that lost many has as many gaps."""
 _AT_ONCE = 64
-"""Rows of which an index may lack some that are looked at one by one; of so many times more, pieces are."""
+"""Rows of an incomplete range that are checked one by one; larger ranges are split."""
 
 
 def rows_without_index(uri: str) -> list[int] | None:
     """Return the ids that the spatial index of a layer in a GeoPackage lacks, between its first and last row.
 
-    The index holds each row whose geometry is not empty. Its ids are counted in a tenth of the time in which
-    the geometries of a city can be looked at, which is longer than all else takes that a window needs. None
+    The index holds each row whose geometry is not empty. Counting its ids takes a tenth of the time for
+    checking the geometries of a city, which takes longer than all else needed for a window. None
     where there is no such index, or rows were filtered or many deleted.
     """
     parts = QgsProviderRegistry.instance().decodeUri("ogr", uri)
@@ -268,7 +268,7 @@ def _unindexed(database: sqlite3.Connection, layer: str) -> list[int] | None:
     if len(known) != 1 or known[0][2] is None:
         return None
     table, index = _quoted(known[0][0]), _quoted(f"rtree_{known[0][0]}_{known[0][1]}_rowid")
-    # By itself, each is found at once.
+    # Separately, each is found at once.
     edges = f"SELECT (SELECT min(rowid) FROM {table}), (SELECT max(rowid) FROM {table})"  # nosec B608 # names
     first, last = database.execute(edges).fetchone()
     if first is None:
@@ -280,7 +280,7 @@ def _unindexed(database: sqlite3.Connection, layer: str) -> list[int] | None:
 
 
 def _gaps(database: sqlite3.Connection, index: str, ids: range, count: int) -> Iterator[int]:
-    """Yield which of ``ids`` are not in ``index``, which has ``count`` of them."""
+    """Yield those of ``ids`` that are not in ``index``, which has ``count`` of them."""
     if count == len(ids):
         return
     within = f"FROM {index} WHERE rowid BETWEEN ? AND ?"
@@ -296,7 +296,7 @@ def _gaps(database: sqlite3.Connection, index: str, ids: range, count: int) -> I
 
 
 def subset_without_geometry(provider: str, uri: str) -> str:
-    """Return the source of what has no geometry in the layer ``uri``, nothing where it cannot be asked."""
+    """Return the source of the features without geometry in the layer ``uri``, empty where there is none."""
     if provider == "ogr":
         return _in_geopackage(uri)
     if provider == "postgres":
@@ -331,7 +331,7 @@ def _quoted(column: str) -> str:
     return '"' + column.replace('"', '""') + '"'
 
 
-# --- Tells when what was read of layers has to be read again ---
+# --- Signals when layers have to be read again ---
 
 _CHANGES = (
     "afterCommitChanges",
@@ -344,31 +344,31 @@ _CHANGES = (
     "subsetStringChanged",
     "willBeDeleted",
 )
-"""Signals of a layer after which its features, or what they are, are others; older QGIS lacks some."""
+"""Signals of a layer after which its features, or their meaning, have changed; older QGIS lacks some."""
 
 
 class LayerWatch(QObject):
-    """Watches layers from :meth:`watch` on, until they are deleted or :meth:`remove`."""
+    """Watches layers given to :meth:`watch`, until they are deleted or :meth:`remove`."""
 
     changed = pyqtSignal()
-    """A watched layer is not as it was, or is about to be deleted."""
+    """A watched layer has changed, or is about to be deleted."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
         self._watched: dict[str, QgsVectorLayer] = {}
 
     def watch(self, layers: Iterable[QgsVectorLayer]) -> None:
-        """Watch these layers besides those that are watched already."""
+        """Watch these layers in addition to those already watched."""
         for layer in layers:
             known = self._watched.get(layer.id())
-            # A project that is read again brings other layers under the same ids.
+            # A project that is read again has other layers under the same ids.
             if known is None or sip.isdeleted(known):
                 self._watched[layer.id()] = layer
                 for name in _signals_of(layer):
                     getattr(layer, name).connect(self._tell)
 
     def remove(self) -> None:
-        """Watch no layer any longer."""
+        """Stop watching layers."""
         for layer in self._watched.values():
             if not sip.isdeleted(layer):
                 for name in _signals_of(layer):
@@ -389,7 +389,7 @@ def _signals_of(layer: QgsVectorLayer) -> list[str]:
 def each_feature(
     source: QgsFeatureSource, feedback: QgsFeedback, progress: float = 0.0
 ) -> Iterator[QgsFeature]:
-    """Yield the features of ``source`` until a cancel; with the last one ``progress`` percent are done."""
+    """Yield the features of ``source`` until cancelled; at the last one ``progress`` percent are done."""
     total = max(source.featureCount(), 1) if progress else 1
     step = max(total // 1000, 1)
     for number, feature in enumerate(source.getFeatures()):
@@ -401,7 +401,7 @@ def each_feature(
 
 
 def parse_seconds(value: object) -> float | None:
-    """Return a time in seconds since 1970, of a date and time, seconds, or ISO 8601 (UTC unless it says)."""
+    """Return seconds since 1970 from a date and time, seconds, or ISO 8601 (UTC without an offset)."""
     if isinstance(value, QDateTime):
         if value.timeSpec() == Qt.TimeSpec.LocalTime:
             # Without an offset, or read by QGIS 3.22, which drops it: a gateway exports UTC.
@@ -421,7 +421,7 @@ def parse_seconds(value: object) -> float | None:
 class FeatureRow(NamedTuple):
     """One feature, whether the filter ``counts`` it, and its geometry in metres; None where it has none.
 
-    ``notes`` say what is wrong; whoever reads on adds to them.
+    ``notes`` are the problems; later readers add to them.
     """
 
     feature: QgsFeature
@@ -432,9 +432,9 @@ class FeatureRow(NamedTuple):
 
 @dataclass
 class FeatureReader:
-    """Yields every feature of the layer ``name``, which ``placing`` brings to the site, as FeatureRow.
+    """Yields every feature of the layer ``name``, transformed to the site by ``placing``, as FeatureRow.
 
-    Without a filter ``counted`` all count. ``complete`` is false after a cancel.
+    Without a filter ``counted`` all count. ``complete`` is false if cancelled.
 
     :raises LayerTypeError: at the end of a layer whose file is damaged.
     """
@@ -455,18 +455,18 @@ class FeatureReader:
             geometry = self.placing.of_feature(feature, notes) if counts else None
             yield FeatureRow(feature, counts, geometry, notes)
         self.complete = not self.feedback.isCanceled()
-        # A layer in its role is asked whether it is there at all first, by check_readable.
+        # For a layer with a role, check_readable has checked that it exists.
         error = error_of_gdal() if isinstance(self.source, QgsFeatureSource) else ""
         if self.complete and error:
             raise _half_read(self.name, error)
 
 
-# --- Warnings about features, summed up: a city has thousands that differ in nothing but the feature ---
+# --- Warnings about features, grouped: a city has thousands that differ only in the feature ---
 
 NAMED = 5
-"""How many features a warning about several names."""
+"""Number of features that a warning about several names."""
 MOST_KINDS = 50
-"""How many kinds of warnings about one layer are told one by one."""
+"""Number of kinds of warnings about one layer that are reported separately."""
 
 _QUOTED = re.compile(r"'[^']*'|\"[^\"]*\"")
 _NUMBER = re.compile(r"\d+(?:[.,]\d+)*(?:e[-+]?\d+)?")
@@ -474,7 +474,7 @@ _NUMBER = re.compile(r"\d+(?:[.,]\d+)*(?:e[-+]?\d+)?")
 
 @dataclass
 class SomeFeatures:
-    """How many features there are, and the ids of the first."""
+    """The number of features, and the ids of the first ones."""
 
     count: int = 0
     first: list[int] = field(default_factory=list)
@@ -494,7 +494,7 @@ class SomeFeatures:
 
 @dataclass
 class _Kind:
-    """Notes that differ in numbers and quoted values only; ``notes`` are those of the first features."""
+    """Notes that differ only in numbers and quoted values; ``notes`` are those of the first features."""
 
     features: SomeFeatures = field(default_factory=SomeFeatures)
     notes: list[str] = field(default_factory=list)
@@ -507,7 +507,7 @@ class _Kind:
         self.alike = self.alike and note == self.notes[0]
 
     def texts(self, layer: str) -> list[str]:
-        """Return one warning, or one a feature where they are few and differ."""
+        """Return one warning, or one per feature where they are few and differ."""
         features = self.features
         if self.alike and features.count > 1:
             return [
@@ -529,7 +529,7 @@ class _Kind:
 
 
 class FeatureWarnings:
-    """Warnings in the order of their kinds' first ones; many features of one kind become one warning."""
+    """Warnings in the order of the first of each kind; many features of one kind become one warning."""
 
     def __init__(self) -> None:
         self._warnings: list[str | tuple[str, _Kind]] = []

@@ -1,4 +1,4 @@
-"""Layers filled while connected: kept out of the project's file, a feature for each row."""
+"""Layers filled while connected, with a feature for each row; kept out of the project's file."""
 
 from __future__ import annotations
 
@@ -29,20 +29,20 @@ from ...robot_bridge.core.sites.frame import SiteFrame
 from ..ui.scheduling import CooperativeTask, Steps
 from .site_transform import frame_of
 
-# --- Knows when QGIS is in the middle of reading a project, and when another one is there ---
+# --- Detects when QGIS is reading a project, and when another one is open ---
 
 
 class ProjectWatch(QObject):
-    """While a project is read QGIS lets timers run, and ends abruptly if one of them touches its layers."""
+    """While a project is read QGIS lets timers run, and crashes if one of them touches its layers."""
 
     opened = pyqtSignal()
-    """Another project is there, read to its end or a new one, and has none of the layers before."""
+    """Another project is open, read to its end or new, and has none of the layers before."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
         super().__init__(parent)
         self._project = project
         self._is_cleared = False
-        # Others that are told of a project's reading have their turn first; one of a file is not read yet.
+        # Other receivers of the signal run first; a project from a file is not read yet.
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(0)
@@ -52,7 +52,7 @@ class ProjectWatch(QObject):
         project.projectSaved.connect(self._complete)
 
     def remove(self) -> None:
-        """Hear of the project no more: it is there longer than the plugin, and keeps each connection."""
+        """Disconnect from the project: it outlives the plugin, and keeps each connection."""
         self._soon.stop()
         self._project.cleared.disconnect(self._cleared)
         self._project.readProject.disconnect(self._read)
@@ -79,10 +79,10 @@ class ProjectWatch(QObject):
             self.opened.emit()
 
 
-# --- Layers that the desk fills while it is connected: they are in the project, and never in its file ---
+# --- Layers that the desk fills while it is connected: in the project, and never in its file ---
 
 MARK = "fleet/live"
-"""The custom property of a layer whose content comes again with each connection."""
+"""The custom property of a layer whose content is created again with each connection."""
 SCOPE = "fleet_supervisor"
 NOT_A_LAYER = "fleet-live"
 
@@ -90,8 +90,8 @@ NOT_A_LAYER = "fleet-live"
 class LiveLayers(QObject):
     """Keeps layers with :data:`MARK` out of the files of a project, and their styles in them.
 
-    An older file, or one of another program, may bring such a layer along: nobody would fill it, so it is
-    taken out when the project is read. :meth:`remove` undoes the constructor.
+    An older file, or one of another program, may contain such a layer: nobody would fill it, so it is
+    removed when the project is read. :meth:`remove` undoes the constructor.
     """
 
     def __init__(self, project: QgsProject, parent: QObject | None = None):
@@ -102,7 +102,7 @@ class LiveLayers(QObject):
         project.readProject.connect(self._take_out)
 
     def remove(self) -> None:
-        """Leave the project's reading and writing alone."""
+        """Disconnect from the project's reading and writing."""
         self._project.writeProject.disconnect(self._leave_out_of_tree)
         self._project.writeMapLayer.disconnect(self._leave_out)
         self._project.readProject.disconnect(self._take_out)
@@ -126,7 +126,7 @@ class LiveLayers(QObject):
     def _leave_out(self, layer: QgsMapLayer, element: QDomElement, _document: QDomDocument) -> None:
         if not layer.customProperty(MARK):
             return
-        # QGIS adds the element to the document after this, and reads back only those that are a maplayer.
+        # QGIS adds the element to the document after this, and reads back only elements named maplayer.
         element.setTagName(NOT_A_LAYER)
         while element.hasChildNodes():
             element.removeChild(element.firstChild())
@@ -148,9 +148,9 @@ class LiveLayers(QObject):
 
 
 def make_live(layer: QgsVectorLayer, kind: str) -> None:
-    """Make ``layer`` one that the desk alone fills with ``kind``.
+    """Mark ``layer`` as one that only the desk fills with ``kind``.
 
-    It cannot be edited, as robots that somebody drew would look like those that there are, and QGIS does not
+    It cannot be edited, as drawn robots would look like real ones, and QGIS does not
     ask on closing whether its contents may be lost.
     """
     layer.setCustomProperty(MARK, kind)
@@ -164,14 +164,14 @@ def live_layers(project: QgsProject) -> list[QgsMapLayer]:
 
 
 def keep_style(project: QgsProject, layer: QgsMapLayer) -> None:
-    """Keep the style of a live layer with ``project``, under the layer's kind."""
+    """Store the style of a live layer in ``project``, under the layer's kind."""
     style = QgsMapLayerStyle()
     style.readFromLayer(layer)
     project.writeEntry(SCOPE, _entry(layer), style.xmlData())
 
 
 def give_style(project: QgsProject, layer: QgsMapLayer) -> bool:
-    """Style a live layer as ``project`` has kept it; false where it has kept nothing."""
+    """Apply the style of a live layer stored in ``project``; false where there is none."""
     text, found = project.readEntry(SCOPE, _entry(layer))
     if not found or not text:
         return False
@@ -189,7 +189,7 @@ def _elements(document: QDomDocument, tag: str) -> list[QDomElement]:
 
 
 def _remove_if_empty(group: QDomNode) -> None:
-    """Take a group out of the saved tree when nothing is left in it but its properties."""
+    """Remove a group from the saved tree when only its properties are left."""
     children = group.childNodes()
     names = {children.item(k).nodeName() for k in range(children.count())}
     is_inner = group.nodeName() == "layer-tree-group" and group.parentNode().nodeName() == "layer-tree-group"
@@ -197,37 +197,37 @@ def _remove_if_empty(group: QDomNode) -> None:
         group.parentNode().removeChild(group)
 
 
-# --- The group of the project's layer tree that holds the fleet's layers ---
+# --- The group for the fleet's layers in the project's layer tree ---
 
 GROUP = "Fleet"
-"""Its name; what the user moves elsewhere in the tree stays the same group."""
+"""Its name; if the user moves it in the tree it stays the same group."""
 
 
 def fleet_group(project: QgsProject) -> QgsLayerTreeGroup:
-    """Return the group, made on top of the layer tree where there is none."""
+    """Return the group, created on top of the layer tree where there is none."""
     root = project.layerTreeRoot()
     return root.findGroup(GROUP) or root.insertGroup(0, GROUP)
 
 
 def leave_clean(project: QgsProject, was_dirty: bool) -> None:
-    """Have ``project`` as saved as it was: layers that come again with each link are no change to save."""
+    """Restore the saved state of ``project``: layers created with each link are no change to save."""
     if was_dirty:
         project.setDirty(True)
         return
     project.setDirty(False)
-    # QGIS's layer panel notes a change once more when it has laid out a new group.
+    # QGIS's layer panel marks the project as changed again after it has laid out a new group.
     QTimer.singleShot(0, lambda: project.setDirty(False))
 
 
 def remove_if_empty(project: QgsProject) -> None:
-    """Take the group out of the layer tree, unless somebody keeps layers in it."""
+    """Remove the group from the layer tree, unless somebody keeps layers in it."""
     group = project.layerTreeRoot().findGroup(GROUP)
     if group is not None and not group.children():
         above: QgsLayerTreeGroup = group.parent()
         above.removeChildNode(group)
 
 
-# --- A memory layer with a feature for each row of what the desk knows ---
+# --- A memory layer with a feature for each row of the desk's data ---
 
 Row = tuple[Sequence[tuple[float, float]], Sequence[Any]]
 """Points in the site frame, one for a point layer, and the values of the fields."""
@@ -237,10 +237,10 @@ AT_ONCE = 50
 
 
 class RowLayer:
-    """A layer of one kind of geometry in the site's CRS; made when there is a row to show.
+    """A layer of one kind of geometry in the site's CRS; created when there is a row to show.
 
-    It goes with its project, and comes again in the next one: what it shows is the desk's, not the project's.
-    It is written in slices, between which the window looks for events.
+    It is removed with its project, and created again in the next one: it shows the desk's data, not the
+    project's. It is written in slices, between which the window handles events.
     """
 
     def __init__(
@@ -259,7 +259,7 @@ class RowLayer:
         self._written: dict[tuple[Any, ...], list[tuple[Sequence[tuple[float, float]], int]]] = {}
         """The points and the id of each feature, by its values."""
         self._has_changed = False
-        """Whether it was written since it was painted."""
+        """Whether it was written since it was last painted."""
         self._shown: tuple[Sequence[Row], SiteReport | None] = ((), None)
         self._writing = CooperativeTask()
         self._watch = ProjectWatch(project)
@@ -267,20 +267,20 @@ class RowLayer:
 
     @property
     def layer(self) -> QgsVectorLayer | None:
-        """The layer, None while there is none, or the user took it out."""
+        """The layer, None while there is none, or the user removed it."""
         return self._project.mapLayer(self._id) if self._id is not None else None
 
     def show(self, rows: Sequence[Row], site: SiteReport | None) -> None:
-        """Have a feature for each of ``rows`` soon; those that are there already are left as they are."""
+        """Start updating to a feature for each of ``rows``; existing ones are left as they are."""
         self._shown = rows, site
         self._renew()
 
     def finish(self) -> None:
-        """Write at once all that is left to be: somebody is about to take the layer as it is."""
+        """Write all pending rows at once: the layer is about to be used."""
         self._writing.finish()
 
     def remove(self) -> None:
-        """Take the layer out of the project for good, and show nothing in the next one."""
+        """Remove the layer from the project for good, and show nothing in the next one."""
         self._watch.remove()
         self._writing.stop()
         self._shown = (), None
@@ -290,7 +290,7 @@ class RowLayer:
         self._writing.begin_soon(self._renewed())
 
     def _renewed(self) -> Steps[None]:
-        """Show what has to be shown; begin again where the layer is taken out meanwhile."""
+        """Write pending rows; start again where the layer is removed meanwhile."""
         for share in self._steps(*self._shown):
             yield share
             if self.layer is None:
@@ -312,7 +312,7 @@ class RowLayer:
             self.layer.triggerRepaint()
 
     def _have_layer(self, site: SiteReport) -> None:
-        """Have a layer in the site's CRS, without what was written of a site that lay elsewhere."""
+        """Provide a layer in the site's CRS, without features written for a site elsewhere."""
         if self.layer is not None and self.layer.crs() != QgsCoordinateReferenceSystem(site.crs):
             self._take_out()
         frame = frame_of(site)
@@ -371,7 +371,7 @@ class RowLayer:
 
 def _features(layer: QgsVectorLayer, rows: Sequence[Row], frame: SiteFrame) -> list[QgsFeature]:
     fields = layer.fields()
-    # All at once: to take each row's few points to the map takes longer than all else.
+    # All at once: transforming each row's few points separately takes longer than all else.
     placed = frame.to_crs(np.concatenate([np.array(points) for points, _ in rows]))
     ends = np.cumsum([len(points) for points, _ in rows])[:-1]
     features = []
@@ -390,7 +390,7 @@ def label(
     placement: QgsPalLayerSettings.LabelPlacement,
     millimetres: float,
 ) -> None:
-    """Label the features with an expression, so far from them, readable on any ground."""
+    """Label the features with an expression, at that distance, readable on any background."""
     settings = QgsPalLayerSettings()
     settings.fieldName, settings.isExpression = expression, True
     settings.placement, settings.dist = placement, millimetres

@@ -1,4 +1,4 @@
-"""Obstacle layers read into outlines, with a warning for all that could not be read as it is."""
+"""Obstacle layers read into outlines, with a warning for everything that could not be read unchanged."""
 
 from __future__ import annotations
 
@@ -41,19 +41,19 @@ from .reading import begin_reading
 from .roles import OBSTACLE_ROLES, RAMP, STAIRS, LayerExpressions
 from .site_transform import Bounds, LayerToSiteTransform, SiteGeoreference, SiteTransformError, widen_bounds
 
-# --- Furniture that is drawn as points: the small closed shape that stands for each ---
+# --- Furniture drawn as points: the small closed shape that each stands for ---
 
 POST_ACROSS_M = 0.5
-"""How far across a piece of furniture is that is drawn as a point and says nothing of its size."""
+"""Width in metres of a piece of furniture drawn as a point without a size."""
 
 REACH_M = 100.0
-"""How far the shape of a point can reach from it: a triangle around the largest circle there is."""
+"""Greatest extent of a point's shape from it: a triangle around the largest circle allowed."""
 
 
 class PointObstacles:
-    """Makes shapes of points by the expressions of one layer: by template, else as an octagon of a width.
+    """Makes shapes of points by the expressions of one layer: from a template, else an octagon of a width.
 
-    :raises ExpressionError: when one of the expressions is none.
+    :raises ExpressionError: when one of the expressions is invalid.
     """
 
     def __init__(self, rules: LayerRules, expressions: LayerExpressions):
@@ -66,7 +66,7 @@ class PointObstacles:
     def of(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
         """Return a shape around each of ``points``, the geometry of ``feature`` in metres.
 
-        ``rotation`` turns it clockwise, so that a heading turns what faces north to face there.
+        ``rotation`` turns it clockwise, so that a heading turns a shape facing north to face there.
         """
         places = _places(points)
         if not all(map(math.isfinite, chain.from_iterable(places))):
@@ -128,19 +128,19 @@ def _places(points: QgsGeometry) -> list[tuple[float, float]]:
     return [(point.x(), point.y()) for point in some]
 
 
-# --- Features of one obstacle layer made into outlines, many at a time ---
+# --- Features of one obstacle layer converted to outlines, many at a time ---
 
 ESTIMATED = {"h": "est"}
-"""The extra of an obstacle whose height nobody knows."""
+"""The extra of an obstacle of unknown height."""
 
 _NOTHING: dict[str, str] = {}
 
 
 class OutlineBatch:
-    """Makes the outlines of the layer ``name`` with ``role``; warns of what was repaired or left out.
+    """Makes the outlines of the layer ``name`` with ``role``; warns of repairs and omissions.
 
-    ``unknown`` are features whose height nobody knows, ``odd_for_role`` those that such a layer should not
-    hold.
+    ``unknown`` are features of unknown height, ``odd_for_role`` those unexpected in a layer of that
+    role.
     """
 
     def __init__(
@@ -154,27 +154,27 @@ class OutlineBatch:
         self.odd_for_role = SomeFeatures()
 
     def __len__(self) -> int:
-        """Return how many features wait until their outlines are asked for."""
+        """Return the number of features waiting until their outlines are requested."""
         return len(self._features.ids)
 
     def add(self, id: int, wkb: bytes, geometry: QgsGeometry, values: ObstacleValues) -> None:
-        """Add a feature that counts: its geometry in metres, also as ``wkb``, and what is said of it."""
+        """Add a feature that counts: its geometry in metres, also as ``wkb``, and its values."""
         rings = rings_of(wkb) if self._is_plain else None
         is_valid = rings is not None and (not rings.closed or geometry.isGeosValid())
         self._features.add(id, wkb, rings or _NO_RINGS, is_valid, values)
 
     def add_shapes(self, id: int, shapes: Sequence[FeatureShape], values: ObstacleValues) -> None:
-        """Add a feature whose geometry was made into closed ``shapes``, such as the template of a point.
+        """Add a feature whose geometry was converted to closed ``shapes``, such as the template of a point.
 
-        What there is to say of them stands in the notes of ``values``.
+        Its notes are in ``values``.
         """
         rings = Rings([shape.points.tobytes() for shape in shapes], [False] * len(shapes), True)
         self._features.add(id, b"", rings, True, values)
 
     def outlines(self) -> Iterator[Outlines]:
-        """Yield the outlines of what was added in its order, and forget it.
+        """Yield the outlines of the features added, in order, and forget them.
 
-        Sound lines and polygons together, which is quick; each of the others by itself.
+        Sound lines and polygons together, which is quick; each of the others separately.
         """
         features, self._features = self._features, _FeatureColumns()
         if not features.ids:
@@ -250,7 +250,7 @@ class OutlineBatch:
             if shape.closed:
                 points[-1] = points[0]
             if not shape.courtyard:
-                # A courtyard is in the surface of the ring around it and says the same.
+                # A courtyard is in the surface of the ring around it and has the same values.
                 ext = _extras(shape, points, values.estimated, notes)
             rows.append(
                 OutlineRow(
@@ -272,22 +272,22 @@ _NO_RINGS = Rings([], [], True)
 
 
 class _FeatureColumns:
-    """Features that count, a list for each thing that is known of them.
+    """Features that count, a list for each of their properties.
 
-    No object for each feature: while there are more and more that hold others, Python looks all of them
-    through again and again for what may be thrown away.
+    No object per feature: with ever more of them that hold others, Python's garbage collector would
+    scan all of them again and again.
     """
 
     def __init__(self) -> None:
         self.ids: list[int] = []
         self.wkb: list[bytes] = []
-        """Their geometries in metres, empty where there is nothing but rings."""
+        """Their geometries in metres, empty where there are only rings."""
         self.valid: list[bool] = []
-        """Whether the rings may be taken as they are, as far as GEOS tells."""
+        """Whether GEOS finds the rings valid."""
         self.values: list[ObstacleValues] = []
         self.closed: list[bool] = []
         self.counts: list[int] = []
-        """How many rings or lines each has; ``points`` and ``inner`` have those of all."""
+        """The number of rings or lines of each; ``points`` and ``inner`` have those of all."""
         self.points: list[bytes] = []
         self.inner: list[bool] = []
 
@@ -307,29 +307,29 @@ def _repeated(values: Sequence[Any], counts: Sequence[int]) -> list[Any]:
 
 
 def _extras(shape: FeatureShape, points: np.ndarray, estimated: bool, notes: list[str]) -> dict[str, str]:
-    """Return what else ``shape`` has to say, whose ``points`` are (n, 2) in the site frame."""
+    """Return the extras of ``shape``, whose ``points`` are (n, 2) in the site frame."""
     if shape.z is not None:
         return normal_extra(points, shape.z, notes)
     return dict(ESTIMATED) if estimated else {}
 
 
 def _odd(shape: FeatureShape, role: str) -> bool:
-    """Tell whether a layer of ``role`` should not hold this shape."""
+    """Return whether this shape is unexpected in a layer of ``role``."""
     return (role == STAIRS and shape.closed) or (role == RAMP and not shape.closed)
 
 
-# --- Obstacle layers read into outlines; whatever could not be read as it is becomes a warning ---
+# --- Obstacle layers read into outlines; everything that could not be read unchanged becomes a warning ---
 
 TOGETHER = 2000
-"""Features made into outlines at a time: few enough to keep, enough to be quick."""
+"""Features converted to outlines at a time: few enough for memory, enough for speed."""
 NO_GEOMETRY = tr("has no geometry; it is left out")
 
 
 @dataclass
 class ObstacleReading:
-    """What was read: outlines in the site frame, warnings naming layer and feature.
+    """The result of reading: outlines in the site frame, warnings naming layer and feature.
 
-    Outlines whose height is the default say so in their ``ext``. ``complete`` is false after a cancel.
+    Outlines with the default height are marked in their ``ext``. ``complete`` is false if cancelled.
     """
 
     parts: list[Outlines] = field(default_factory=list)
@@ -355,7 +355,7 @@ def read_outlines(
 ) -> ObstacleReading:
     """Return the outlines of all features whose bounding box touches ``window``, metres in the site frame.
 
-    All features where there is no window.
+    Without a window, those of all features.
 
     Expressions and CRSs of every layer are checked before the first feature is read.
 
@@ -372,9 +372,9 @@ def check_sources(sources: Sequence[ObstacleSource], site: SiteGeoreference) -> 
 
 
 class ObstacleReader:
-    """Reads as :func:`read_outlines`, and keeps nothing of what it has read but ``warnings``.
+    """Reads like :func:`read_outlines`, and keeps nothing of the results but ``warnings``.
 
-    ``complete`` is false after a cancel.
+    ``complete`` is false if cancelled.
     """
 
     def __init__(
@@ -391,7 +391,7 @@ class ObstacleReader:
         ]
 
     def parts(self, feedback: QgsFeedback) -> Iterator[Outlines]:
-        """Yield the outlines, some features' at a time, in the order of layers and features."""
+        """Yield the outlines, of some features at a time, in the order of layers and features."""
         total = max(sum(max(count_stored(layer.source), 0) for layer in self._layers), 1)
         step, done = max(total // 1000, 1), 0
         for layer in self._layers:
@@ -410,7 +410,7 @@ class ObstacleReader:
 
 
 class _LayerReader:
-    """Reads the features of one layer, and keeps them until their outlines are asked for."""
+    """Reads the features of one layer, and keeps them until their outlines are requested."""
 
     def __init__(
         self,
@@ -437,14 +437,14 @@ class _LayerReader:
 
     @property
     def waiting(self) -> int:
-        """How many features are read whose outlines nobody has asked for."""
+        """The number of features read whose outlines were not requested."""
         return len(self._batch)
 
     def features(self) -> Iterator[QgsFeature]:
-        """Yield the features that may touch the window, and those that are nowhere.
+        """Yield the features that may touch the window, and those without a geometry.
 
-        By the layer's own index: most of a city is nowhere near a window. All features where the window has
-        no place in the layer.
+        By the layer's own index: most of a city is nowhere near a window. All features where the window
+        cannot be expressed in the layer's CRS.
         """
         request = QgsFeatureRequest()
         if self._around is not None:
@@ -454,7 +454,7 @@ class _LayerReader:
         yield from self.source.features.getFeatures(request)
 
     def read(self, feature: QgsFeature) -> None:
-        """Keep ``feature`` if it counts, or a warning why there is nothing of it."""
+        """Keep ``feature`` if it counts, or a warning why nothing of it is read."""
         doubts: list[str] = []
         if not self._filter.keeps(feature, doubts):
             self._warn(feature, doubts)
@@ -486,9 +486,9 @@ class _LayerReader:
         yield from self._batch.outlines()
 
     def finish(self) -> None:
-        """Add the warnings that are about the layer as a whole.
+        """Add the warnings about the layer as a whole.
 
-        :raises LayerTypeError: when it cannot be read any more.
+        :raises LayerTypeError: when it can no longer be read.
         """
         check_readable(self.source)
         name, role = self.source.name, self.source.role
@@ -523,13 +523,13 @@ class _LayerReader:
             )
 
     def _may_touch(self, geometry: QgsGeometry) -> bool:
-        """Tell whether a feature of ``geometry`` must be looked at, where there is a window."""
+        """Return whether a feature of ``geometry`` must be processed, if there is a window."""
         area = self._around if _is_points(geometry) else self._area
         box = geometry.boundingBox()
         return area is None or box.isNull() or not box.isFinite() or area.intersects(box)
 
     def _posts_in(self, feature: QgsFeature, points: QgsGeometry) -> FeatureShapes:
-        """Return the shapes of ``points``; nothing where none of them reaches into the window."""
+        """Return the shapes of ``points``; empty where none of them reaches into the window."""
         posts = self._posts.of(feature, points)
         if self._window is None:
             return posts

@@ -47,7 +47,7 @@ from .layer_source import (
 from .roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from .site_transform import LayerToSiteTransform, SiteGeoreference
 
-# --- What the network needs to know of each road: width, surface, direction, speed, closed or not, level
+# --- Attributes of roads for the network: width, surface, direction, speed, closed or not, level
 
 _DIRECTIONS = {
     **dict.fromkeys(("both", "no", "false", "0", "f,t", "b", "none"), BOTH),
@@ -60,7 +60,7 @@ _MPH = re.compile(r"\s*(\d+(?:[.,]\d+)?)\s*mph\s*", re.ASCII)
 WIDTH_FIELDS = ("width_m", "width")
 DIRECTION_FIELDS = ("direction", "oneway", "one_way")
 DIRECTION_TAGS = ("oneway",)
-"""Of OpenStreetMap's tags; its ``direction`` says where a sign or a bench faces."""
+"""OpenStreetMap's tags; its ``direction`` is where a sign or a bench faces."""
 ROUNDABOUTS = ("roundabout", "circular")
 SPEED_FIELDS = ("speed_ms",)
 KMH_FIELDS = ("maxspeed", "speed_limit")
@@ -69,7 +69,7 @@ LEVEL_FIELDS = ("level", "layer")
 
 @dataclass(frozen=True)
 class RoadExpressions:
-    """QGIS expressions; an empty one stands for the fields that such layers usually have."""
+    """QGIS expressions; an empty one stands for the usual fields of such layers."""
 
     width: str = ""
     surface: str = ""
@@ -81,7 +81,7 @@ class RoadExpressions:
 
 @dataclass(frozen=True)
 class Traffic:
-    """How one road may be driven; ``speed`` in m/s is None where it is not known."""
+    """Driving restrictions of one road; ``speed`` in m/s is None where it is not known."""
 
     direction: int
     speed: float | None
@@ -91,7 +91,7 @@ class Traffic:
 
 @dataclass(frozen=True)
 class RoadAttributes:
-    """What is known of one road; ``width`` in metres is None where it is not known."""
+    """Attributes of one road; ``width`` in metres is None where it is not known."""
 
     width: float | None
     surface: str
@@ -101,7 +101,7 @@ class RoadAttributes:
 class RoadRules:
     """Evaluates the expressions of one layer of roads.
 
-    :raises ExpressionError: when one of them is none, or reads a field that is not there.
+    :raises ExpressionError: when one of them is invalid, or reads a missing field.
     """
 
     def __init__(self, rules: LayerRules, given: RoadExpressions) -> None:
@@ -121,10 +121,10 @@ class RoadRules:
         ]
         about_ways = (self._direction, self._junction, self._speed, self._kmh, self._closed, self._level)
         self.of_traffic = [*about_ways, *(rule for _, rule in self._structures)]
-        """The rules that :meth:`traffic` asks."""
+        """The rules used by :meth:`traffic`."""
 
     def of(self, notes: list[str]) -> RoadAttributes:
-        """Return what is known of the road that the rules are at; what is not understood becomes a note."""
+        """Return the attributes of the road that the rules are set to; unreadable ones become a note."""
         surface = self._rules.value("surface", self._surface, notes)
         return RoadAttributes(
             width=self._rules.metres("width", self._width, notes),
@@ -133,7 +133,7 @@ class RoadRules:
         )
 
     def traffic(self, notes: list[str]) -> Traffic:
-        """Return how the road that the rules are at may be driven."""
+        """Return the driving restrictions of the road that the rules are set to."""
         return Traffic(
             direction=self._direction_of(notes),
             speed=self._speed_of(notes),
@@ -167,7 +167,7 @@ class RoadRules:
         value = self._value("direction", self._direction, notes)
         if value is None:
             junction = self._value("direction", self._junction, notes)
-            # OpenStreetMap: a roundabout is one-way where it does not say otherwise.
+            # OpenStreetMap: a roundabout is one-way unless it says otherwise.
             return FORWARD if junction in ROUNDABOUTS else BOTH
         direction = _DIRECTIONS.get(str(value).strip().lower())
         if direction is None:
@@ -210,7 +210,8 @@ class RoadRules:
             return round(number)
         for level, rule in self._structures:
             there = self._value("level", rule, notes)
-            # Kinds of bridges and tunnels are many; none is called no, or F as in Geofabrik's shapefiles.
+            # There are many kinds of bridges and tunnels; none is called no, or F as in Geofabrik's
+            # shapefiles.
             if there is not None and as_flag(there) is not False and str(there).strip() not in ("F", "f"):
                 return level
         return 0
@@ -230,20 +231,20 @@ DEFAULT_WIDTH_M = 3.5
 """The width of a road where none is known: one lane."""
 
 TOGETHER = 1000
-"""Roads that are looked at and placed at a time."""
+"""Roads that are checked and placed at a time."""
 
 LABEL_FIELDS = {ROAD_CENTRELINE: "surface", ROAD_SURFACE: "surface", KEEPOUT: "name"}
 """The field that labels a feature of each role where no expression does."""
 
-# Named, not given: typing remembers variables, and would keep the classes of a plugin that was unloaded.
+# A named variable: typing caches type variables, and would keep the classes of an unloaded plugin.
 Item = TypeVar("Item", bound="Centreline | Area | Surface")
 
 
 @dataclass
 class GroundReading(Generic[Item]):
-    """What was read, in the site frame, and what is to be warned of, by layer and feature.
+    """Items in the site frame, and warnings by layer and feature.
 
-    ``complete`` is false after a cancel.
+    ``complete`` is false if cancelled.
     """
 
     items: list[Item] = field(default_factory=list)
@@ -264,7 +265,7 @@ class GroundReading(Generic[Item]):
 def read_centrelines(
     sources: Sequence[ObstacleSource], site: SiteGeoreference, default_width: float, feedback: QgsFeedback
 ) -> GroundReading[Centreline]:
-    """Return the roads of layers of lines; what is no line is left out with a warning.
+    """Return the roads of layers of lines; other geometries are left out with a warning.
 
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
@@ -280,7 +281,7 @@ def each_centreline(
     reading: GroundReading[Centreline],
     feedback: QgsFeedback,
 ) -> Iterator[Centreline]:
-    """Yield what :func:`read_centrelines` returns; ``reading`` gets the warnings and no items."""
+    """Yield the items of :func:`read_centrelines`; ``reading`` receives the warnings and no items."""
     for source in sources:
         unknown = SomeFeatures()
         layer = _GroundLayer(source, site, ROAD_CENTRELINE)
@@ -305,7 +306,7 @@ def _roads(
     reading: GroundReading[Centreline],
     feedback: QgsFeedback,
 ) -> Iterator[Centreline]:
-    """Yield the roads of one layer; ``unknown`` gets the features whose width is not known."""
+    """Yield the roads of one layer; ``unknown`` receives the features of unknown width."""
     values, waiting = _RoadValues(layer), _RoadColumns()
     for row in layer.rows(reading, feedback):
         about = None if row.geometry is None else values.of(row.feature)
@@ -320,7 +321,7 @@ def _roads(
 
 
 class _KnownRoad(NamedTuple):
-    """What is known of a road beside its line, and what there is to say of its width and of the rest."""
+    """Attributes of a road besides its line, with notes on its width and on the rest."""
 
     width: float | None
     label: str
@@ -330,7 +331,7 @@ class _KnownRoad(NamedTuple):
 
 
 class _RoadValues:
-    """Evaluates what ``layer`` says of its roads."""
+    """Evaluates the attributes of roads of ``layer``."""
 
     def __init__(self, layer: _GroundLayer) -> None:
         given = layer.source.expressions.width or layer.rules.column(*WIDTH_FIELDS)
@@ -340,7 +341,7 @@ class _RoadValues:
         self._memory = Memory([self._width, layer.label_rule, *self._roads.of_traffic])
 
     def of(self, feature: QgsFeature) -> _KnownRoad:
-        """Return what is known of ``feature``, which the rules of the layer are at."""
+        """Return the attributes of ``feature``, which the rules of the layer are set to."""
         known, key = self._layer.rules.known(self._memory)
         if known is UNKNOWN:
             of_width: list[str] = []
@@ -353,17 +354,17 @@ class _RoadValues:
 
 
 class _RoadColumns:
-    """Features of a layer of roads, a list for each thing that is known of them."""
+    """Features of a layer of roads, a list for each of their properties."""
 
     def __init__(self) -> None:
         self.ids: list[int] = []
         self.notes: list[Sequence[str]] = []
         self.wkb: list[bytes] = []
         self.about: list[_KnownRoad | None] = []
-        """Nothing of those without a geometry."""
+        """None for those without a geometry."""
         self.points: list[bytes] = []
         self.counts: list[int] = []
-        """How many plain lines each has; ``points`` has those of all."""
+        """The number of plain lines of each; ``points`` has those of all."""
 
     def add(self, row: FeatureRow, about: _KnownRoad | None) -> None:
         wkb = b"" if row.geometry is None else row.geometry.asWkb().data()
@@ -380,10 +381,10 @@ class _RoadColumns:
 def _placed(
     roads: _RoadColumns, layer: _GroundLayer, default_width: float, reading: GroundReading[Centreline]
 ) -> Iterator[Centreline]:
-    """Yield the lines of ``roads``; the plain ones are looked at and placed together, which is quick."""
+    """Yield the lines of ``roads``; the plain ones are checked and placed together, which is quick."""
     count = len(roads.ids)
     table = RingTable(roads.points, roads.counts, [False] * count, [True] * count)
-    # What is odd, such as no number, is not read of it.
+    # Values of unsound features, such as NaN, are not read from it.
     with np.errstate(all="ignore"):
         placed = layer.placing.to_site(table.coordinates(table.rings(0, count)))
     for k, (about, is_sound) in enumerate(zip(roads.about, table.sound.tolist(), strict=True)):
@@ -411,7 +412,7 @@ def _placed(
 def read_areas(
     sources: Sequence[ObstacleSource], site: SiteGeoreference, role: str, feedback: QgsFeedback
 ) -> GroundReading[Area]:
-    """Return the polygons of layers of ``role``; what is no polygon is left out with a warning.
+    """Return the polygons of layers of ``role``; other geometries are left out with a warning.
 
     :raises LayerReadingError: as :func:`read_centrelines`.
     """
@@ -427,7 +428,7 @@ def each_area(
     reading: GroundReading[Area],
     feedback: QgsFeedback,
 ) -> Iterator[Area]:
-    """Yield what :func:`read_areas` returns; ``reading`` gets the warnings and no items."""
+    """Yield the items of :func:`read_areas`; ``reading`` receives the warnings and no items."""
     for source in sources:
         layer = _GroundLayer(source, site, role)
         for rings, label in _polygons(layer, reading, feedback):
@@ -440,7 +441,7 @@ def read_surfaces(
 ) -> GroundReading[Surface]:
     """Return the road surfaces of layers of polygons, with their fields ``name`` and ``origin``.
 
-    What does not say that it was generated was drawn.
+    One that is not marked as generated was drawn.
 
     :raises LayerReadingError: as :func:`read_centrelines`.
     """
@@ -455,7 +456,7 @@ def each_surface(
     reading: GroundReading[Surface],
     feedback: QgsFeedback,
 ) -> Iterator[Surface]:
-    """Yield what :func:`read_surfaces` returns; ``reading`` gets the warnings and no items."""
+    """Yield the items of :func:`read_surfaces`; ``reading`` receives the warnings and no items."""
     for source in sources:
         layer = _GroundLayer(source, site, ROAD_SURFACE)
         name, origin = (layer.rules.rule(field, layer.rules.column(field)) for field in ("name", "origin"))
@@ -489,7 +490,7 @@ def check_ground_sources(sources: Sequence[ObstacleSource], site: SiteGeoreferen
 
 
 class _GroundLayer:
-    """One layer of roads or areas: where it lies, what its expressions say, which features it has."""
+    """One layer of roads or areas: its transform, its expressions, its features."""
 
     def __init__(self, source: ObstacleSource, site: SiteGeoreference, role: str):
         self.source = source
@@ -501,7 +502,7 @@ class _GroundLayer:
         self._otherwise = source.name if role == KEEPOUT else ""
 
     def rows(self, reading: GroundReading, feedback: QgsFeedback) -> Iterator[FeatureRow]:
-        """Yield every feature; of one with a geometry the rules speak until the next is asked for."""
+        """Yield every feature; the rules are set to one with a geometry until the next is requested."""
         source = self.source
         reader = FeatureReader(source.name, source.features, self.placing, self._filter, feedback)
         for row in reader:
@@ -516,7 +517,7 @@ class _GroundLayer:
     def features(
         self, reading: GroundReading, feedback: QgsFeedback
     ) -> Iterator[tuple[QgsFeature, QgsGeometry]]:
-        """Yield each feature that counts with its geometry in metres; warn of those that have none."""
+        """Yield each feature that counts with its geometry in metres; warn of those without one."""
         for row in self.rows(reading, feedback):
             self.add_warnings(row.feature.id(), row.notes, reading)
             if row.geometry is not None:
@@ -528,7 +529,7 @@ class _GroundLayer:
         return self._otherwise if value is None else str(value)
 
     def add_warnings(self, id: int, notes: Sequence[str], reading: GroundReading) -> None:
-        """Warn of the feature with this id."""
+        """Add warnings about the feature with this id."""
         for note in notes:
             reading.notes.add(self.source.name, id, note)
 
@@ -559,15 +560,15 @@ def _lines_in(parts: GeometryParts, notes: list[str]) -> list[np.ndarray]:
     return lines
 
 
-# --- Roads that lead through areas that nobody may drive into, found by QGIS's own geometry ---
+# --- Roads that lead through keepout areas, found by QGIS's own geometry ---
 
 Floats = npt.NDArray[np.float64]
 
 
 def edges_through(network: Network, areas: Sequence[Sequence[Floats]]) -> list[int]:
-    """Return the edges that come into one of ``areas``, each an outer ring and its holes, (n, 2) each.
+    """Return the edges that enter one of ``areas``, each an outer ring and its holes, (n, 2) each.
 
-    What runs along the rim comes into none.
+    An edge along the boundary enters none.
     """
     if not len(network):
         return []

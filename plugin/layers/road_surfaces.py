@@ -34,14 +34,14 @@ from .road_layers import read_surfaces
 from .roles import ROAD_SURFACE, LayerExpressions, layers_with_role
 from .site_transform import SiteGeoreference, transform_points_or_nan
 
-# --- The road surfaces of layers, ready to be asked from any CRS ---
+# --- The road surfaces of layers, for queries in any CRS ---
 
 WGS84 = "EPSG:4326"
 
 
 @dataclass(frozen=True)
 class SurfaceSources:
-    """Layers of surfaces as they are read, from any thread, and the CRS of their project."""
+    """Sources of layers of surfaces, readable from any thread, and the CRS of their project."""
 
     sources: Sequence[ObstacleSource]
     project_crs: QgsCoordinateReferenceSystem
@@ -50,7 +50,7 @@ class SurfaceSources:
 
 @dataclass
 class SurfaceMap:
-    """Surfaces in ``crs``; ``warnings`` name layer and feature of what could not be read as it is."""
+    """Surfaces in ``crs``; ``warnings`` name layer and feature of everything not read unchanged."""
 
     index: SurfaceIndex
     crs: QgsCoordinateReferenceSystem
@@ -58,11 +58,11 @@ class SurfaceMap:
     warnings: list[str] = field(default_factory=list)
 
     def way_from(self, crs: QgsCoordinateReferenceSystem) -> QgsCoordinateTransform:
-        """Return the way from ``crs`` to that of the surfaces; without a valid CRS there is nothing to do."""
+        """Return the transform from ``crs`` to that of the surfaces; without a valid CRS the identity."""
         return QgsCoordinateTransform(crs, self.crs, self.transforms)
 
     def at(self, x: float, y: float, way: QgsCoordinateTransform) -> Surface | None:
-        """Return the surface at (x, y), which ``way`` leads from; None where there is none."""
+        """Return the surface at (x, y), in the source CRS of ``way``; None where there is none."""
         if not way.isShortCircuited():
             try:
                 point = way.transform(QgsPointXY(x, y))
@@ -83,9 +83,9 @@ def surface_sources(
     transforms: QgsCoordinateTransformContext,
     scope: QgsExpressionContext,
 ) -> SurfaceSources:
-    """Return what is read of ``layers``, each with its own filter and label; in the thread of the layers.
+    """Return the sources of ``layers``, each with its own filter and label; in the thread of the layers.
 
-    ``scope`` is what their expressions see besides the layer.
+    ``scope`` is available to their expressions besides the layer.
 
     :raises FleetError: naming a layer that holds no areas or cannot be opened.
     """
@@ -94,7 +94,7 @@ def surface_sources(
 
 
 def read_surface_map(sources: SurfaceSources, feedback: QgsFeedback) -> SurfaceMap | None:
-    """Return the surfaces of ``sources``; None after a cancel.
+    """Return the surfaces of ``sources``; None if cancelled.
 
     :raises FleetError: when a layer has no known place or an expression is not one.
     """
@@ -109,8 +109,8 @@ def read_surface_map(sources: SurfaceSources, feedback: QgsFeedback) -> SurfaceM
 def _crs_in_metres(sources: SurfaceSources) -> QgsCoordinateReferenceSystem:
     """Return the first CRS of layers and project that is a plane in metres, else the UTM zone of a layer.
 
-    Edges are straight in it, and repairs and curves are told in metres. Where a layer lies is read of one of
-    its areas: to ask its server for the extent may take for ever, so it is no question for the window.
+    Edges are straight in it, and repairs and curves are in metres. The location of a layer is read from one
+    of its areas: querying its server for the extent may block for ever, and must not be done in the window.
     """
     for crs in (*(source.crs for source in sources.sources), sources.project_crs):
         if crs.isValid() and _carries(crs):
@@ -146,20 +146,20 @@ def _carries(crs: QgsCoordinateReferenceSystem) -> bool:
 
 Key = tuple[str, ...]
 _WAIT_S = 0.5
-"""Seconds that an expression in the window's thread waits for surfaces; those of most sites are read then."""
+"""Seconds that an expression in the window's thread waits for surfaces; enough for most sites."""
 
 
 class SurfaceStore(QObject):
-    """Keeps what was read of layers, by their ids. It lives in the main thread, and any thread may ask it.
+    """Cache of surfaces, by the ids of their layers. It lives in the main thread, usable from any thread.
 
-    Another thread gets what is kept, else reads for itself: a layer tells only the main thread of changes.
-    Where the main thread ``has_window`` it waits for no layer.
+    Another thread gets the cached ones, else reads for itself: a layer signals changes only in the main
+    thread. If the main thread ``has_window`` it waits for no layer.
     """
 
     forgotten = pyqtSignal()
-    """Something was thrown away: have it read again where it is still wanted."""
+    """A cache entry was dropped: have it read again where it is still needed."""
     ended = pyqtSignal(object, str)
-    """The layers of a key have been read and are kept, or the text says why not."""
+    """The layers of a key have been read and are cached, or the text is the error."""
 
     def __init__(self, project: QgsProject, parent: QObject | None = None, *, has_window: bool = True):
         super().__init__(parent)
@@ -175,7 +175,7 @@ class SurfaceStore(QObject):
         return layers_with_role(self._project, ROAD_SURFACE)
 
     def kept(self, layers: Sequence[QgsVectorLayer]) -> SurfaceMap | None:
-        """Return what is kept of ``layers``, None where it has to be read."""
+        """Return the cached surfaces of ``layers``, None where they must be read."""
         return self._maps.get(key_of(layers))
 
     def read(self, layers: Sequence[QgsVectorLayer]) -> SurfaceMap:
@@ -193,7 +193,7 @@ class SurfaceStore(QObject):
         return found
 
     def begin(self, layers: Sequence[QgsVectorLayer]) -> None:
-        """Have ``layers`` read in a thread, unless that is under way; :attr:`ended` comes when they are.
+        """Have ``layers`` read in a thread, unless that is under way; :attr:`ended` follows.
 
         :raises FleetError: as :meth:`read`.
         """
@@ -208,7 +208,7 @@ class SurfaceStore(QObject):
         self._readings[key].begin(reader)
 
     def remove(self) -> None:
-        """Watch no layer any longer and forget everything."""
+        """Stop watching layers and forget everything."""
         self._watch.remove()
         self._stop()
         self._maps.clear()
@@ -245,7 +245,7 @@ class SurfaceStore(QObject):
         self.ended.emit(key, why)
 
     def _forget(self) -> None:
-        # What changed while it was read has to be read once more.
+        # A layer that changed while it was read must be read again.
         self._stop()
         self._maps.clear()
         self.forgotten.emit()
@@ -266,5 +266,5 @@ class _SurfaceReader:
 
 
 def key_of(layers: Sequence[QgsVectorLayer]) -> Key:
-    """Return what ``layers`` are kept by."""
+    """Return the cache key of ``layers``."""
     return tuple(layer.id() for layer in layers)

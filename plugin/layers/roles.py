@@ -1,8 +1,8 @@
-"""Layer roles: what a layer of the project is to the supervisor, kept in the layer or said by a map profile.
+"""Layer roles: the use of a project's layer for robots, stored in the layer or given by a map profile.
 
-A role and its expressions travel with the project file, so that a site is prepared once and every
-export, check and publication agrees on it. A profile says by names and fields what layers of a known kind of
-data are.
+A role and its expressions are stored in the project file, so that a site is prepared once and every
+export, check and publication agrees on it. A profile gives by names and fields the roles of layers of a known
+kind of data.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from ...robot_bridge.core.json_decoder import LARGEST_TOML, decode_json, toml_ta
 from ..ui.errors import ProfileError
 from ..ui.language import tr
 
-# --- What a layer keeps itself, in its custom properties ---
+# --- Settings stored in a layer's custom properties ---
 
 OBSTACLE = "obstacle"
 STAIRS = "stairs"
@@ -40,13 +40,13 @@ ROLE_PROPERTY = "fleet/role"
 
 @dataclass(frozen=True)
 class LayerExpressions:
-    """QGIS expressions of one layer; an empty one leaves the choice to whoever exports.
+    """QGIS expressions of one layer; an empty one leaves the choice to the exporter.
 
-    ``height`` gives metres from the foot up (of one riser for stairs), ``estimate`` what they are taken for
-    where ``height`` says nothing, such as three for each storey; ``semantics`` a label such as
+    ``height`` gives metres from the foot up (of one riser for stairs), ``estimate`` an estimate
+    where ``height`` gives none, such as three for each storey; ``semantics`` a label such as
     ``building,A5`` (of a road its surface, of a keepout its name), ``outdoor`` true or false, ``width`` the
-    metres of a road or across a point of furniture, ``base`` the metres above the ground where a thing
-    begins. ``filter`` is true of the features that count. ``template`` names the shape that a point of
+    metres of a road or across a point of furniture, ``base`` the metres above the ground where an object
+    begins. ``filter`` is true for the features that count. ``template`` names the shape that a point of
     furniture stands for, ``rotation`` the degrees that it is turned clockwise.
     """
 
@@ -62,50 +62,50 @@ class LayerExpressions:
 
 
 EXPRESSIONS = tuple(field.name for field in fields(LayerExpressions))
-"""The names of all expressions; each is kept in the custom property ``fleet/`` and its name."""
+"""The names of all expressions; each is stored in the custom property ``fleet/`` and its name."""
 
 
 @dataclass(frozen=True)
 class LayerSetup:
-    """What a layer is to the supervisor: a role, ``""`` for none, and its expressions."""
+    """The setup of a layer: a role, ``""`` for none, and its expressions."""
 
     role: str = ""
     expressions: LayerExpressions = LayerExpressions()
 
 
 def role_of(layer: QgsMapLayer) -> str:
-    """Return the role of ``layer``, or ``""`` when it has none or one that is not known."""
+    """Return the role of ``layer``, or ``""`` when it has none or an unknown one."""
     role = str(layer.customProperty(ROLE_PROPERTY, "") or "")
     return role if role in ROLES else ""
 
 
 def set_role(layer: QgsMapLayer, role: str) -> None:
-    """Give ``layer`` the role ``role``; ``""`` takes it away. Raises ValueError for an unknown one."""
+    """Set the role of ``layer``; ``""`` removes it. Raises ValueError for an unknown one."""
     if role and role not in ROLES:
         raise ValueError(f"{role!r} is not a layer role; choose one of {', '.join(ROLES)}")
     _write(layer, ROLE_PROPERTY, role)
 
 
 def expressions_of(layer: QgsMapLayer) -> LayerExpressions:
-    """Return the expressions kept in ``layer``."""
+    """Return the expressions stored in ``layer``."""
     return LayerExpressions(
         **{name: str(layer.customProperty(f"fleet/{name}", "") or "") for name in EXPRESSIONS}
     )
 
 
 def set_expressions(layer: QgsMapLayer, expressions: LayerExpressions) -> None:
-    """Keep ``expressions`` in ``layer``; an empty one is taken away."""
+    """Store ``expressions`` in ``layer``; an empty one is removed."""
     for name in EXPRESSIONS:
         _write(layer, f"fleet/{name}", getattr(expressions, name))
 
 
 def setup_of(layer: QgsMapLayer) -> LayerSetup:
-    """Return the role and the expressions kept in ``layer``."""
+    """Return the role and the expressions stored in ``layer``."""
     return LayerSetup(role_of(layer), expressions_of(layer))
 
 
 def keep_setup(layer: QgsMapLayer, setup: LayerSetup) -> None:
-    """Keep the role and the expressions of ``setup`` in ``layer``."""
+    """Store the role and the expressions of ``setup`` in ``layer``."""
     set_role(layer, setup.role)
     set_expressions(layer, setup.expressions)
 
@@ -123,13 +123,13 @@ def _write(layer: QgsMapLayer, key: str, value: str) -> None:
         layer.removeCustomProperty(key)
 
 
-# --- The names that a layer goes by ---
+# --- The names of a layer ---
 
 
 def plain_name(layer: QgsVectorLayer) -> str:
-    """Return the layer's name; the one inside its file where it is only called as the file is.
+    """Return the layer's name; the one inside its file where it is only named after the file.
 
-    That is what qgis_process calls ``campus.gpkg|layername=walls``: all layers of a file alike.
+    qgis_process names layers like ``campus.gpkg|layername=walls`` so: all layers of a file alike.
     """
     inside, path = _source_of(layer)
     called_as_file = bool(inside and path) and layer.name() == Path(path).stem
@@ -137,10 +137,10 @@ def plain_name(layer: QgsVectorLayer) -> str:
 
 
 def names_of(layer: QgsVectorLayer) -> list[str]:
-    """Return the names that the layer goes by: the one that is shown, and the one in its file or database.
+    """Return the names of the layer: the one that is shown, and the one in its file or database.
 
     QGIS's browser shows ``campus — walls`` for the layer ``walls`` of ``campus.gpkg``. A file of one layer
-    may say no name of it: then it is the file's.
+    may have no name for it: then it is the file's.
     """
     inside, path = _source_of(layer)
     return list(dict.fromkeys(name for name in (plain_name(layer), inside or Path(path).stem) if name))
@@ -149,12 +149,12 @@ def names_of(layer: QgsVectorLayer) -> list[str]:
 def _source_of(layer: QgsVectorLayer) -> tuple[str, str]:
     """Return the layer's name in its source, and the source's path; each empty where there is none."""
     parts = QgsProviderRegistry.instance().decodeUri(layer.providerType(), layer.source())
-    # Of a database the name of the table is the layer's.
+    # In a database the name of the table is the layer's.
     inside = parts.get("layerName") or parts.get("table") or ""
     return str(inside), str(parts.get("path") or "")
 
 
-# --- Map profiles: what layers of a known kind of data are, so that a site of it is prepared in one go
+# --- Map profiles: setups for layers of a known kind of data, so that a site of it is prepared at once
 
 GEOMETRIES = {
     "point": QgsWkbTypes.GeometryType.PointGeometry,
@@ -165,10 +165,11 @@ GEOMETRIES = {
 
 @dataclass(frozen=True)
 class ProfileRule:
-    """Layers that one of the ``names`` fits, with all of the ``fields``, are set up as ``setup`` says.
+    """Layers that match one of the ``names``, with all of the ``fields``, get the setup ``setup``.
 
     A layer's name is the one that is shown or the one in its source. ``names`` are patterns with ``*`` and
-    ``?``, whatever the case; none fit every layer. ``geometry`` is ``""`` or a key of :data:`GEOMETRIES`.
+    ``?``, ignoring case; an empty list matches every layer. ``geometry`` is ``""`` or a key of
+    :data:`GEOMETRIES`.
     """
 
     names: tuple[str, ...]
@@ -177,7 +178,7 @@ class ProfileRule:
     setup: LayerSetup
 
     def fits(self, layer: QgsMapLayer) -> bool:
-        """Tell whether the rule is about ``layer``."""
+        """Return whether the rule applies to ``layer``."""
         if not isinstance(layer, QgsVectorLayer):
             return False
         if not self._fits_name([name.lower() for name in names_of(layer)]):
@@ -191,7 +192,7 @@ class ProfileRule:
         return not patterns or any(fnmatchcase(name, pattern) for name in names for pattern in patterns)
 
     def in_words(self) -> str:
-        """Return what the rule looks for, such as ``walls, wall* with z_min, z_max``."""
+        """Return the rule's condition as text, such as ``walls, wall* with z_min, z_max``."""
         names, fields = ", ".join(self.names), ", ".join(self.fields)
         return tr("{names} with {fields}", names=names or "*", fields=fields) if fields else names
 
@@ -205,15 +206,15 @@ class Profile:
     rules: tuple[ProfileRule, ...]
 
     def sought(self) -> str:
-        """Return which names and fields of layers the rules look for."""
+        """Return the names and fields of layers that the rules match."""
         return "; ".join(rule.in_words() for rule in self.rules)
 
     def setup_for(self, layer: QgsMapLayer) -> LayerSetup | None:
-        """Return how ``layer`` is set up, None where the profile has no rule for it."""
+        """Return the setup of ``layer``, None where the profile has no rule for it."""
         return next((rule.setup for rule in self.rules if rule.fits(layer)), None)
 
     def setup_over(self, layer: QgsMapLayer) -> LayerSetup:
-        """Return how ``layer`` is set up: by the profile, else as the layer keeps it itself."""
+        """Return the setup of ``layer``: from the profile, else as stored in the layer."""
         return self.setup_for(layer) or setup_of(layer)
 
 
@@ -234,7 +235,7 @@ def shipped_profiles() -> list[Path]:
 
 
 def find_profile(text: str) -> Path:
-    """Return the file that ``text`` names: a path, or the name of a profile that comes with the plugin."""
+    """Return the file for ``text``: a path, or the name of a profile that comes with the plugin."""
     named = PROFILES / f"{text}.toml"
     return named if named in shipped_profiles() else Path(text)
 
@@ -242,7 +243,7 @@ def find_profile(text: str) -> Path:
 def read_profile(file: Path) -> Profile:
     """Return the profile in ``file``.
 
-    :raises ProfileError: naming the file, the key, what is wrong with it and what is right.
+    :raises ProfileError: naming the file, the key, the error and the valid form.
     """
     content = _content(file)
     _refuse_unknown(content, _KEYS, "", file)
@@ -345,7 +346,7 @@ def _rule(content: Any, key: str, file: Path) -> ProfileRule:
 
 
 def _setup(content: Mapping[str, Any], key: str, file: Path) -> LayerSetup:
-    """Return the role that a rule gives to layers, and the expressions that go with it."""
+    """Return the role and the expressions that a rule gives to layers."""
     role = _text(content, "role", f"{key}.", file)
     if role not in ROLES:
         raise ProfileError(
@@ -377,7 +378,7 @@ def _expression(content: Mapping[str, Any], name: str, key: str, file: Path) -> 
 
 
 def _expression_problem(text: str) -> str:
-    # QGIS goes down into each operator of a long sum, and crashes where there are some ten thousand.
+    # QGIS recurses into each operator of a long sum, and crashes where there are some ten thousand.
     if len(text) > _LONGEST_EXPRESSION:
         return tr("it has {count} characters, more than {most}", count=len(text), most=_LONGEST_EXPRESSION)
     return QgsExpression(text).parserErrorString().strip()

@@ -33,14 +33,14 @@ from ..ui.errors import LayerCrsError, MapTransformError
 from ..ui.language import tr
 from .crs import crs_name, is_engineering, stated_crs
 
-# --- Whether anything is known of how two CRSs lie to one another ---
+# --- Whether a transform between two CRSs is known ---
 
 
 def check_transform(way: QgsCoordinateTransform) -> None:
-    """Refuse a ``way`` of which nothing is known, such as one from or to the metres of a local CRS.
+    """Raise an error for an unknown transform ``way``, such as one from or to the metres of a local CRS.
 
-    QGIS leaves coordinates as they are there: degrees become metres. Where an end has no CRS at all nothing
-    is to be done, and that is no error.
+    QGIS leaves coordinates unchanged there: degrees become metres. Where one of them has no CRS nothing
+    needs to be done, and that is no error.
 
     :raises QgsCsException: when both ends have a CRS and no operation leads from one to the other.
     """
@@ -48,12 +48,12 @@ def check_transform(way: QgsCoordinateTransform) -> None:
         raise QgsCsException(tr("nothing is known of how the two lie to each other"))
 
 
-# --- By which operation coordinates come from one CRS to another, and how far off they may be by it ---
+# --- The operation that transforms coordinates from one CRS to another, and its accuracy ---
 
 
 @dataclass(frozen=True)
 class DatumTransform:
-    """The operation in words, its accuracy in metres if it is known, and what makes it worse than need be."""
+    """The operation in words, its accuracy in metres if known, and what makes it worse than necessary."""
 
     name: str
     accuracy: float | None = None
@@ -94,7 +94,7 @@ def datum_transform(
 def _better(
     source: QgsCoordinateReferenceSystem, target: QgsCoordinateReferenceSystem, accuracy: float | None
 ) -> str:
-    """Return what is missing for a more exact way; empty where this is the best."""
+    """Return what is missing for a more accurate operation; empty where this is the best."""
     most = math.inf if accuracy is None else accuracy
     for one in QgsDatumTransform.operations(source, target):
         missing = [grid.shortName for grid in one.grids if not grid.isAvailable]
@@ -108,7 +108,7 @@ def _better(
     return ""
 
 
-# --- Many coordinates through one transform, together and not point by point ---
+# --- Many coordinates through one transform at once ---
 
 _LINE_HEADER = struct.Struct("<BII")
 _POINT_HEADER = struct.Struct("<BI")
@@ -126,7 +126,7 @@ def line_of(xy: np.ndarray) -> QgsGeometry:
 
 
 def points_of(xy: np.ndarray) -> list[QgsGeometry]:
-    """Return (n, 2) coordinates as a point each; made one by one they take twice as long."""
+    """Return (n, 2) coordinates as a point each; creating them one by one takes twice as long."""
     if len(xy) == 0:
         return []
     members = np.empty(len(xy), dtype=_MEMBER)
@@ -140,12 +140,12 @@ def transform_points(xy: np.ndarray, transform: QgsCoordinateTransform) -> np.nd
     """Return (n, 2) coordinates through ``transform``.
 
     :raises QgsCsException: when one of them has no place in the target CRS, unless QGIS makes it infinite,
-        and when nothing is known of how the CRSs lie to each other.
+    and when no transform between the CRSs is known.
     """
     check_transform(transform)
     if len(xy) == 0 or transform.isShortCircuited():
         return np.asarray(xy, dtype=np.float64).reshape(-1, 2)
-    # A line string of one point is none, so the first point goes twice.
+    # A line string of one point is invalid, so the first point is repeated.
     geometry = line_of(np.concatenate([xy[:1], xy]))
     geometry.transform(transform)
     return np.frombuffer(geometry.asWkb().data(), dtype="<f8", offset=_LINE_HEADER.size).reshape(-1, 2)[1:]
@@ -175,18 +175,18 @@ Bounds = tuple[float, float, float, float]
 
 
 EXACT_M = 1.0
-"""Metres of accuracy up to which nobody is warned; ETRS89 and WGS 84 are the same to 1 m."""
+"""Accuracy in metres up to which there is no warning; ETRS89 and WGS 84 agree to 1 m."""
 
 
 class SiteTransformError(Exception):
-    """One geometry cannot be transformed into the site's CRS."""
+    """A geometry cannot be transformed into the site's CRS."""
 
 
 @dataclass(frozen=True)
 class SiteGeoreference:
-    """Where the site is: its CRS (invalid when nothing has one) and its frame in it.
+    """The georeference of the site: its CRS (invalid when nothing has one) and its frame in it.
 
-    ``local`` says whether layers whose place is not known are in the site frame's metres already; None: they
+    ``local`` is whether layers without a known place are in the site frame's metres already; None: they
     cannot be, and nobody is asked.
     """
 
@@ -199,13 +199,13 @@ class SiteGeoreference:
     def in_crs(
         cls, crs: QgsCoordinateReferenceSystem, transform_context: QgsCoordinateTransformContext
     ) -> SiteGeoreference:
-        """Return a site whose frame is ``crs`` itself: for what knows no other one."""
+        """Return a site whose frame is ``crs`` itself, where no other one is known."""
         return cls(crs, SiteFrame(crs.authid(), (0.0, 0.0)), transform_context)
 
     def of_layer(self, name: str, crs: QgsCoordinateReferenceSystem) -> LayerToSiteTransform:
-        """Return how the coordinates of the layer ``name`` come into the site frame.
+        """Return the transform of the layer ``name`` into the site frame.
 
-        :raises LayerCrsError: when they do not.
+        :raises LayerCrsError: when there is none.
         """
         crs = stated_crs(crs)
         if crs.isValid() and crs == self.crs:
@@ -258,13 +258,13 @@ def _why_not_related(
 
 @dataclass(frozen=True)
 class LayerToSiteTransform:
-    """How one layer's coordinates come into the site frame: by a transform or none, then a frame or none."""
+    """The transform of one layer into the site frame: by a CRS transform or none, then a frame or none."""
 
     transform: QgsCoordinateTransform | None
     frame: SiteFrame | None
 
     def doubts(self, layer: str) -> list[str]:
-        """Return a warning that names the ``layer`` where what it holds may come to lie metres off."""
+        """Return a warning naming the ``layer`` where its features may be metres off."""
         if self.transform is None:
             return []
         source, target = self.transform.sourceCrs(), self.transform.destinationCrs()
@@ -284,7 +284,7 @@ class LayerToSiteTransform:
         ]
 
     def area_of(self, window: Bounds) -> QgsRectangle | None:
-        """Return the rectangle in the layer's CRS that holds ``window``; None when it cannot be told."""
+        """Return the rectangle in the layer's CRS that contains ``window``; None when there is none."""
         corners = corners_of(window)
         if self.frame is not None:
             corners = self.frame.to_crs(corners)
@@ -326,12 +326,12 @@ class LayerToSiteTransform:
             return None
 
     def to_site(self, xy: np.ndarray) -> np.ndarray:
-        """Return ``xy``, (n, 2) metres as :meth:`to_metres` gives them, as (n, 2) in the site frame."""
+        """Return ``xy``, (n, 2) metres as returned by :meth:`to_metres`, as (n, 2) in the site frame."""
         return xy if self.frame is None else self.frame.to_site(xy)
 
 
 def widen_bounds(bounds: Bounds, by: float) -> Bounds:
-    """Return ``bounds`` with ``by`` metres more on each side."""
+    """Return ``bounds`` grown by ``by`` metres on each side."""
     x_min, y_min, x_max, y_max = bounds
     return x_min - by, y_min - by, x_max + by, y_max + by
 
@@ -348,7 +348,7 @@ Points = npt.NDArray[np.float64]
 
 
 def frame_of(site: SiteReport) -> SiteFrame:
-    """Return the frame of a site as the gateway tells of it."""
+    """Return the frame of a site reported by the gateway."""
     return SiteFrame(site.crs, site.origin, site.rotation)
 
 
@@ -381,7 +381,7 @@ class SiteToMapTransform:
         self._forward = QgsCoordinateTransform(self.site_crs, map_crs, context)
 
     def leads_to(self, crs: QgsCoordinateReferenceSystem, context: QgsCoordinateTransformContext) -> bool:
-        """Tell whether this is the way to ``crs`` by the operations that ``context`` prefers."""
+        """Return whether this is the transform to ``crs`` by the operations that ``context`` prefers."""
         return self.map_crs == crs and self._context == context
 
     def to_map(self, xy: Points) -> Points:
@@ -394,7 +394,7 @@ class SiteToMapTransform:
     @property
     def axes(self) -> Points | None:
         """The site's x and y, a metre of each in the map's CRS as a row of (2, 2); None unless they are the
-        same all over the map, as they are in the site's own CRS.
+        same all over the map, as in the site's own CRS.
         """
         return self.frame.axes() if self._forward.isShortCircuited() else None
 
@@ -440,14 +440,14 @@ def _out_of_reach(
     )
 
 
-# --- The CRS in which positions are shown: the site's own metres, or whatever the operator chooses ---
+# --- The CRS in which positions are shown: the site's own metres, or the operator's choice ---
 
 POSITION_CRS_KEY = "fleet_supervisor/position_crs"
 Floats = np.ndarray
 
 
 class PositionCrs(QObject):
-    """Puts places of the site frame into the chosen CRS; an invalid one stands for the site frame."""
+    """Transforms places of the site frame to the chosen CRS; an invalid one stands for the site frame."""
 
     changed = pyqtSignal()
 
@@ -464,7 +464,7 @@ class PositionCrs(QObject):
 
     @property
     def name(self) -> str:
-        """What the chosen CRS is called."""
+        """The name of the chosen CRS."""
         return self._crs.authid() or self._crs.description() if self._crs.isValid() else tr("site frame")
 
     def choose(self, crs: QgsCoordinateReferenceSystem) -> None:
@@ -475,7 +475,7 @@ class PositionCrs(QObject):
         self.changed.emit()
 
     def placed(self, xy: Floats, transform: SiteToMapTransform) -> Floats:
-        """Return (n, 2) metres in the site frame in the chosen CRS, not finite where it has no such place.
+        """Return (n, 2) metres in the site frame in the chosen CRS, not finite where impossible.
 
         :raises MapTransformError: when the site's CRS is not usable.
         """
@@ -518,13 +518,13 @@ class PositionCrs(QObject):
 
 
 class SiteSource(Protocol):
-    """Who knows the site that is served, None before it is known."""
+    """Provider of the site that is served, None before it is known."""
 
     site: SiteReport | None
 
 
 class SiteToCanvas:
-    """The transform from the site frame to the CRS of the canvas, as site, canvas and project are now."""
+    """The transform from the site frame to the CRS of the canvas, for present site, canvas and project."""
 
     def __init__(self, state: SiteSource, canvas: QgsMapCanvas, project: QgsProject):
         self._state, self._canvas, self._project = state, canvas, project
@@ -533,7 +533,7 @@ class SiteToCanvas:
     def transform(self) -> SiteToMapTransform:
         """Return the transform, which is the same object for as long as nothing has changed.
 
-        :raises MapTransformError: when no gateway said yet which site it serves, or the CRS is not usable.
+        :raises MapTransformError: when no gateway has reported its site yet, or the CRS is not usable.
         """
         site = self._state.site
         if site is None:

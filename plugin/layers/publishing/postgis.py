@@ -1,6 +1,6 @@
-"""Publication of a site into PostgreSQL with PostGIS: every version whole, and switched by its commit.
+"""Publication of a site into PostgreSQL with PostGIS: complete versions, switched by a commit.
 
-What is written is what the folder of the publication holds: its layers as tables for GIS programs, and its
+The content is that of the publication's folder: its layers as tables for GIS programs, and its
 files for gateways. The tables are described in ``robot_bridge.core.sites.site_database``.
 """
 
@@ -40,7 +40,7 @@ from ...ui.errors import PublicationError
 from ...ui.language import tr
 from .site_content import LAYERS
 
-# --- The database that a site goes into: a connection of QGIS's, or an address ---
+# --- The database for a site: a connection of QGIS's, or an address ---
 
 CONNECT_WITHIN_S = 10
 LOCKED_FOR_S = 10
@@ -56,9 +56,9 @@ _INSTALL = tr("install the distribution's package, such as python3-psycopg2.")
 
 
 def database_address(name: str) -> str:
-    """Return how libpq connects to ``name``: a PostgreSQL connection of QGIS's, or such an address itself.
+    """Return the libpq connection string for ``name``: a PostgreSQL connection of QGIS's, or such a string.
 
-    To be called in the main thread, for QGIS may ask for its master password. It connects to nothing.
+    Must be called in the main thread, as QGIS may ask for its master password. It does not connect.
 
     :raises PublicationError: when QGIS has no such connection.
     """
@@ -104,9 +104,9 @@ def check_site_id(site: str) -> None:
 def site_database(address: str, site: str) -> Iterator[SiteDatabase]:
     """Connect to the database at ``address`` and check that ``site`` may be published there.
 
-    Whatever fails in the block leaves the database as it was, and is raised naming what to do.
+    Any failure in the block leaves the database as it was, and is raised with its remedy.
 
-    :raises PublicationError: when it cannot be reached, has no PostGIS, holds something else or refuses.
+    :raises PublicationError: when it cannot be reached, has no PostGIS, contains other data or refuses.
     """
     psycopg2 = _psycopg2()
     try:
@@ -129,26 +129,26 @@ def site_database(address: str, site: str) -> Iterator[SiteDatabase]:
 
 
 class SiteDatabase:
-    """One site in one database, over ``cursor``; what is in force is read when it is made."""
+    """One site in one database, over ``cursor``; the published version is read on construction."""
 
     def __init__(self, cursor: Any, site: str) -> None:
         self._cursor, self._site = cursor, site
         self._gis = self._postgis()
         self._has_tables = self._check_tables()
         self.version = self._version()
-        """The version that is published, 0 where there is none."""
+        """The published version, 0 where there is none."""
         self.settings_text = self._settings_text()
-        """The ``site.toml`` that is published; empty where there is none."""
+        """The published ``site.toml``; empty where there is none."""
         cursor.connection.commit()
 
     @contextmanager
     def new_version(self, settings: SiteSettings, folder: Path, feedback: QgsFeedback) -> Iterator[bool]:
         """Write the publication in ``folder``, which takes effect when the block ends.
 
-        Give false, and change nothing, after a cancel. When the block ends by an exception all is as it was.
+        Yields false, and changes nothing, if cancelled. When the block ends by an exception all is as it was.
 
-        :raises PublicationError: when another version was published since this was made, or the CRS is not
-            known there.
+        :raises PublicationError: when another version was published since this was constructed, or the CRS is
+        not known there.
         """
         connection = self._cursor.connection
         try:
@@ -161,7 +161,7 @@ class SiteDatabase:
                 connection.rollback()
 
     def remove_earlier(self, settings: SiteSettings) -> list[str]:
-        """Remove the tables of earlier versions; return the schemas of which somebody keeps a hold."""
+        """Remove the tables of earlier versions; return the schemas that are still in use."""
         psycopg2, connection, kept = _psycopg2(), self._cursor.connection, []
         prefix = version_schema(self._site, 0)[:-1]
         self._cursor.execute(
@@ -191,7 +191,7 @@ class SiteDatabase:
                 )
             ) from error
 
-    # --- What there is ---
+    # --- Reading ---
 
     def _postgis(self) -> str:
         found = self._one(
@@ -278,10 +278,10 @@ class SiteDatabase:
         row = self._cursor.fetchone()
         return None if row is None else row[0]
 
-    # --- What is written ---
+    # --- Writing ---
 
     def _write(self, settings: SiteSettings, folder: Path, feedback: QgsFeedback) -> bool:
-        """Write and switch, without a commit; return false after a cancel."""
+        """Write and switch, without a commit; return false if cancelled."""
         if not self._has_tables:
             self._cursor.execute(TABLES)
         self._switch(settings, folder)
@@ -299,12 +299,12 @@ class SiteDatabase:
                     f"insert into {SCHEMA}.parts values (%s, %s, %s, %s, %s)",  # nosec B608 # names of ours
                     [self._site, settings.version, name, number, part],
                 )
-        # Last: from here on nobody may read the views until the commit.
+        # Last: from here on nobody can read the views until the commit.
         self._renew_views(schema)
         return True
 
     def _switch(self, settings: SiteSettings, folder: Path) -> None:
-        """Have the registry name the new version; others that publish the site wait for the commit."""
+        """Set the new version in the registry; other publications of the site wait for the commit."""
         digests = {name: _digest(folder / name) for name in _files(folder)}
         digest = hashlib.sha256(digest_text(digests)).hexdigest()
         row = (settings.version, digest, self._site)
@@ -365,7 +365,7 @@ class SiteDatabase:
         return not stream.is_cut
 
     def _renew_views(self, schema: str) -> None:
-        """Have the views of the site show the tables in ``schema``; who may read them may do so on."""
+        """Point the views of the site to the tables in ``schema``; privileges to read them are kept."""
         views = _quoted(view_schema(self._site))
         self._cursor.execute(f"create schema if not exists {views}")
         for spec in LAYERS:
@@ -375,7 +375,7 @@ class SiteDatabase:
             try:
                 self._cursor.execute(f"create or replace {made}")
             except _psycopg2().errors.InvalidTableDefinition:
-                # Its columns are others now: another CRS, another version of this program.
+                # Its columns have changed: another CRS, another version of this program.
                 self._cursor.execute("rollback to savepoint before_view")
                 readers = self._readers(view)
                 self._cursor.execute(f"drop view {view}")
@@ -397,17 +397,17 @@ _GEOMETRY_KINDS = {"Unknown": "Geometry", "LineString": "LineString", "Polygon":
 _TYPES = {str: "text", float: "float8", bool: "boolean", int: "bigint"}
 
 
-# --- The rows of a layer of site.gpkg, and its files, as the database takes them ---
+# --- The rows of a layer of site.gpkg, and its files, in the form that the database takes ---
 
 _ROWS_AT_ONCE = 500
 _BOX_BYTES = (0, 32, 48, 48, 64)
-"""Bytes of the box in the head of a geometry in a GeoPackage, by its kind (OGC 12-128r18, 2.1.3)."""
+"""Bytes of the box in the header of a GeoPackage geometry, by its kind (OGC 12-128r18, 2.1.3)."""
 _WITH_SRID = 0x20000000
 _ESCAPES = str.maketrans({"\\": "\\\\", "\t": "\\t", "\n": "\\n", "\r": "\\r"})
 
 
 class _CopyStream:
-    """What COPY reads: ``rows`` of id, geometry and fields, until ``feedback`` is cancelled."""
+    """Input of COPY: ``rows`` of id, geometry and fields, until ``feedback`` is cancelled."""
 
     def __init__(self, rows: sqlite3.Cursor, srid: int, feedback: QgsFeedback) -> None:
         self._rows, self._srid, self._feedback = rows, srid, feedback
@@ -432,7 +432,7 @@ def _field(value: object) -> str:
 
 
 def _extended(blob: bytes, srid: int) -> str:
-    """Return a geometry of a GeoPackage as PostGIS writes it: hexadecimal, with its CRS."""
+    """Return a geometry of a GeoPackage in PostGIS's format: hexadecimal, with its CRS."""
     start = 8 + _BOX_BYTES[blob[3] >> 1 & 7]
     order = "<" if blob[start] else ">"
     (kind,) = struct.unpack_from(f"{order}I", blob, start + 1)
@@ -457,7 +457,7 @@ def _digest(file: Path) -> str:
     return digest.hexdigest()
 
 
-# --- What PostgreSQL says, in words of what to do ---
+# --- PostgreSQL's errors as text with a remedy ---
 
 
 def _refused(connection: Any, site: str, error: Exception, psycopg2: Any) -> PublicationError:

@@ -1,4 +1,4 @@
-"""Publication of a site into its folder, whole or not at all, by one process at a time; and its layers."""
+"""Publication of a site into its folder, complete or not at all, by one process at a time; and its layers."""
 
 from __future__ import annotations
 
@@ -34,16 +34,16 @@ from ..live_layers import fleet_group
 from .site_content import SiteContent
 from .site_file import stamp_in, write_site_file
 
-# --- One publication at a time into a folder, whichever processes publish ---
+# --- One publication at a time into a folder, across processes ---
 
 LOCK_FILE = ".publishing.lock"
 
 
 @contextmanager
 def exclusive_publication(folder: Path) -> Iterator[None]:
-    """Keep other publications out of ``folder``, which is made where it is missing, until the block ends.
+    """Keep other publications out of ``folder``, which is created if missing, until the block ends.
 
-    A lock that a process left behind when it was killed holds nobody up.
+    The lock of a process that was killed does not block others.
 
     :raises PublicationError: when another publication is under way, or the folder cannot be written.
     """
@@ -110,7 +110,7 @@ def _why_not(lock: QLockFile, folder: Path) -> PublicationError:
     )
 
 
-# --- Publishes a site from QGIS: a folder with ``site.toml`` and ``site.gpkg``, whole or as it was before
+# --- Publication of a site from QGIS: a folder with ``site.toml`` and ``site.gpkg``, complete or unchanged
 
 _ID = re.compile(r"""^[ \t]*id[ \t]*=[ \t]*(?:"([^"\n]*)"|'([^'\n]*)')""", re.MULTILINE)
 _VERSION = re.compile(r"^[ \t]*version[ \t]*=[ \t]*(\d+)", re.MULTILINE)
@@ -120,19 +120,20 @@ _STAMP = re.compile(r"(.+) version (\d+)")
 
 @dataclass(frozen=True)
 class EarlierPublication:
-    """The publication that a folder holds already."""
+    """The publication already in a folder."""
 
     id: str
     version: int
 
 
 def earlier_publication(folder: Path) -> EarlierPublication | None:
-    """Return what is published in ``folder``, None when nothing is.
+    """Return the publication in ``folder``, None when there is none.
 
-    The two lines wanted of ``site.toml`` are found by their shape, because Python before 3.11 reads no TOML.
-    After a publication cut off between its two files the higher version counts, so that it is not used twice.
+    The two lines needed of ``site.toml`` are found by their pattern, because Python before 3.11 reads no
+    TOML. After a publication cut off between its two files the higher version counts, so that it is not used
+    twice.
 
-    :raises PublicationError: when the folder holds files of these names that are no publication.
+    :raises PublicationError: when the folder has files of these names that are no publication.
     """
     settings_file, layers_file = folder / SETTINGS_FILE, folder / GEOPACKAGE_FILE
     found = []
@@ -156,9 +157,9 @@ def next_version(
 ) -> SiteSettings:
     """Return ``settings`` with the version after the one published in ``folder``, 1 for a first one.
 
-    ``elsewhere`` is the version that is published in another place, which is followed, too.
+    ``elsewhere`` is the version that is published in another place, which must be lower, too.
 
-    :raises PublicationError: when the folder holds another site and ``replace_other`` is not said.
+    :raises PublicationError: when the folder contains another site and ``replace_other`` is false.
     """
     try:
         earlier = earlier_publication(folder)
@@ -183,7 +184,7 @@ def next_version(
 
 
 class NewPublication:
-    """A publication that is being made in ``staged``; ``earlier`` is the ``site.toml`` that it follows."""
+    """A publication being made in ``staged``; ``earlier`` is the ``site.toml`` before it."""
 
     def __init__(self, staged: StagedFiles, earlier: str) -> None:
         self._staged = staged
@@ -191,7 +192,7 @@ class NewPublication:
         self._cache: CacheWriter | None = None
 
     def write_layers(self, content: SiteContent, settings: SiteSettings, feedback: QgsFeedback) -> bool:
-        """Write the layers, in the frame and with the stamp of ``settings``; return false after a cancel.
+        """Write the layers, in the frame and with the stamp of ``settings``; return false if cancelled.
 
         :raises PublicationError: when a layer cannot be written.
         """
@@ -199,9 +200,9 @@ class NewPublication:
         return write_site_file(self._staged.folder / GEOPACKAGE_FILE, content, settings, cache, feedback)
 
     def write_settings(self, settings: SiteSettings) -> Path:
-        """Write ``settings``, behind :meth:`write_layers`; return the folder in which all is complete now.
+        """Write ``settings``, after :meth:`write_layers`; return the folder, which is complete now.
 
-        The tables that the operator set in ``site.toml`` stay.
+        The tables that the operator set in ``site.toml`` are kept.
 
         :raises PublicationError: when a setting is wrong.
         """
@@ -211,17 +212,17 @@ class NewPublication:
         return self._staged.folder
 
     def replace_earlier(self) -> None:
-        """Put what was written in the place of what is published; other files in the folder stay."""
+        """Replace the published files by the written ones; other files in the folder stay."""
         publish_staged(self._staged)
 
 
 @contextmanager
 def new_publication(folder: Path, earlier: str) -> Iterator[NewPublication]:
-    """Give a publication to be made in ``folder``; what is not complete at the end leaves nothing there.
+    """Yield a publication to be made in ``folder``; one incomplete at the end leaves nothing there.
 
-    ``earlier`` is the text of the ``site.toml`` that it follows, empty for none.
+    ``earlier`` is the text of the ``site.toml`` before it, empty for none.
 
-    To be called where no other publication is under way, see ``publication_lock``.
+    Must be called where no other publication is under way, see ``publication_lock``.
 
     :raises PublicationError: when the folder cannot be written.
     """
@@ -256,7 +257,7 @@ def _not_a_publication(file: Path) -> PublicationError:
 
 PLAIN = "#78808a"
 PLAIN_EDGE = "#4b5159"
-"""The colours of obstacles: none that warns."""
+"""The colours of obstacles: not a warning colour."""
 AGAIN = tr("Publish the site again.")
 STYLES = Path(__file__).parents[3] / "resources" / "styles"
 
@@ -307,7 +308,7 @@ PARTS = (
 
 @dataclass(frozen=True)
 class LoadedSite:
-    """What was loaded: the site's name, its layers, and the titles of those whose role others have."""
+    """The result of loading: the site's name, its layers, and the titles of those whose role others have."""
 
     name: str
     layers: list[QgsVectorLayer]
@@ -323,9 +324,9 @@ def site_folder(path: Path) -> Path | None:
 
 
 def load_site(folder: Path, project: QgsProject) -> LoadedSite:
-    """Put the layers of the site published in ``folder`` into ``project``, in a group of its name.
+    """Add the layers of the site published in ``folder`` to ``project``, in a group of its name.
 
-    A role that other layers of the project have already is left to those: nothing shall count twice.
+    A role that other layers of the project have already is left to those: nothing must count twice.
 
     :raises PublicationError: when a part is missing or cannot be read; nothing is loaded then.
     """
@@ -343,7 +344,7 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
 
 
 def loaded_already(folder: Path, project: QgsProject) -> list[QgsVectorLayer]:
-    """Return the layers of ``project`` that are of the site published in ``folder``."""
+    """Return the layers of ``project`` that belong to the site published in ``folder``."""
     file = str((folder / GEOPACKAGE_FILE).resolve())
     layers = project.mapLayers().values()
     return [layer for layer in layers if str(Path(layer.source().split("|")[0]).resolve()) == file]
@@ -383,7 +384,7 @@ def _dress(layer: QgsVectorLayer, style: str) -> None:
 
 
 def _areas_and_lines() -> QgsRuleBasedRenderer:
-    """Return what draws a layer that holds both: one symbol would leave out what is not of its kind."""
+    """Return a renderer for a layer of both areas and lines: a single symbol would leave one of them out."""
     symbols = {
         "Polygon": QgsFillSymbol.createSimple({"color": PLAIN, "outline_color": PLAIN_EDGE}),
         "Line": QgsLineSymbol.createSimple({"color": PLAIN_EDGE, "width": "0.4"}),

@@ -1,4 +1,4 @@
-"""Content of a site: what its layers hold, read some at a time, as rows of the layers of ``site.gpkg``."""
+"""Content of a site: its layers' features, read in batches, as rows of the layers of ``site.gpkg``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from ..road_layers import GroundReading, check_ground_sources, each_area, each_c
 from ..roles import KEEPOUT, ROAD_CENTRELINE, ROAD_SURFACE
 from ..site_transform import Bounds, SiteGeoreference, widen_bounds
 
-# --- Everything that a site publishes, on its way from QGIS layers into a publication ---
+# --- The data that a site publishes, from QGIS layers to a publication ---
 
 LAYERS = (geopackage.OBSTACLES, geopackage.CENTRELINES, geopackage.SURFACES, geopackage.KEEPOUTS)
 """The layers of a site in the order in which they are read."""
@@ -32,7 +32,7 @@ LAYERS = (geopackage.OBSTACLES, geopackage.CENTRELINES, geopackage.SURFACES, geo
 
 @dataclass(frozen=True)
 class SiteSources:
-    """The layers of a site, by what is read of them."""
+    """The layers of a site, by the kind of their content."""
 
     obstacles: Sequence[ObstacleSource] = ()
     centrelines: Sequence[ObstacleSource] = ()
@@ -50,10 +50,10 @@ Item = TypeVar("Item", bound="geopackage.Centreline | geopackage.Area | Surface"
 
 
 class SiteContent:
-    """What ``sources`` hold, in the site frame, metres; each part is read once, as it is asked for.
+    """The content of ``sources``, in the site frame, metres; each part is read once, on request.
 
-    Nothing is kept: a city has more than memory should be spent on.
-    Of obstacles what is near ``bounds`` is read, else all.
+    Nothing is kept: a city is larger than memory should be.
+    Obstacles are read near ``bounds`` if given, else all.
 
     :raises LayerReadingError: when a layer has no known place on the site or an expression is not one.
     """
@@ -74,35 +74,35 @@ class SiteContent:
         self._keepouts: GroundReading[geopackage.Area] = GroundReading()
         self._low, self._high = np.full(2, np.inf), np.full(2, -np.inf)
         self.counts = dict.fromkeys((layer.name for layer in LAYERS), 0)
-        """How many outlines, roads and areas were read so far, by the names of their layers."""
+        """Numbers of outlines, roads and areas read so far, by the names of their layers."""
 
     @property
     def complete(self) -> bool:
-        """Whether nothing of what was asked for was left out; false after a cancel."""
+        """Whether everything requested was read; false if cancelled."""
         ground = (self._roads, self._surfaces, self._keepouts)
         return self._obstacles.complete and all(reading.complete for reading in ground)
 
     @property
     def extent(self) -> Bounds | None:
-        """x_min, y_min, x_max, y_max of what was read so far; None where there is nothing."""
+        """x_min, y_min, x_max, y_max of the content read so far; None where there is none."""
         if not any(self.counts.values()):
             return None
         (x_min, y_min), (x_max, y_max) = self._low.tolist(), self._high.tolist()
         return x_min, y_min, x_max, y_max
 
     def warnings(self) -> list[str]:
-        """Return what there is to warn of in what was read so far."""
+        """Return the warnings about the content read so far."""
         read = (self._obstacles.warnings, self._roads.notes, self._surfaces.notes, self._keepouts.notes)
         return [text for notes in read for text in notes.texts()]
 
     def obstacles(self, feedback: QgsFeedback) -> Iterator[Outlines]:
-        """Yield the obstacles, some at a time."""
+        """Yield the obstacles, in batches."""
         for some in self._obstacles.parts(feedback):
             self._counted(geopackage.OBSTACLES.name, some.coordinates, len(some))
             yield some
 
     def centrelines(self, feedback: QgsFeedback) -> Iterator[list[geopackage.Centreline]]:
-        """Yield the roads, some at a time."""
+        """Yield the roads, in batches."""
         sources = self._sources.centrelines
         for some in _some(each_centreline(sources, self._site, self._default_width, self._roads, feedback)):
             self._counted(
@@ -111,13 +111,13 @@ class SiteContent:
             yield some
 
     def surfaces(self, feedback: QgsFeedback) -> Iterator[list[Surface]]:
-        """Yield the road surfaces, some at a time."""
+        """Yield the road surfaces, in batches."""
         for some in _some(each_surface(self._sources.surfaces, self._site, self._surfaces, feedback)):
             self._counted(geopackage.SURFACES.name, np.concatenate([one.rings[0] for one in some]), len(some))
             yield some
 
     def keepouts(self, feedback: QgsFeedback) -> Iterator[list[geopackage.Area]]:
-        """Yield the keepouts, some at a time."""
+        """Yield the keepouts, in batches."""
         for some in _some(each_area(self._sources.keepouts, self._site, KEEPOUT, self._keepouts, feedback)):
             self._counted(geopackage.KEEPOUTS.name, np.concatenate([one.rings[0] for one in some]), len(some))
             yield some
@@ -141,7 +141,7 @@ def check_content_sources(sources: SiteSources, site: SiteGeoreference) -> None:
     check_ground_sources(sources.keepouts, site, KEEPOUT)
 
 
-# --- The content of a site as rows of the layers of ``site.gpkg``: geometries and values, some at a time
+# --- The content of a site as rows of the layers of ``site.gpkg``: geometries and values, in batches
 
 _RINGS = tuple(int(one) for one in (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP))
 _STAIRS = int(ShapeType.STAIRS)
@@ -149,7 +149,7 @@ _POINT_BYTES = 16
 
 
 class SiteRows(NamedTuple):
-    """Features of one layer: the geometry of each without the head that GeoPackages give it, and its box.
+    """Features of one layer: the geometry of each without its GeoPackage header, and its box.
 
     ``boxes`` is (n, 4), x_min, y_min, x_max and y_max in the site CRS; ``columns`` are the values of each
     field of the layer, n of them.
@@ -163,9 +163,9 @@ class SiteRows(NamedTuple):
 def site_rows(
     content: SiteContent, frame: SiteFrame, cache: CacheWriter, feedback: QgsFeedback
 ) -> list[tuple[geopackage.LayerSpec, Iterator[SiteRows]]]:
-    """Return the four layers of a site with the rows of each, which are read as they are asked for.
+    """Return the four layers of a site with the rows of each, which are read on request.
 
-    ``cache`` gets the obstacles as they are read, for they are read once.
+    ``cache`` receives the obstacles as they are read, as they are read only once.
     """
     return [
         (geopackage.OBSTACLES, _obstacle_rows(content, frame, cache, feedback)),
@@ -255,7 +255,7 @@ def _in_order(spec: geopackage.LayerSpec, values: Mapping[str, Iterable[Any]]) -
 class _PlacedShapes:
     """Rings and lines in the site CRS: ``coordinates``, (m, 2) in the site frame, one after the other.
 
-    ``offsets``, (n + 1,), says where each begins, ``closed``, (n,), which are rings. None is without points.
+    ``offsets``, (n + 1,), is where each begins, ``closed``, (n,), which are rings. None is without points.
     """
 
     def __init__(
@@ -263,7 +263,7 @@ class _PlacedShapes:
     ) -> None:
         self._xy = frame.to_crs(coordinates)
         self._starts, ends = offsets[:-1], offsets[1:]
-        # Rotating there and back may leave the two ends a rounding error apart.
+        # Rotating forth and back may leave the two ends a rounding error apart.
         self._xy[ends[closed] - 1] = self._xy[self._starts[closed]]
         self._closed = closed.tolist()
         self._lengths = ends - self._starts
@@ -285,9 +285,9 @@ class _PlacedShapes:
         return self._data[self._edges[number] : self._edges[number + 1]]
 
     def wkb(self, groups: Sequence[tuple[int, int]]) -> list[bytes]:
-        """Return the geometry of each of ``groups``, the first of its rings and that behind the last.
+        """Return the geometry of each of ``groups``, the index of its first ring and the one after its last.
 
-        A polygon, its other rings as holes; of what begins with a line that one.
+        A polygon, its other rings as holes; if the first one is a line, that line.
         """
         data, edges, heads = self._data, self._edges, polygon_heads(self._lengths)
         made = []

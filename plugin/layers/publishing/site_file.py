@@ -1,4 +1,4 @@
-"""Site file: ``site.gpkg`` written, with the spatial indexes of its layers."""
+"""Site file: writing of ``site.gpkg``, with the spatial indexes of its layers."""
 
 from __future__ import annotations
 
@@ -22,27 +22,27 @@ from .site_content import SiteContent, SiteRows, site_rows
 
 # --- ``site.gpkg`` written by the GDAL that every QGIS has: no pyogrio, no shapely ---
 # The layers and fields are those of ``robot_bridge.core.sites.geopackage``, and the stamp is the one that
-# ``robot_bridge.core.sites`` looks for when it reads the file.
+# ``robot_bridge.core.sites`` checks when it reads the file.
 
 _KINDS = {"Unknown": "wkbUnknown", "LineString": "wkbLineString", "Polygon": "wkbPolygon"}
 _GEOMETRY = "geom"
 _OPTIONS = ["VERSION=1.3"]
 _LAYER_OPTIONS = [f"GEOMETRY_NAME={_GEOMETRY}", "SPATIAL_INDEX=NO"]
 _HEAD = np.dtype([("magic", "S2"), ("version", "u1"), ("flags", "u1"), ("srs", "<i4"), ("box", "<f8", 4)])
-"""What is before a geometry in a GeoPackage; the box has both x first (OGC 12-128r18, 2.1.3)."""
+"""The header of a geometry in a GeoPackage; the box has both x first (OGC 12-128r18, 2.1.3)."""
 _LITTLE_ENDIAN_WITH_BOX = 3
 
 
 def write_site_file(
     file: Path, content: SiteContent, settings: SiteSettings, cache: CacheWriter, feedback: QgsFeedback
 ) -> bool:
-    """Write ``content`` to the new GeoPackage ``file``; return whether it is whole, false after a cancel.
+    """Write ``content`` to the new GeoPackage ``file``; return whether it is complete, false if cancelled.
 
-    ``cache`` gets the obstacles.
+    ``cache`` receives the obstacles.
 
-    Version 1.3 of the format, which GDAL 3.6 and older read. The tables are GDAL's; features go into them by
-    SQL, since an object of GDAL for each takes longer than everything else, and so they go into the spatial
-    index.
+    Version 1.3 of the format, which GDAL 3.6 and older read. The tables are GDAL's; features are inserted by
+    SQL, since an object of GDAL for each takes longer than everything else, and so are the entries of the
+    spatial index.
 
     :raises PublicationError: when the file cannot be written.
     """
@@ -50,7 +50,7 @@ def write_site_file(
         layers = site_rows(content, settings.frame, cache, feedback)
         _make_tables(gdal, file, [spec for spec, _ in layers], settings)
         with closing(sqlite3.connect(file, isolation_level=None)) as database:
-            # What is left after a crash is thrown away whole.
+            # The file left by a crash is discarded as a whole.
             database.execute("PRAGMA journal_mode = OFF")
             database.execute("PRAGMA synchronous = OFF")
             for spec, rows in layers:
@@ -61,7 +61,7 @@ def write_site_file(
 
 
 def stamp_in(file: Path) -> str:
-    """Return which publication the GeoPackage ``file`` belongs to; nothing when it does not say."""
+    """Return the stamp of the publication to which the GeoPackage ``file`` belongs; empty without one."""
     with suppress(PublicationError), _named_failures(file) as gdal:
         source = _there(gdal.OpenEx(str(file), gdal.OF_VECTOR | gdal.OF_READONLY, ["GPKG"]))
         return str(_there(source.GetLayer(0)).GetMetadataItem(geopackage.STAMP_KEY) or "")
@@ -71,7 +71,7 @@ def stamp_in(file: Path) -> str:
 def _make_tables(
     gdal: Any, file: Path, specs: Sequence[geopackage.LayerSpec], settings: SiteSettings
 ) -> None:
-    """Make the GeoPackage with its layers and their spatial indexes, all empty, and close it."""
+    """Create the GeoPackage with its layers and their spatial indexes, all empty, and close it."""
     _, ogr, osr = _bindings()
     crs = osr.SpatialReference()
     _done(crs.SetFromUserInput(settings.crs))
@@ -91,7 +91,7 @@ def _make_tables(
 
 
 def _insert(database: sqlite3.Connection, spec: geopackage.LayerSpec, batches: Iterator[SiteRows]) -> None:
-    """Insert ``batches`` into the empty table of ``spec`` and its index, and note there what it holds."""
+    """Insert ``batches`` into the empty table of ``spec`` and its index, and record its extent and count."""
     find = "SELECT srs_id FROM gpkg_geometry_columns WHERE table_name = ?"
     (srs,) = database.execute(find, [spec.name]).fetchone()
     columns = ", ".join(f'"{name}"' for name in (_GEOMETRY, *spec.fields))
@@ -116,9 +116,9 @@ def _insert(database: sqlite3.Connection, spec: geopackage.LayerSpec, batches: I
 
 @contextmanager
 def _without_triggers(database: sqlite3.Connection, table: str) -> Iterator[None]:
-    """Have ``table`` without its triggers until the block ends.
+    """Remove the triggers of ``table`` until the block ends.
 
-    For each row they would write into its index, by functions that only GDAL knows, and count it.
+    For each row they would write to its index, by functions that only GDAL has, and count it.
     """
     find = "SELECT name, sql FROM sqlite_master WHERE type = 'trigger' AND tbl_name = ? ORDER BY rowid"
     triggers = database.execute(find, [table]).fetchall()
@@ -130,7 +130,7 @@ def _without_triggers(database: sqlite3.Connection, table: str) -> Iterator[None
 
 
 def _blobs(rows: SiteRows, srs: int) -> Iterator[bytes]:
-    """Yield the geometries of ``rows`` as GeoPackages keep them."""
+    """Yield the geometries of ``rows`` in GeoPackage format."""
     heads = np.empty(len(rows.wkb), _HEAD)
     heads["magic"], heads["version"], heads["flags"] = b"GP", 0, _LITTLE_ENDIAN_WITH_BOX
     heads["srs"], heads["box"] = srs, rows.boxes[:, [0, 2, 1, 3]]
@@ -149,9 +149,9 @@ def _field(name: str, kind: type) -> Any:
 
 @contextmanager
 def _named_failures(file: Path) -> Iterator[Any]:
-    """Give the module ``gdal``; what it fails at becomes an error that names ``file``.
+    """Yield the module ``gdal``; its failures become an error that names ``file``.
 
-    Whether GDAL raises is a setting of the whole program, which is left alone: failures are told either way.
+    Whether GDAL raises is a setting of the whole program, which is left alone: failures are found either way.
     """
     gdal, _, _ = _bindings()
     gdal.PushErrorHandler("CPLQuietErrorHandler")
@@ -200,8 +200,8 @@ def _bindings() -> tuple[Any, Any, Any]:
     return gdal, ogr, osr
 
 
-# --- The spatial index of a layer, made at once ---
-# SQLite puts every box into its place by itself, which takes longer than to write the features. Its tables
+# --- The spatial index of a layer, made in one piece ---
+# SQLite would insert every box separately, which takes longer than writing the features. Its tables
 # hold plain numbers (https://www.sqlite.org/rtree.html, 6), and GDAL 3.8 and newer write them like this, too.
 
 _BOXES = 100_000
@@ -210,13 +210,13 @@ _ENTRY = np.dtype([("id", ">i8"), ("box", ">f4", 4)])
 _NODE_HEAD = 4
 """Bytes of the depth, which the root has, and of the number of entries."""
 _STEP = 1 / (1 << 23)
-"""What a number is changed by to be rounded another way, times itself."""
+"""Relative change of a number that is rounded the other way."""
 
 
 class BoxTree:
     """Fills the R-tree ``table``, which is empty, with boxes of rows 1, 2 and so on.
 
-    ``packed`` is to write its nodes; else SQLite does, which alone may where it is so strict.
+    With ``packed`` its nodes are written; else SQLite does it, which some builds enforce.
     """
 
     def __init__(self, database: sqlite3.Connection, table: str, packed: bool | None = None) -> None:
@@ -246,7 +246,7 @@ class BoxTree:
             self._add_waiting()
 
     def end(self) -> None:
-        """Put the rest in its place; raises sqlite3.Error."""
+        """Write the remaining boxes; raises sqlite3.Error."""
         if not self._packed:
             self._add_waiting()
             return
@@ -277,7 +277,7 @@ class BoxTree:
             self._database.executemany(f'INSERT INTO "{self._table}" VALUES (?, ?, ?, ?, ?)', rows)  # nosec B608 # names
 
     def _entries(self) -> np.ndarray:
-        """Return the boxes that wait with their rows, and forget them."""
+        """Return the waiting boxes with their rows, and forget them."""
         boxes = np.concatenate([np.empty((0, 4)), *self._waiting])
         self._waiting = []
         entries = np.empty(len(boxes), _ENTRY)
@@ -286,9 +286,9 @@ class BoxTree:
         return entries
 
     def _nodes_of(self, entries: np.ndarray, kind: str) -> np.ndarray:
-        """Write ``entries`` into nodes, neighbours together, and return those as entries of the next ones.
+        """Write ``entries`` into nodes, neighbours together, and return those as entries of the parent nodes.
 
-        In which node each is goes into the table of ``kind``. No node has much less in it than others.
+        The node of each is recorded in the table of ``kind``. All nodes are about equally full.
         """
         entries = entries[_neighbours(entries["box"], self._fits)]
         count = math.ceil(len(entries) / self._fits)
@@ -304,7 +304,7 @@ class BoxTree:
         return made
 
     def _write(self, first: int, entries: np.ndarray, counts: np.ndarray, depth: int) -> None:
-        """Write ``entries`` into nodes from ``first`` on, of which each gets some: ``counts``, (n,)."""
+        """Write ``entries`` into nodes from ``first`` on, ``counts``, (n,), entries in each."""
         heads = np.column_stack([np.full(len(counts), depth), counts]).astype(">u2").tobytes()
         data, width = np.ascontiguousarray(entries, _ENTRY).tobytes(), _ENTRY.itemsize
         edges = np.concatenate([[0], np.cumsum(counts)]).tolist()
@@ -337,7 +337,7 @@ def _outwards(boxes: np.ndarray) -> np.ndarray:
 
 
 def _neighbours(boxes: np.ndarray, fits: int) -> np.ndarray:
-    """Return the order in which each ``fits`` of ``boxes``, as :func:`_outwards` has them, lie together.
+    """Return an order in which each ``fits`` of ``boxes``, from :func:`_outwards`, are close together.
 
     Sort-tile-recursive: strips by x, which are cut by y (Leutenegger and others, ICDE 1997).
     """

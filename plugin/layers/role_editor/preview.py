@@ -22,7 +22,7 @@ from ..road_layers import read_areas, read_centrelines
 from ..roles import FURNITURE, KEEPOUT, OBSTACLE, OBSTACLE_ROLES, RAMP, ROAD_CENTRELINE, ROAD_SURFACE, STAIRS
 from ..site_transform import SiteGeoreference
 
-# --- What a layer comes to when it is published with a role: counts, warnings and lines to look at ---
+# --- The result of publishing a layer with a role: counts, warnings and line segments to draw ---
 
 ESTIMATED_HEIGHT_M = 3.0
 ESTIMATED_WIDTH_M = 3.5
@@ -31,10 +31,10 @@ _KINDS = (OBSTACLE, ROAD_CENTRELINE, ROAD_SURFACE, KEEPOUT)
 
 @dataclass(frozen=True)
 class LayerMeasure:
-    """What one layer comes to.
+    """The measure of one layer.
 
     ``segments`` is (n, 4): x and y of both ends, metres in the site frame. ``warnings`` name features;
-    ``refused`` says why nothing of the layer can be published.
+    ``refused`` is why nothing of the layer can be published.
     """
 
     role: str = ""
@@ -55,7 +55,7 @@ class LayerMeasure:
 def measure_layer(
     source: ObstacleSource, site: SiteGeoreference, feedback: QgsFeedback
 ) -> LayerMeasure | None:
-    """Return what ``source`` comes to with its role, None after a cancel; from any thread."""
+    """Return the measure of ``source`` with its role, None if cancelled; from any thread."""
     try:
         if source.role in OBSTACLE_ROLES:
             reading = read_outlines([source], site, None, ESTIMATED_HEIGHT_M, feedback)
@@ -78,7 +78,7 @@ def measure_layer(
 
 
 def measure_summary(measures: Sequence[LayerMeasure]) -> str:
-    """Return what all layers come to together, in one line."""
+    """Return the summary of all layers, in one line."""
     counted = dict.fromkeys(_KINDS, 0)
     for one in measures:
         if one.role:
@@ -93,7 +93,7 @@ def measure_summary(measures: Sequence[LayerMeasure]) -> str:
 
 
 def _things(role: str, number: int) -> str:
-    """Return how many things a layer of ``role`` has; ramps, stairs and furniture are obstacles."""
+    """Return the number of objects of a layer of ``role`` as text; ramps, stairs, furniture are obstacles."""
     if role == ROAD_CENTRELINE:
         return tr_count(number, "1 road", "%n roads")
     if role == ROAD_SURFACE:
@@ -144,7 +144,7 @@ _EVERY = 5000
 def draw_preview(
     measures: Iterable[LayerMeasure], size: QSize, ratio: float, feedback: QgsFeedback
 ) -> QImage | None:
-    """Return a picture of ``size`` widget pixels at ``ratio`` device pixels each, None after a cancel."""
+    """Return a picture of ``size`` widget pixels at ``ratio`` device pixels each, None if cancelled."""
     drawn = [one for one in measures if len(one.segments)]
     image = QImage(size * ratio, QImage.Format.Format_ARGB32_Premultiplied)
     image.setDevicePixelRatio(ratio)
@@ -167,7 +167,7 @@ def draw_preview(
 
 
 def _placed(groups: Sequence[np.ndarray], size: QSize) -> list[np.ndarray]:
-    """Return the segments in pixels, without those too short to be seen."""
+    """Return the segments in pixels, without those too short to be visible."""
     low, high = _extent(groups)
     scale = _metres_to_pixels(groups, size)
     middle = (low + high) / 2
@@ -202,15 +202,15 @@ def _scale_bar(painter: QPainter, size: QSize, scale: float) -> None:
     painter.drawText(QPointF(MARGIN, y - 5), tr("{metres:g} m", metres=metres))
 
 
-# --- Measures layers and draws the preview beside the GUI thread ---
+# --- Measuring of layers and drawing of the preview in the background ---
 
 Key = object
 
 
 class PreviewTask(QgsTask):
-    """Measures ``sources`` one by one, then draws them together with what is ``known``.
+    """Measures ``sources`` one by one, then draws them together with the ``known`` ones.
 
-    ``measured`` and ``drawn`` are emitted in the worker; Qt brings them to the thread of whoever listens.
+    ``measured`` and ``drawn`` are emitted in the worker; Qt delivers them in the receiver's thread.
     """
 
     measured = pyqtSignal(object, object)
@@ -259,7 +259,7 @@ class PreviewTask(QgsTask):
 
 
 class PreviewView(QWidget):
-    """A picture as large as the widget; ``resized`` asks for one of another size."""
+    """A picture as large as the widget; ``resized`` requests one of another size."""
 
     resized = pyqtSignal()
 

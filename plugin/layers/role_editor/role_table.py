@@ -41,7 +41,7 @@ _CHOICES = {
 
 @dataclass
 class RoleRow:
-    """A layer and what the dialog says it is; id and name can be asked for when the layer is gone."""
+    """A layer and its setup in the dialog; id and name remain valid when the layer is gone."""
 
     layer: QgsRasterLayer | QgsVectorLayer
     layer_id: str
@@ -50,7 +50,7 @@ class RoleRow:
 
     @property
     def roles(self) -> tuple[str, ...]:
-        """The roles that the layer can have, and the one it has however odd; ``""`` is none."""
+        """The roles available for the layer, and its present one however odd; ``""`` is none."""
         if isinstance(self.layer, QgsRasterLayer):
             choices: tuple[str, ...] = (roles.ORTHOPHOTO,)
         else:
@@ -67,7 +67,7 @@ class RoleRow:
 
 
 def role_rows(project: QgsProject) -> list[RoleRow]:
-    """Return a row for each layer that can have a role, by name; the desk's live robots have none."""
+    """Return a row for each layer that can have a role, by name; live robot layers have none."""
     layers = [layer for layer in project.mapLayers().values() if _can_have_a_role(layer)]
     return [
         RoleRow(layer, layer.id(), layer.name(), roles.setup_of(layer))
@@ -152,7 +152,7 @@ LISTED = 20
 
 
 def role_name(role: str) -> str:
-    """Return what a role is called on the screen."""
+    """Return the display name of a role."""
     return ROLE_NAMES.get(role, role)
 
 
@@ -167,7 +167,7 @@ def used_columns(role: str) -> tuple[int, ...]:
 
 
 class RoleTableModel(QAbstractTableModel):
-    """Rows of :class:`RoleRow`; ``edited`` says that one or more of them changed."""
+    """Rows of :class:`RoleRow`; ``edited`` signals a change of one or more of them."""
 
     edited = pyqtSignal()
 
@@ -177,7 +177,7 @@ class RoleTableModel(QAbstractTableModel):
         self._results: dict[str, LayerMeasure | None] = {}
 
     def show_result(self, layer_id: str, found: LayerMeasure | None) -> None:
-        """Show what a layer comes to; None while that is being found out."""
+        """Show the measure of a layer; None while that is being computed."""
         for k, row in enumerate(self.rows):
             if row.layer_id == layer_id:
                 self._results[layer_id] = found
@@ -272,11 +272,11 @@ class RoleTableModel(QAbstractTableModel):
         return _GREY if not row.setup.role else None
 
 
-# --- How the cells of the role table are edited: a list of roles, and QGIS's field and expression chooser
+# --- Editors of the role table's cells: a list of roles, and QGIS's field and expression chooser
 
 
 class RoleDelegate(QStyledItemDelegate):
-    """Offers the roles that a layer can have."""
+    """Offers the roles available for a layer."""
 
     def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: QModelIndex):
         editor = QComboBox(parent)
@@ -298,7 +298,7 @@ class RoleDelegate(QStyledItemDelegate):
 
 
 class ExpressionDelegate(QStyledItemDelegate):
-    """Lets one choose a field of the layer, or write an expression or build it in QGIS's dialog."""
+    """Editor to choose a field of the layer, or to enter or build an expression in QGIS's dialog."""
 
     def createEditor(self, parent: QWidget, option: QStyleOptionViewItem, index: QModelIndex):
         layer = _table(index).layer(index)

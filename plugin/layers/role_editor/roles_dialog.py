@@ -46,25 +46,25 @@ from ..site_transform import SiteGeoreference
 from . import role_table
 from .preview import LayerMeasure, PreviewTask, PreviewView, measure_summary
 
-# --- Keeps the counts and the picture up with the table, without the GUI thread ever waiting ---
+# --- Updates of the counts and the picture with the table, without blocking the GUI thread ---
 
 DELAY_MS = 250
-"""How long the table must be left alone before layers are read again."""
+"""Time without edits of the table before layers are read again."""
 
 GIVE_UP_S = 0.25
 
 
 class LivePreview(QObject):
-    """Measures the layers of ``rows`` as they are set up now; what was measured once is kept.
+    """Measures the layers of ``rows`` with their present setup; results are cached.
 
-    ``measured`` tells a layer's id and what it comes to, None as long as it is not known.
+    ``measured`` signals a layer's id and its measure, None as long as it is not known.
     """
 
     measured = pyqtSignal(str, object)
     drawn = pyqtSignal(QImage)
     summed = pyqtSignal(str)
     _left = threading.Event()
-    """Set where no thread is in the task that was ended last, of this dialog or one before."""
+    """Set unless a thread is in the task ended last, of this dialog or an earlier one."""
     _left.set()
 
     def __init__(self, project: QgsProject, rows: Sequence[role_table.RoleRow], parent: QObject):
@@ -80,7 +80,7 @@ class LivePreview(QObject):
 
     @property
     def busy(self) -> bool:
-        """Whether counts or picture are behind the table."""
+        """Whether counts or picture are out of date."""
         return self._timer.isActive() or self._task is not None
 
     def resize(self, size: QSize, ratio: float) -> None:
@@ -90,7 +90,7 @@ class LivePreview(QObject):
             self.refresh()
 
     def refresh(self) -> None:
-        """Catch up with the rows soon."""
+        """Schedule an update to the rows."""
         for row in self._rows:
             self.measured.emit(row.layer_id, self._known.get(_key(row)))
         if self._task is not None:
@@ -98,7 +98,7 @@ class LivePreview(QObject):
         self._timer.start()
 
     def stop(self) -> None:
-        """End what is under way, for good; its thread may stay in a layer that hangs."""
+        """Cancel the computation under way for good; its thread may remain in a layer that hangs."""
         self._timer.stop()
         task, self._task = self._task, None
         if task is None:
@@ -110,15 +110,15 @@ class LivePreview(QObject):
         task.cancel()
 
     def wait_for_end(self) -> None:
-        """Wait, though not for ever, until no thread is in what :meth:`stop` has ended."""
+        """Wait, with a time limit, until no thread is in the task ended by :meth:`stop`."""
         self._left.wait(GIVE_UP_S)
 
     def _start(self) -> None:
         if self._task is not None:
-            # The one that was cancelled ends soon, and starts this again.
+            # The cancelled one ends soon, and starts this again.
             return
         if not self._left.is_set():
-            # In a layer that hangs each dialog would keep one more thread of those that draw the map.
+            # Otherwise a layer that hangs would block one more thread of the map's pool for each dialog.
             self._timer.start()
             return
         rows = [row for row in self._rows if row.setup.role in roles.PUBLISHED_ROLES]
@@ -180,7 +180,7 @@ def _key(row: role_table.RoleRow) -> object:
     return row.layer_id, row.setup
 
 
-# --- The dialog *Layer roles*: what each layer of the project is to robots, with a live preview ---
+# --- The dialog *Layer roles*: the role of each layer of the project, with a live preview ---
 
 WIDTHS = {
     role_table.LAYER: 140,
@@ -197,16 +197,16 @@ WIDTHS = {
     role_table.RESULT: 200,
 }
 WIDEST_NAME = 320
-"""Pixels that names of layers get at most; longer ones are cut in the middle, and whole in a tool tip."""
+"""Greatest width in pixels of layers' names; longer ones are cut in the middle, with a tool tip."""
 WIDE = 1280
-"""Pixels that the dialog is wide with short names."""
+"""Width in pixels of the dialog with short names."""
 
 MOST_OF_TABLE = 370
-"""How high the table is at first when it has many rows, pixels."""
+"""Initial height of the table in pixels when it has many rows."""
 
 
 class RolesDialog(QDialog):
-    """Nothing changes in the project before *Apply* or *OK*."""
+    """The dialog; nothing changes in the project before *Apply* or *OK*."""
 
     def __init__(self, project: QgsProject, parent: QWidget | None = None):
         super().__init__(parent)
@@ -230,7 +230,7 @@ class RolesDialog(QDialog):
         self.preview.refresh()
 
     def apply(self) -> None:
-        """Keep what the table says in the layers."""
+        """Store the table's settings in the layers."""
         changed = [row for row in self.model.rows if row.setup != roles.setup_of(row.layer)]
         for row in changed:
             roles.keep_setup(row.layer, row.setup)
@@ -239,7 +239,7 @@ class RolesDialog(QDialog):
         self._show_changed()
 
     def apply_profile(self, file: Path) -> None:
-        """Set the layers up that the profile in ``file`` knows; say how many those were, or what is wrong."""
+        """Apply the profile in ``file`` to the layers that it matches; show their number, or the error."""
         try:
             profile = roles.read_profile(file)
         except FleetError as error:
@@ -276,7 +276,7 @@ class RolesDialog(QDialog):
         self.preview.stop()
         super().done(result)
 
-    # --- how it looks ---
+    # --- Layout ---
 
     def _make_table(self) -> QTableView:
         table = QTableView(self)
@@ -304,7 +304,7 @@ class RolesDialog(QDialog):
         name_width = min(table.sizeHintForColumn(role_table.LAYER), WIDEST_NAME)
         table.setColumnWidth(role_table.LAYER, max(name_width, WIDTHS[role_table.LAYER]))
         fit_headers(table)
-        # The column that takes what is left keeps room for its head.
+        # The last column, which takes the rest, keeps room for its head.
         header.setMinimumSectionSize(
             header.fontMetrics().horizontalAdvance(role_table.TITLES[role_table.RESULT]) + 8
         )
@@ -352,7 +352,7 @@ class RolesDialog(QDialog):
         line.addStretch(1)
         return line
 
-    # --- what it does ---
+    # --- Actions ---
 
     def _wire(self) -> None:
         self._buttons.accepted.connect(self._accept)
@@ -376,7 +376,7 @@ class RolesDialog(QDialog):
         self.accept()
 
     def _close_without(self, layer_ids: list[str]) -> None:
-        # A row speaks of its layer: without it the dialog has nothing to show or to keep.
+        # A row refers to its layer: without it there is nothing to show or to store.
         if any(row.layer_id in layer_ids for row in self.model.rows):
             self.reject()
 
@@ -399,7 +399,7 @@ class RolesDialog(QDialog):
             self.apply_profile(Path(name))
 
 
-# --- The menu entry that opens the dialog *Layer roles*, and takes it away again ---
+# --- The menu entry that opens the dialog *Layer roles*, and its removal ---
 
 ICON = Path(__file__).parents[3] / "resources" / "icons" / "layer_roles.svg"
 
@@ -424,7 +424,7 @@ class RolesAction:
         self._dialog.raise_()
 
     def remove(self) -> None:
-        """Close the dialog without keeping anything, and take the entry out of the menu."""
+        """Close the dialog without storing anything, and remove the entry from the menu."""
         if self._dialog is not None:
             if not sip.isdeleted(self._dialog):
                 self._dialog.reject()
