@@ -1,1 +1,1 @@
-"""The algorithms of the provider ``fleet``, by what they are about."""
+"""The algorithms of the provider ``fleet``, by subject."""

@@ -1,4 +1,4 @@
-"""``fleet:asplacedreport``: placed cones in, a PDF of how they stand against their plan out."""
+"""``fleet:asplacedreport``: placed cones in, a PDF comparing them with their plan out."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class AsPlacedReport(FleetAlgorithm):
     """)
 
     def flags(self):
-        # Print layouts belong to the main thread.
+        # Print layouts must be used in the main thread.
         return super().flags() | QgsProcessingAlgorithm.Flag.FlagNoThreading
 
     def initAlgorithm(self, configuration: dict[str, Any] | None = None):
@@ -131,7 +131,7 @@ class AsPlacedReport(FleetAlgorithm):
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
 
     def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback):
-        # Of what runs in the window's thread QGIS's dialog shows neither the log nor the result.
+        # For algorithms in the window's thread QGIS's dialog shows neither the log nor the result.
         if iface is not None and getattr(self, "_written", None):
             announce(iface.messageBar(), self._written)
         return super().postProcessAlgorithm(context, feedback)
@@ -147,13 +147,13 @@ class AsPlacedReport(FleetAlgorithm):
                     "EPSG:32633."
                 )
             )
-        # Deviations in degrees would be told as metres.
+        # Otherwise deviations in degrees would be reported as metres.
         check_site_crs(crs)
         return crs
 
 
 def announce(bar: QgsMessageBar, file: Path) -> None:
-    """Say in the window's message bar where the report is; a click opens it."""
+    """Show the location of the report in the window's message bar; a click opens it."""
     link = f'<a href="{file.as_uri()}">{escape(str(file))}</a>'
     bar.pushSuccess(tr("As-placed report"), tr("It is written: {link}", link=link))
 

@@ -70,14 +70,14 @@ from ..common.cone_layers import PointRow, point_rows
 from ..common.outputs import check_target, fill_sink, line, write_whole
 from ..common.parameters import chosen_crs
 
-# --- Cones, robots and stores, read from point layers by the names of their fields ---
+# --- Cones, robots and stores, read from point layers by field names ---
 
 CONES, ROBOTS, STORES = "CONES", "ROBOTS", "STORES"
 TASK, FINISH, STAGE_FIELD = "TASK", "FINISH", "STAGE_FIELD"
 _REAL = QgsProcessingParameterNumber.Type.Double
 _WHOLE = QgsProcessingParameterNumber.Type.Integer
 _NAMES = ("id", "robot", "name")
-"""Fields that may hold the id of a feature; the first that the layer has."""
+"""Fields that may contain the id of a feature; the first one in the layer is used."""
 _NUMBERS = {
     "CAPACITY": (tr("Cones that a robot carries (default of field capacity)"), _WHOLE, 8, 1),
     "ROBOT_SPEED": (tr("Speed of a robot [m/s] (default of field speed)"), _REAL, 1.0, 0.01),
@@ -93,7 +93,7 @@ _NUMBERS = {
 
 
 def job_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters of the work to do, and of who does it."""
+    """Return the parameters of the job and its robots."""
     points = [QgsProcessing.SourceType.TypeVectorPoint]
     return [
         QgsProcessingParameterFeatureSource(CONES, tr("Cones"), points),
@@ -137,10 +137,10 @@ class JobSource:
         return source
 
     def read(self, crs: QgsCoordinateReferenceSystem) -> AssignmentJob:
-        """Return the work to do, with coordinates in ``crs``.
+        """Return the job, with coordinates in ``crs``.
 
         :raises ParameterError: when a layer cannot be opened; LayerReadingError naming layer, feature and
-            field that cannot be used; JobError when what they say cannot be planned for.
+        the invalid field; JobError when a job with these values cannot be planned.
         """
         number = {name: self._number(name) for name in _NUMBERS}
         return AssignmentJob(
@@ -181,7 +181,7 @@ class JobSource:
 
 
 def _robot(row: PointRow, number: dict[str, float]) -> PlanRobot:
-    # Of a range, 0 says that it does not matter.
+    # A range of 0 means unlimited.
     metres = row.number("range_m", number["RANGE"]) or math.inf
     return PlanRobot(
         row.name,
@@ -201,11 +201,11 @@ def layers_crs(sources: Sequence[QgsProcessingFeatureSource | None]) -> list[Qgs
     return [source.sourceCrs() for source in sources if source is not None]
 
 
-# --- How the robots of an assignment get from place to place: along roads, or straight where none are given
+# --- The ways of an assignment's robots from place to place: along roads, or straight where none are given
 
 
 def travel_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say which roads may be driven, and how."""
+    """Return the parameters of the roads that may be driven, and how."""
     roads, tolerance, *others = road_sources.road_parameters()
     roads.setDescription(tr("Road centrelines (default: straight lines)"))
     made = [
@@ -224,7 +224,7 @@ def travel_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 class TravelSource:
-    """The roads of one run; made in the main thread, read in any."""
+    """The roads of one run; created in the main thread, read in any."""
 
     def __init__(
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
@@ -237,7 +237,7 @@ class TravelSource:
         self._network: Network | None = None
 
     def open(self, jobs: JobSource, feedback: QgsProcessingFeedback) -> QgsCoordinateReferenceSystem | None:
-        """Read the roads, where there are any, and return the CRS of everything; None after a cancel.
+        """Read the roads, if given, and return the common CRS; None if cancelled.
 
         :raises FleetError: when the roads or the CRS cannot be used.
         """
@@ -283,7 +283,7 @@ class TravelSource:
         return RoadTravel(job, router, wishes.driving, wishes.restrictions, wishes.reach, progress)
 
 
-# --- An assignment's plan as rows of layers, and the figures that sum it up ---
+# --- An assignment's plan as rows of layers, and its summary figures ---
 
 _COMMON = {"robot": "string", "trip": "integer", "sequence": "integer", "kind": "string", "id": "string"}
 TARGET_FIELDS = {
@@ -369,7 +369,7 @@ OBJECTIVE, METHOD, TIME_LIMIT = "OBJECTIVE", "METHOD", "TIME_LIMIT"
 TARGETS, PATHS, PLAN = "TARGETS", "PATHS", "PLAN"
 METHOD_USED, TRAVEL_USED = "METHOD_USED", "TRAVEL_USED"
 _READ, _MEASURED, _SOLVED = 15.0, 40.0, 95.0
-"""Per cent of the work after reading, after distances, and after planning."""
+"""Percentage of the work after reading, after distances, and after planning."""
 
 
 class AssignCones(FleetAlgorithm):
@@ -484,7 +484,7 @@ class AssignCones(FleetAlgorithm):
         )
 
     def _plan_file(self, parameters: Parameters, context: QgsProcessingContext) -> Path | None:
-        """Return the file of the plan, None where none is wanted.
+        """Return the file of the plan, None if not requested.
 
         :raises OutputError: when it cannot be written, before the time limit is spent on planning.
         """
@@ -519,19 +519,19 @@ class AssignCones(FleetAlgorithm):
 
 
 class _Progress:
-    """Passes progress on to Processing, and its cancel back."""
+    """Forwards progress to Processing, and cancellation back."""
 
     def __init__(self, feedback: QgsProcessingFeedback) -> None:
         self._feedback = feedback
 
     def measuring(self, share: float) -> None:
-        """Tell the share of distances; raise when they are not wanted any more."""
+        """Report the share of distances; raise when cancelled."""
         self._feedback.setProgress(_READ + (_MEASURED - _READ) * share)
         if self._feedback.isCanceled():
             raise AssignmentCancelledError(tr("The assignment was cancelled."))
 
     def solving(self, share: float) -> bool:
-        """Tell the share of planning; return whether to go on."""
+        """Report the share of planning; return whether to continue."""
         self._feedback.setProgress(_MEASURED + (_SOLVED - _MEASURED) * share)
         return not self._feedback.isCanceled()
 

@@ -148,7 +148,7 @@ class ConeLayout(FleetAlgorithm):
         return cones_along_line(cones, points, self.parameterAsDouble(parameters, START, context))
 
     def _line_feature(self, parameters: Parameters, context: QgsProcessingContext) -> QgsFeature:
-        """Return the one feature that the layout lies along."""
+        """Return the single feature along which the layout is placed."""
         request = QgsFeatureRequest()
         wanted = parameters.get(LINE_ID)
         if wanted not in (None, ""):
@@ -171,7 +171,7 @@ class ConeLayout(FleetAlgorithm):
         return features[0]
 
     def _points(self, parameters: Parameters, context: QgsProcessingContext) -> np.ndarray:
-        """Return the points of the one line, in the site CRS."""
+        """Return the points of the single line, in the site CRS."""
         source, feature = self._line, self._line_feature(parameters, context)
         site = SiteGeoreference.in_crs(self._setup.crs, context.transformContext())
         placing = site.of_layer(source.sourceName(), source.sourceCrs())
@@ -202,7 +202,7 @@ class ConeLayout(FleetAlgorithm):
 def dimensions_in(text: str) -> dict[str, float]:
     """Return the numbers of ``name=value; name=value``.
 
-    :raises ParameterError: naming the part that is none.
+    :raises ParameterError: naming the invalid part.
     """
     values = {}
     for part in (part.strip() for part in text.replace(",", ";").split(";")):
@@ -221,7 +221,7 @@ def dimensions_in(text: str) -> dict[str, float]:
     return values
 
 
-# --- ``fleet:importconelayout``: cones from a CSV file or a layer, moved and turned to their place ---
+# --- ``fleet:importconelayout``: cones from a CSV file or a layer, moved and rotated to their place ---
 
 FILE, INPUT, ORIGIN, ROTATION, NAME = "FILE", "INPUT", "ORIGIN", "ROTATION", "LAYOUT_NAME"
 X, Y = "X_FIELD", "Y_FIELD"
@@ -240,7 +240,7 @@ _COLUMNS = {
 
 
 class ImportConeLayout(FleetAlgorithm):
-    """Makes a layer of cones of a table or of another layer."""
+    """Makes a layer of cones from a table or another layer."""
 
     GROUP = ("cones", tr("Cones"))
     NAME = "importconelayout"
@@ -274,7 +274,7 @@ class ImportConeLayout(FleetAlgorithm):
                 FILE,
                 tr("CSV file, or track of Formula Student (YAML, SDF)"),
                 optional=True,
-                # "All files" has every file reach the check below, which says what is accepted.
+                # "All files" lets every file reach the check below, which reports what is accepted.
                 fileFilter=tr(
                     "Cone layouts ({kinds});;All files (*)", kinds=" ".join(f"*{s}" for s in SUFFIXES)
                 ),
@@ -331,7 +331,7 @@ class ImportConeLayout(FleetAlgorithm):
             return self._setup.write(self, parameters, context, cones, name, feedback)
 
     def _lies(self) -> bool:
-        """Whether the cones come from points that have a place already."""
+        """Whether the cones come from points that are already in place."""
         source = self._source
         if source is None or not stated_crs(source.sourceCrs()).isValid():
             return False
@@ -371,7 +371,7 @@ class ImportConeLayout(FleetAlgorithm):
 
 
 def _file_problem(parameters: Parameters) -> str:
-    """Return what is wrong with the file before it is opened, or nothing."""
+    """Return the error in the file parameter before it is opened, or an empty text."""
     file = parameters.get(FILE)
     if not isinstance(file, (str, Path)) or not str(file):
         return ""

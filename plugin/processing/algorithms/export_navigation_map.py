@@ -1,4 +1,4 @@
-"""``fleet:exportnavigationmap``: a robot map in, the maps of today's robots out."""
+"""``fleet:exportnavigationmap``: a robot map in, maps for common robots out."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ says what is in each.</p>
 """)
 
 
-# --- ``fleet:exportnavigationmap``: a robot map in, the maps of today's robots out ---
+# --- ``fleet:exportnavigationmap``: a robot map in, maps for common robots out ---
 
 FORMATS, NAME, OUTPUT = "FORMATS", "NAME", "OUTPUT"
 RESOLUTION, INSIDE, DRIVES_OVER = "RESOLUTION", "INSIDE", "DRIVES_OVER"
@@ -129,7 +129,7 @@ class ExportNavigationMap(FleetAlgorithm):
         self.addOutput(QgsProcessingOutputNumber("WARNING_COUNT", tr("Warnings")))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        # Before QGIS's own checks, which say that a value is wrong and not why.
+        # Before QGIS's own checks, which report an invalid value without the reason.
         problem = (
             file_problem(parameters)
             or _format_problem(parameters)
@@ -188,7 +188,7 @@ class ExportNavigationMap(FleetAlgorithm):
         context: QgsProcessingContext,
         feedback: QgsProcessingFeedback,
     ) -> None:
-        """Read the layers of the masks that are wanted."""
+        """Read the layers of the requested masks."""
         site = export.place.layers
         kinds = [name for name in ("keepout", "speed") if name in formats]
         if kinds and export.place.is_local:
@@ -218,12 +218,12 @@ class ExportNavigationMap(FleetAlgorithm):
                     layer=parameters.get(name),
                 )
             )
-        # They are repaired here, with a warning each: QGIS would leave them out of the mask, or end there.
+        # They are repaired here, with a warning each: QGIS would leave them out of the mask, or stop there.
         source.setInvalidGeometryCheck(QgsFeatureRequest.InvalidGeometryCheck.GeometryNoCheck)
         return source, filter_in(self, parameters, name, context)
 
     def _choice_problem(self, parameters: Parameters, context: QgsProcessingContext) -> str:
-        """Return what the formats need and do not have, or nothing."""
+        """Return which input of the formats is missing, or an empty text."""
         formats = self.parameterAsEnumStrings(parameters, FORMATS, context)
         needed = {"keepout": (KEEPOUTS,), "speed": (SPEED_AREAS, SPEED)}
         for format, names in needed.items():
@@ -264,7 +264,7 @@ def _parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def _format_problem(parameters: Parameters) -> str:
-    """Return which format is none, or nothing."""
+    """Return the invalid format, or an empty text."""
     value = parameters.get(FORMATS)
     given = value.split(",") if isinstance(value, str) else value
     if not isinstance(given, (list, tuple)):
@@ -280,7 +280,7 @@ def _format_problem(parameters: Parameters) -> str:
 
 
 def _number_problem(parameters: Parameters) -> str:
-    """Return which number cannot be used and why, or nothing."""
+    """Return the invalid number and the reason, or an empty text."""
     for name, positive in ((RESOLUTION, True), (DRIVES_OVER, False)):
         value = parameters.get(name)
         if value is None:
@@ -312,7 +312,7 @@ def _name(given: str, source: Path) -> str:
 
 
 def _write(made: Mapping[str, Files], folder: Path, source: Path, feedback: QgsProcessingFeedback) -> None:
-    """Write every file into the folder or none, and none over the robot map."""
+    """Write all files into the folder or none, and none over the robot map."""
     files = {name: content for part in made.values() for name, content in part.items()}
     for name in files:
         target = folder / name
@@ -338,6 +338,6 @@ def _results(made: Mapping[str, Files], folder: Path, warnings: int) -> dict[str
 
 
 def _to_open(files: Files) -> str:
-    """Return the file that a program is given: of a grid the YAML, which names its image."""
+    """Return the file to open in a program: of a grid the YAML, which names its image."""
     names = list(files)
     return next((name for name in names if name.endswith(".yaml")), names[0])

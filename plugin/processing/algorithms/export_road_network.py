@@ -36,12 +36,12 @@ from ..common.parameters import frame_in_crs_parameters, site_frame
 Files = dict[str, bytes]
 
 _NOTABLE_M = 0.01
-"""An error of places that is said."""
+"""Position error in metres from which it is reported."""
 
 
 @dataclass
 class RoadNetworkExport:
-    """Open roads in the site frame, and what to make of them; ``warnings`` grow while files are made."""
+    """Open roads in the site frame, and the export settings; ``warnings`` grow while files are made."""
 
     network: Network
     frame: SiteFrame
@@ -62,12 +62,12 @@ class RoadNetworkExport:
 
     @property
     def crs(self) -> str:
-        """The CRS that the site frame is, empty where it has an origin or a rotation of its own."""
+        """The CRS that equals the site frame, empty where it has its own origin or rotation."""
         own = self.frame.origin != (0.0, 0.0) or self.frame.rotation != 0.0
         return "" if own else self.frame.crs
 
     def warn(self, text: str) -> None:
-        """Say ``text`` and count it."""
+        """Report ``text`` as a warning and count it."""
         self.warnings.append(text)
         self.feedback.pushWarning(text)
 
@@ -146,7 +146,7 @@ FORMAT_NAMES = {
 
 
 class ExportRoadNetwork(FleetAlgorithm):
-    """Writes a road network as graphs that other robots and their masters drive by."""
+    """Writes a road network as graphs used by other robots and their masters."""
 
     GROUP = ("roads", tr("Roads"))
     NAME = "exportroadnetwork"
@@ -238,7 +238,7 @@ class ExportRoadNetwork(FleetAlgorithm):
     def _plan(
         self, parameters: Parameters, context: QgsProcessingContext, feedback: QgsProcessingFeedback
     ) -> RoadNetworkExport | None:
-        """Return what will be written; None after a cancel."""
+        """Return the plan of the files to write; None if cancelled."""
         words = {name: self.parameterAsString(parameters, name, context).strip() for name in _WORDS}
         for name, word in words.items():
             if not word or (name == NAME and (Path(word).name != word or word.startswith("."))):
@@ -268,7 +268,7 @@ class ExportRoadNetwork(FleetAlgorithm):
 
 
 _WORDS = {NAME: "roads", MAP_ID: "map", VEHICLE_TYPE: "robot"}
-"""Parameters that are a word, with what they are unless given: names in files, the same in every language."""
+"""Parameters that are a word, with their defaults: names in files, the same in every language."""
 
 
 def _parameters() -> list[QgsProcessingParameterDefinition]:
@@ -303,7 +303,7 @@ def _in_frame(network: Network, frame: SiteFrame) -> Network:
 
 
 def _write(made: dict[str, Files], folder: Path, feedback: QgsProcessingFeedback) -> None:
-    """Write every file into the folder or none."""
+    """Write all files into the folder or none."""
     files = {name: content for part in made.values() for name, content in part.items()}
     with WholeFolder(folder, tr("The road network")) as whole:
         for name, content in files.items():

@@ -64,7 +64,7 @@ zstandard; compact (about a third of binary, whole centimetres), which needs cbo
 <p>Broken geometry is repaired where that is safe and left out where it is not. Each time a warning names the
 layer and the feature; the export goes on.</p>
 """)
-"""In one line, because QGIS takes every line break for the end of a paragraph."""
+"""In one line, because QGIS treats every line break as the end of a paragraph."""
 
 
 # --- ``fleet:exportrobotmap``: obstacle layers and a window in, a robot map out ---
@@ -79,7 +79,7 @@ NUMBERS = {
 
 
 class ExportRobotMap(FleetAlgorithm):
-    """Exports the obstacles in a window as a map that robots read (paper 1, section III)."""
+    """Exports the obstacles in a window as a map for robots (paper 1, section III)."""
 
     NAME = "exportrobotmap"
     TITLE = tr("Export robot map")
@@ -107,7 +107,7 @@ class ExportRobotMap(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        # Before QGIS's own checks, which say that a value is wrong and not why.
+        # Before QGIS's own checks, which report an invalid value without the reason.
         problem = window_problem(parameters) or layers_problem(
             parameters, export_parameters.OBSTACLES, context
         )
@@ -150,7 +150,7 @@ class ExportRobotMap(FleetAlgorithm):
         return {export_parameters.OUTPUT: str(plan.target), **dict(zip(NUMBERS, figures, strict=True))}
 
     def _check_plan(self, parameters: Parameters, context: QgsProcessingContext) -> tuple[bool, str]:
-        """Make the plan once before the run: the dialog and scripts are told what is wrong with it."""
+        """Make the plan once before the run, so that the dialog and scripts get its errors."""
         try:
             export_parameters.read_export_parameters(self, parameters, context)
         except (FleetError, RobotMapError) as error:
@@ -159,7 +159,7 @@ class ExportRobotMap(FleetAlgorithm):
 
 
 def value_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say what a feature is."""
+    """Return the parameters of features' values."""
     base = QgsProcessingParameterExpression(
         export_parameters.BASE_EXPRESSION,
         tr("Foot of each feature above ground [m] (default: on it)"),
@@ -200,7 +200,7 @@ def value_parameters() -> list[QgsProcessingParameterDefinition]:
 def _reported(
     reading: ObstacleReading, robot_map: RobotMap, around: Sequence[str], feedback: QgsProcessingFeedback
 ) -> int:
-    """Push every warning and return how many there are; ``around`` are what the whole window lies in."""
+    """Push every warning and return their number; ``around`` are obstacles that contain the whole window."""
     warnings = [*reading.warnings, *robot_map.warnings, *export_parameters.surrounding_note(around)]
     for warning in warnings:
         feedback.pushWarning(warning)

@@ -1,4 +1,4 @@
-"""``fleet:exportrobotmaptiles``: obstacle layers in, many robot maps and an index of them out."""
+"""``fleet:exportrobotmaptiles``: obstacle layers in, many robot maps and their index out."""
 
 from __future__ import annotations
 
@@ -54,14 +54,14 @@ from ..common.parameters import (
 )
 from .export_robot_map import value_parameters
 
-# --- Where the tiles of a map lie: in a grid, or along a route ---
+# --- The tiles of a map: in a grid, or along a route ---
 
 MOST_TILES = 10_000
 
 
 @dataclass(frozen=True)
 class Tile:
-    """One window: its ``name``; its row and column in a grid, or how many metres along which route."""
+    """One window: its ``name``; its row and column in a grid, or its route and the metres along it."""
 
     name: str
     window: Window
@@ -73,7 +73,7 @@ class Tile:
 
 @dataclass(frozen=True)
 class TileSize:
-    """Width along x, height along y, and what neighbours share; metres in the site frame."""
+    """Width along x, height along y, and the overlap of neighbours; metres in the site frame."""
 
     width: float
     height: float
@@ -125,8 +125,8 @@ def grid_tiles(area: Border, size: TileSize) -> list[Tile]:
 def route_tiles(routes: Sequence[np.ndarray], size: TileSize) -> list[Tile]:
     """Return tiles centred on points of each of ``routes``, (n, 2) metres in the site frame.
 
-    Two that follow each other share at least the overlap, and every point of a route is at least half of it
-    inside a tile. Where routes meet, a tile that is there already is left out.
+    Consecutive tiles share at least the overlap, and every point of a route is at least half of it
+    inside a tile. Where routes meet, a duplicate tile is left out.
 
     :raises ParameterError: when there would be too many, or no route has a length.
     """
@@ -150,20 +150,20 @@ def route_tiles(routes: Sequence[np.ndarray], size: TileSize) -> list[Tile]:
 
 
 def area_of(tiles: Sequence[Tile]) -> Border:
-    """Return the rectangle that holds all ``tiles``."""
+    """Return the rectangle that contains all ``tiles``."""
     corners = np.array([tile.window.border for tile in tiles])
     low, high = corners[:, :2].min(axis=0), corners[:, 2:].max(axis=0)
     return Border(float(low[0]), float(low[1]), float(high[0]), float(high[1]))
 
 
 def _window(x: float, y: float, size: TileSize) -> Window:
-    # In whole centimetres, so that neighbours without overlap share their side to the digit.
+    # In whole centimetres, so that neighbours without overlap share their side exactly.
     x, y = round(x, 2), round(y, 2)
     return Window.from_bounds(x, y, x + size.width, y + size.height)
 
 
 def _steps(length: float, step: float) -> int:
-    # A millimetre more than whole steps is rounding, not a step.
+    # A millimetre more than whole steps is a rounding error, not a step.
     return max(math.ceil((length - 1e-3) / step), 1)
 
 
@@ -179,7 +179,7 @@ def _check_count(count: int) -> None:
         )
 
 
-# --- What an export of tiles will do, settled and checked before it starts ---
+# --- The plan of an export of tiles, checked before it starts ---
 
 ROUTE, TILE_WIDTH, TILE_HEIGHT, OVERLAP = "ROUTE", "TILE_WIDTH", "TILE_HEIGHT", "OVERLAP"
 FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
@@ -187,9 +187,9 @@ FOLDER, INDEX, SKIP_EMPTY = "OUTPUT", "INDEX", "SKIP_EMPTY"
 
 @dataclass(frozen=True)
 class TileParameters(export_parameters.ObstacleParameters):
-    """Everything that is needed of the parameters and layers to export tiles.
+    """Everything from the parameters and layers that the export of tiles needs.
 
-    ``index`` is the file of the index, None where it is none; ``warnings`` are about the route.
+    ``index`` is the file of the index, None if it is not a file; ``warnings`` are about the route.
     """
 
     tiles: list[Tile]
@@ -199,7 +199,7 @@ class TileParameters(export_parameters.ObstacleParameters):
 
 
 def tiles_problem(parameters: Parameters) -> str:
-    """Return what is wrong with the choice of area, or nothing."""
+    """Return the error in the choice of area, or an empty text."""
     has_extent, has_route = (parameters.get(name) not in (None, "") for name in (EXTENT, ROUTE))
     if has_extent and has_route:
         return tr("Both EXTENT and ROUTE are given: give one of them, for a grid or for tiles along a route.")
@@ -213,7 +213,7 @@ def tiles_problem(parameters: Parameters) -> str:
 def read_tile_parameters(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> TileParameters:
-    """Return the plan for ``parameters``; to be called in the main thread.
+    """Return the plan for ``parameters``; must be called in the main thread.
 
     :raises FleetError: when a parameter or a layer cannot be used.
     :raises WindowError: when the extent encloses nothing.
@@ -234,17 +234,17 @@ def read_tile_parameters(
         raise ParameterError(tr("OUTPUT {folder} is a file: choose a folder for the tiles.", folder=folder))
     index = _index_file(parameters)
     if index is not None and index.parent != folder:
-        # It comes after the tiles are there.
+        # It is written after the tiles.
         check_target(index, tr("The index"))
     return TileParameters(**vars(plan), tiles=tiles, folder=folder, index=index, warnings=warnings)
 
 
 def _index_file(parameters: Parameters) -> Path | None:
-    """Return the file of the index, None where it is none."""
+    """Return the file of the index, None if it is not a file."""
     value = parameters.get(INDEX)
     if isinstance(value, QgsProcessingOutputLayerDefinition):
         value = value.sink.staticValue()
-    # Neither TEMPORARY_OUTPUT nor what begins with a provider, such as memory: or postgres:, is a file.
+    # Neither TEMPORARY_OUTPUT nor a provider prefix, such as memory: or postgres:, is a file.
     is_file = isinstance(value, str) and Path(value).suffix and not re.match(r"\w{2,}:", value)
     return Path(value) if is_file else None
 
@@ -256,7 +256,7 @@ def _routes(
     site: SiteGeoreference,
     warnings: list[str],
 ) -> list[np.ndarray]:
-    """Return each line of ROUTE as (n, 2) metres in the site frame; ``warnings`` get what is left out."""
+    """Return each line of ROUTE as (n, 2) metres in the site frame; ``warnings`` receive omissions."""
     source = algorithm.parameterAsSource(parameters, ROUTE, context)
     if source is None:
         raise ParameterError(
@@ -410,7 +410,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
             if not maker.make_all(OutlineIndex.of(outlines), folder, steps):
                 return {}
             folder.publish()
-            # Only now, so that no index tells of tiles that are not there.
+            # Only now, so that no index lists missing tiles.
             with replaced_whole(plan.index, tr("The index")):
                 index = self._write_index(parameters, context, maker.rows)
         self.remember({INDEX: index})
@@ -418,7 +418,7 @@ class ExportRobotMapTiles(FleetAlgorithm):
         return {FOLDER: str(plan.folder), INDEX: index, **maker.reported(feedback)}
 
     def _write_index(self, parameters: Parameters, context: QgsProcessingContext, rows: list) -> str:
-        """Write the index; return the layer that it is."""
+        """Write the index; return its layer."""
         crs = layer_crs(self._plan.site.crs)
         sink, index = self.parameterAsSink(
             parameters, INDEX, context, self._fields, QgsWkbTypes.Type.Polygon, crs
@@ -433,13 +433,13 @@ class _TileMaker:
     def __init__(self, plan: TileParameters, warnings: Sequence[str], skip_empty: bool):
         self._plan, self._skip_empty = plan, skip_empty
         self._counts = np.zeros(3, dtype=np.int64)
-        # A note about an outline comes with every tile that it touches: said once.
+        # A note about an outline occurs with every tile that it touches, but is reported once.
         self._notes: dict[str, None] = dict.fromkeys(warnings)
         self._around: dict[str, None] = {}
         self.rows: list = []
 
     def make_all(self, index: OutlineIndex, folder: WholeFolder, feedback: QgsProcessingFeedback) -> bool:
-        """Add every tile to ``folder``; return False when cancelled on the way."""
+        """Add every tile to ``folder``; return False if cancelled."""
         surrounding = SurroundingOutlines(index.outlines)
         for number, tile in enumerate(self._plan.tiles, 1):
             if feedback.isCanceled():

@@ -1,4 +1,4 @@
-"""``fleet:importnavigationmap``: a map of Nav2 in, a raster and polygons of what is occupied out."""
+"""``fleet:importnavigationmap``: a map of Nav2 in, a raster and polygons of occupied cells out."""
 
 from __future__ import annotations
 
@@ -31,12 +31,12 @@ from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, field
 from ..common.map_files import MapPlace, map_parameters, map_place
 from ..common.outputs import fill_sink
 
-# --- Images of Nav2's maps read, and rasters and polygons made of their cells, by GDAL ---
+# --- Images of Nav2's maps read, and their cells converted to rasters and polygons, by GDAL ---
 
 DRIVERS = ["PNM", "PNG", "BMP", "JPEG"]
-"""What map servers load, and nothing that could lead anywhere else."""
+"""The formats that map servers load, and none that could refer to other files."""
 GeoTransform = tuple[float, float, float, float, float, float]
-"""x and y of the upper left corner, each with its steps for a column and a row, as GDAL orders them."""
+"""x and y of the upper left corner, each with its steps per column and row, in GDAL's order."""
 
 
 class MapImageError(FleetError):
@@ -46,7 +46,7 @@ class MapImageError(FleetError):
 def read_image(file: Path) -> tuple[np.ndarray, bool]:
     """Return the bands, (bands, rows, columns) uint8, and whether the last is opacity.
 
-    :raises MapImageError: :raises NavigationMapError: for what cannot be read, or is too large to be.
+    :raises MapImageError: :raises NavigationMapError: when it cannot be read, or is too large.
     """
     with _quiet() as gdal:
         if not file.is_file():
@@ -101,7 +101,7 @@ def outlines_of(
         raster = gdal.GetDriverByName("MEM").Create("", columns, rows, 1, gdal.GDT_Byte)
         _fill(raster, chosen.astype(np.uint8), place, "")
         band = raster.GetRasterBand(1)
-        # Kept by name: a layer of a source that is gone ends the program.
+        # Held in a variable: a layer of a freed source crashes the program.
         source = ogr.GetDriverByName("Memory").CreateDataSource("outlines")
         layer = source.CreateLayer("outlines", None, ogr.wkbPolygon)
         try:
@@ -144,9 +144,9 @@ def _unreadable(gdal: Any, file: Path) -> str:
 
 @contextmanager
 def _quiet() -> Iterator[Any]:
-    """Give the module ``gdal``, which keeps what it has to say for an error's text.
+    """Yield the module ``gdal``, whose messages are kept for an error's text.
 
-    Whether GDAL raises is a setting of the whole program, which is left alone: failures are told either way.
+    Whether GDAL raises is a setting of the whole program, which is left alone: failures are found either way.
     """
     from osgeo import gdal
 
@@ -157,7 +157,7 @@ def _quiet() -> Iterator[Any]:
         gdal.PopErrorHandler()
 
 
-# --- ``fleet:importnavigationmap``: a map of Nav2 in, a raster and polygons of what is occupied out ---
+# --- ``fleet:importnavigationmap``: a map of Nav2 in, a raster and polygons of occupied cells out ---
 
 MAP, OCCUPIED_FROM, RASTER, OBSTACLES = "MAP", "OCCUPIED_FROM", "RASTER", "OBSTACLES"
 NUMBERS = {
@@ -253,7 +253,7 @@ class ImportNavigationMap(FleetAlgorithm):
         feedback: QgsProcessingFeedback,
         made: dict[str, Any],
     ) -> int:
-        """Write the polygons where they are wanted, and return how many there are."""
+        """Write the polygons if requested, and return their number."""
         kind = QgsWkbTypes.Type.Polygon
         sink, layer = self.parameterAsSink(parameters, OBSTACLES, context, self._fields, kind, place.crs)
         if sink is None:
@@ -272,7 +272,7 @@ class ImportNavigationMap(FleetAlgorithm):
 
 
 def _read(file: Path) -> tuple[nav2_reader.Nav2Map, np.ndarray]:
-    """Return what the YAML says, and the cells; raises ParameterError, naming the file and the key."""
+    """Return the content of the YAML, and the cells; raises ParameterError, naming the file and the key."""
     try:
         with file.open(encoding="utf-8-sig") as text:
             described = nav2_reader.read_yaml(text.read(nav2_reader.LARGEST_YAML + 1))
@@ -285,7 +285,7 @@ def _read(file: Path) -> tuple[nav2_reader.Nav2Map, np.ndarray]:
 
 
 def _transform(described: nav2_reader.Nav2Map, cells: np.ndarray, place: MapPlace) -> GeoTransform:
-    """Return where the cells are in the CRS of the layers."""
+    """Return the position of the cells in the CRS of the layers."""
     rows, columns = cells.shape
     first, right, below = place.points(described.corners(columns, rows))
     across, down = (right - first) / columns, (below - first) / rows

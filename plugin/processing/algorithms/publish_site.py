@@ -1,4 +1,4 @@
-"""``fleet:publishsite``: layers by their roles in, the folder or the database that a gateway serves out."""
+"""``fleet:publishsite``: layers by their roles in, a folder or database for a gateway out."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ project has it.</p>
 geometry is repaired where that is safe and left out where it is not, each time with a warning that names the
 layer and the feature. One publication into a folder runs at a time.</p>
 """)
-"""In one line, because QGIS takes every line break for the end of a paragraph."""
+"""In one line, because QGIS treats every line break as the end of a paragraph."""
 
 
 # --- The algorithm ---
 
 FAR_ORIGIN_M = 50_000.0
-"""Metres from the origin of a site frame to its site above which somebody may have forgotten to give one."""
+"""Metres from the origin of a site frame to its site above which it was probably forgotten."""
 NUMBERS = {
     "VERSION": tr("Version of the site"),
     "OBSTACLE_COUNT": tr("Obstacle outlines"),
@@ -98,7 +98,7 @@ class PublishSite(FleetAlgorithm):
             self.addOutput(QgsProcessingOutputNumber(name, description))
 
     def checkParameterValues(self, parameters: Parameters, context: QgsProcessingContext):
-        # Before QGIS's own checks, which say that a value is wrong and not why.
+        # Before QGIS's own checks, which report an invalid value without the reason.
         try:
             read_publish_parameters(self, parameters, context)
         except FleetError as error:
@@ -152,7 +152,7 @@ class PublishSite(FleetAlgorithm):
 
 
 class _Published(NamedTuple):
-    """A publication that is in force: its settings, how much of each layer it holds, and its warnings."""
+    """A completed publication: its settings, the number of features per layer, and its warnings."""
 
     settings: SiteSettings
     counts: tuple[int, ...]
@@ -162,7 +162,7 @@ class _Published(NamedTuple):
 def _publish(
     plan: PublishParameters, folder: Path, database: SiteDatabase | None, feedback: QgsProcessingFeedback
 ) -> _Published | None:
-    """Publish in ``folder`` and ``database``, in both or in none; return None after a cancel."""
+    """Publish in ``folder`` and ``database``, in both or in none; return None if cancelled."""
     settings, earlier = _following(plan, folder, database)
     content = _content(plan)
     with new_publication(folder, earlier) as publication:
@@ -187,10 +187,10 @@ def _publish(
 def _following(
     plan: PublishParameters, folder: Path, database: SiteDatabase | None
 ) -> tuple[SiteSettings, str]:
-    """Return the settings of the next version, and the text of the site.toml that it follows.
+    """Return the settings of the next version, and the text of the site.toml before it.
 
-    Again: another publication may have ended since the plan was made. What the operator set in the folder
-    goes before what is in the database.
+    Read again: another publication may have ended since the plan was made. The operator's settings in the
+    folder win over those in the database.
     """
     elsewhere = 0 if database is None else database.version
     settings = next_version(plan.settings, folder, replace_other=plan.replace_other, elsewhere=elsewhere)
@@ -223,7 +223,7 @@ def _report(settings: SiteSettings, counts: tuple[int, ...], place: Path | str) 
 
 
 def _origin_warnings(site: SiteGeoreference, bounds: SiteBounds) -> list[str]:
-    """Warn of a site frame that begins where its CRS does, which may be thousands of kilometres away."""
+    """Warn of a site frame with the origin of its CRS, which may be thousands of kilometres away."""
     away = math.hypot((bounds[0] + bounds[2]) / 2, (bounds[1] + bounds[3]) / 2)
     if site.local or site.frame.origin != (0.0, 0.0) or away < FAR_ORIGIN_M:
         return []
@@ -253,6 +253,6 @@ def _all_of(content: SiteContent) -> SiteBounds:
         )
     x_min, y_min, x_max, y_max = extent
     x_low, y_low = math.floor(x_min), math.floor(y_min)
-    # A single straight wall has no width; a site still needs an inside.
+    # A single straight wall has no width; a site still needs an interior.
     x_high, y_high = max(math.ceil(x_max), x_low + 1), max(math.ceil(y_max), y_low + 1)
     return SiteBounds(float(x_low), float(y_low), float(x_high), float(y_high))

@@ -1,4 +1,4 @@
-"""``fleet:loadrobotmap`` and ``fleet:checkrobotmap``: what a robot map says, and what is odd in it."""
+"""``fleet:loadrobotmap`` and ``fleet:checkrobotmap``: the content of a robot map, and its faults."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from ..common import map_files
 from ..common.algorithm import FleetAlgorithm, Parameters, advanced, fields_of, shown_by_processing
 from ..common.outputs import fill_sink, line, lines, polygon
 
-# --- ``fleet:loadrobotmap``: a robot map in, layers with all that it says out ---
+# --- ``fleet:loadrobotmap``: a robot map in, layers with all its content out ---
 
 AREAS, LINES, SEGMENTS, BORDER = "AREAS", "LINES", "SEGMENTS", "BORDER"
 
@@ -80,7 +80,7 @@ Row = tuple[QgsGeometry, Sequence[Any]]
 
 
 class LoadRobotMap(FleetAlgorithm):
-    """Turns a robot map back into layers, with every attribute that it holds."""
+    """Converts a robot map back into layers, with all its attributes."""
 
     NAME = "loadrobotmap"
     TITLE = tr("Load robot map")
@@ -197,13 +197,13 @@ def _row(shape: MapShape, place: map_files.MapPlace, columns: dict[str, str]) ->
 
 
 def _value(value: Any) -> Any:
-    """Return what a field can hold: mappings and lists as JSON, empty ones as an empty text."""
+    """Return ``value`` as a field can store it: mappings and lists as JSON, empty ones as an empty text."""
     if isinstance(value, (dict, list)):
         return json.dumps(value, ensure_ascii=False) if value else ""
     return value
 
 
-# --- ``fleet:checkrobotmap``: a robot map in, a layer of what is odd in it out ---
+# --- ``fleet:checkrobotmap``: a robot map in, a layer of its faults out ---
 
 FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "severity": "string", "obstacle": "int8", "text": "string"}
@@ -315,7 +315,7 @@ def _finding_row(finding: MapFinding, place: map_files.MapPlace):
 
 
 def _reported(findings: list[MapFinding], feedback: QgsProcessingFeedback) -> dict[str, int]:
-    """Say how many findings of each kind there are, and return the figures of the outputs."""
+    """Report the number of findings of each kind, and return the figures of the outputs."""
     counts = Counter((finding.severity.value, finding.kind.value) for finding in findings)
     for (severity, kind), count in sorted(counts.items()):
         feedback.pushInfo(f"{severity}: {kind}: {count}")

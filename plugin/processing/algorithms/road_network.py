@@ -1,4 +1,4 @@
-"""``fleet:buildroadnetwork``, ``fleet:checkroadnetwork`` and ``fleet:route``: networks of roads, and ways."""
+"""``fleet:buildroadnetwork``, ``fleet:checkroadnetwork`` and ``fleet:route``: road networks and routes."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ NUMBERS = {
 
 
 class BuildRoadNetwork(FleetAlgorithm):
-    """Makes edges and nodes of road centrelines."""
+    """Makes edges and nodes from road centrelines."""
 
     GROUP = ("roads", tr("Roads"))
     NAME = "buildroadnetwork"
@@ -168,7 +168,7 @@ def _node_rows(network: Network):
     ]
 
 
-# --- ``fleet:checkroadnetwork``: road centrelines in, a layer of what is odd in their network out ---
+# --- ``fleet:checkroadnetwork``: road centrelines in, a layer of faults of their network out ---
 
 FINDINGS = "FINDINGS"
 _FIELDS = {"kind": "string", "repairable": "int8", "feature": "int8", "text": "string"}
@@ -267,13 +267,13 @@ def _row(finding: RoadFinding, features: list[int]):
         finding.kind.value,
         int(finding.kind in network_checks.REPAIRED),
         features[finding.road],
-        # People know features, not the numbers of roads.
+        # Users know features, not the numbers of roads.
         finding.in_words(features),
     ]
     return QgsGeometry.fromPointXY(QgsPointXY(finding.x, finding.y)), values
 
 
-# --- ``fleet:route``: the shortest or fastest way along roads, and the path that a robot drives ---
+# --- ``fleet:route``: the shortest or fastest route along roads, and the path that a robot drives ---
 
 START, GOAL, BY = "START", "GOAL", "BY"
 ENGINE, ROUTE, PATH = "ENGINE", "ROUTE", "PATH"
@@ -306,7 +306,7 @@ ENGINE_USED = "ENGINE_USED"
 
 
 class FindRoute(FleetAlgorithm):
-    """Finds a way along roads between two places near them."""
+    """Finds a route along roads between two places near them."""
 
     GROUP = ("roads", tr("Roads"))
     NAME = "route"

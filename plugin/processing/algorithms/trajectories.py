@@ -40,16 +40,16 @@ from ...ui.language import tr, tr_count, tr_page
 from ..common.algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of, shown_by_processing
 from ..common.outputs import AT_ONCE, fill_sink
 
-# --- Positions put together to drives: what each robot drove without a gap ---
+# --- Positions combined to drives of each robot without a gap ---
 
 Numbers = npt.NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class PositionArrays:
-    """Where robots were: ``robots`` (n,) names, ``times`` (n,) seconds since 1970, ``xy`` (n, 2).
+    """Positions of robots: ``robots`` (n,) names, ``times`` (n,) seconds since 1970, ``xy`` (n, 2).
 
-    ``speeds`` (n,) in m/s as the robots told them, NaN where they did not.
+    ``speeds`` (n,) in m/s as reported by the robots, NaN where not.
     """
 
     robots: npt.NDArray[np.str_]
@@ -63,7 +63,7 @@ class PositionArrays:
 
 @dataclass(frozen=True)
 class RobotDrive:
-    """One robot on its way: ``times`` (m,) rising, ``xy`` (m, 2), ``speeds`` (m,), with m of at least 2."""
+    """One drive of a robot: ``times`` (m,) rising, ``xy`` (m, 2), ``speeds`` (m,), with m of at least 2."""
 
     robot: str
     times: Numbers
@@ -72,13 +72,13 @@ class RobotDrive:
 
     @property
     def seconds(self) -> float:
-        """How long it took."""
+        """Its duration."""
         return float(self.times[-1] - self.times[0])
 
     def top_speed(self, steps: Numbers) -> float:
         """Return the highest speed in m/s; ``steps`` (m - 1,) are the metres from position to position.
 
-        As the robot told it, else the mean of its fastest step.
+        As reported by the robot, else the mean of its fastest step.
         """
         if np.isfinite(self.speeds).any():
             return float(np.nanmax(np.abs(self.speeds)))
@@ -86,10 +86,10 @@ class RobotDrive:
 
 
 def drives(positions: PositionArrays, gap: float, *, steps: bool = False) -> Iterator[RobotDrive]:
-    """Yield what each robot drove, robot by robot, oldest first; after more than ``gap`` seconds a new one.
+    """Yield the drives, robot by robot, oldest first; a gap of more than ``gap`` seconds begins a new one.
 
     With ``steps`` each step from one position to the next is a drive of its own. Of several positions of a
-    robot at one time the last counts. A position without another one near in time is no drive.
+    robot at one time the last counts. An isolated position is no drive.
     """
     order = np.lexsort((positions.times, positions.robots))
     robots, times = positions.robots[order], positions.times[order]
@@ -105,13 +105,13 @@ def drives(positions: PositionArrays, gap: float, *, steps: bool = False) -> Ite
                 yield RobotDrive(robot, positions.times[piece], positions.xy[piece], positions.speeds[piece])
 
 
-# --- Stored positions, read from the layer that an algorithm is given ---
+# --- Stored positions, read from the input layer of an algorithm ---
 
 
 class PositionSource:
-    """Points with a robot's name and a time in two fields, and the speed in a third one if there is one.
+    """Points with a robot's name and a time in two fields, and optionally the speed in a third one.
 
-    :raises ParameterError: when a field is not there.
+    :raises ParameterError: when a field does not exist.
     """
 
     def __init__(self, source: QgsProcessingFeatureSource, robot: str, time: str, speed: str) -> None:
@@ -132,7 +132,7 @@ class PositionSource:
         self._speed = names.index(speed) if speed in names else None
 
     def read(self, feedback: QgsProcessingFeedback) -> tuple[PositionArrays, int] | None:
-        """Return the positions, and how many features were none; None when cancelled."""
+        """Return the positions, and the number of other features; None if cancelled."""
         robots: list[str] = []
         rows: list[tuple[float, float, float, float]] = []
         odd = 0
@@ -154,7 +154,7 @@ class PositionSource:
         """Return time, x, y and speed, None for a feature that is no position."""
         geometry = feature.geometry()
         robot, time = feature.attribute(self._robot), parse_seconds(feature.attribute(self._time))
-        # Of several points nobody can tell where the robot was.
+        # With several points the robot's position is ambiguous.
         if (
             geometry.isNull()
             or geometry.constGet().nCoordinates() != 1
@@ -191,7 +191,7 @@ _FIELDS = {
 
 
 class Trajectories(FleetAlgorithm):
-    """Makes lines of where robots have been."""
+    """Makes lines of robots' stored positions."""
 
     GROUP = ("records", tr("Records"))
     NAME = "trajectories"
@@ -293,7 +293,7 @@ class Trajectories(FleetAlgorithm):
         positions: PositionArrays,
         metres: Metres,
     ):
-        """Return the layer, how many lines were written and their length; None when cancelled."""
+        """Return the layer, the number of lines written and their length; None if cancelled."""
         kind = QgsWkbTypes.Type.LineStringM
         sink, layer = self.parameterAsSink(
             parameters, OUTPUT, context, self._fields, kind, source.sourceCrs()
@@ -319,7 +319,7 @@ class Metres:
     """Measures steps: in the CRS where its units are metres on the ground, else on its ellipsoid."""
 
     def __init__(self, crs: QgsCoordinateReferenceSystem, transforms: QgsCoordinateTransformContext) -> None:
-        # Without a CRS places are the site's metres, and a GeoPackage would have them in degrees.
+        # Without a CRS positions are the site's metres; a GeoPackage would have them in degrees.
         crs = stated_crs(crs)
         true = crs.mapUnits() == QgsUnitTypes.DistanceUnit.DistanceMeters and not crs.isGeographic()
         self._measure = None

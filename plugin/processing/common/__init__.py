@@ -1,1 +1,1 @@
-"""Parameters, sources and outputs that algorithms share."""
+"""Parameters, sources and outputs shared by the algorithms."""

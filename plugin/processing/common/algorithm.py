@@ -1,4 +1,4 @@
-"""Base class of the algorithms: errors, help, validation of parameters, labels, and where results are put."""
+"""Base class of the algorithms: errors, help, validation of parameters, labels, order of result layers."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from ....robot_bridge.core.errors import AssignmentError, LayoutsError, RoadsErr
 from ...ui.errors import FleetError
 from ...ui.language import tr
 
-# --- Errors on their way to whoever runs an algorithm ---
+# --- Errors reported to the user of an algorithm ---
 
 
 class ParameterError(FleetError):
@@ -47,10 +47,10 @@ class ParameterError(FleetError):
 
 @contextmanager
 def shown_by_processing(feedback: QgsProcessingFeedback | None = None) -> Iterator[None]:
-    """Turn errors of the plugin and of the bridge into what Processing shows without a traceback.
+    """Convert errors of the plugin and of the bridge into what Processing shows without a traceback.
 
-    With the ``feedback`` of a run also a cancel in ``qgis_process``, whose status would tell a script that
-    all is there.
+    With the ``feedback`` of a run also a cancel in ``qgis_process``, whose exit status would otherwise mean
+    success to a script.
     """
     try:
         yield
@@ -62,10 +62,10 @@ def shown_by_processing(feedback: QgsProcessingFeedback | None = None) -> Iterat
 
 # --- Labels of parameters, short enough for an algorithm's dialog as QGIS opens it ---
 # QGIS makes the dialog's page as wide as its longest label, and scrolls sideways to the buttons beside the
-# fields. What does not fit goes into the help of the parameter: its tool tip, and ``qgis_process help``.
+# fields. The rest of a label goes into the help of the parameter: its tool tip, and ``qgis_process help``.
 
 ROOM = 54
-"""Letters that fit, those of the word [optional], which QGIS adds, included."""
+"""Letters that fit, including those of the word [optional], which QGIS appends."""
 OPTIONAL = 11
 _IN_BRACKETS = re.compile(r"^(?P<label>.+?) \((?P<note>.+)\)$")
 _AFTER_COLON = re.compile(r"^(?P<label>.+?): (?P<note>.+?)(?P<unit> \[[^]]+\])?$")
@@ -73,7 +73,7 @@ _AFTER_COMMA = re.compile(r"^(?P<label>.+?), (?P<note>.+?)(?P<unit> \[[^]]+\])?$
 
 
 def fit_label(parameter: QgsProcessingParameterDefinition) -> None:
-    """Shorten the label of ``parameter`` where it is too long; what is left out begins its help."""
+    """Shorten the label of ``parameter`` where it is too long; the rest is put in front of its help."""
     if len(parameter.description()) <= ROOM - OPTIONAL:  # nearly all: the rest is not asked for
         return
     is_optional = bool(parameter.flags() & QgsProcessingParameterDefinition.Flag.FlagOptional)
@@ -84,9 +84,9 @@ def fit_label(parameter: QgsProcessingParameterDefinition) -> None:
 
 
 def shortened_label(text: str, room: int) -> tuple[str, list[str]]:
-    """Return a label of at most ``room`` letters, if it can be, and what was left out, as sentences.
+    """Return a label of at most ``room`` letters, if possible, and the omitted parts, as sentences.
 
-    Its remark in brackets goes first, then what follows a colon or a comma; a unit stays.
+    Its remark in brackets is omitted first, then the part after a colon or a comma; a unit stays.
     """
     notes: list[str] = []
     for pattern in (_IN_BRACKETS, _AFTER_COLON, _AFTER_COMMA):
@@ -103,7 +103,7 @@ def shortened_label(text: str, room: int) -> tuple[str, list[str]]:
 def enum_parameter(
     name: str, title: str, names: Mapping[str, str], default: str | Sequence[str], *, several: bool = False
 ) -> QgsProcessingParameterEnum:
-    """Return the parameter ``name`` with the values that are the keys of ``names``, shown as these.
+    """Return the parameter ``name`` whose values are the keys of ``names``, shown by their names.
 
     QGIS stores the value, in its history and in models, too: it is the same in every language.
     """
@@ -115,23 +115,23 @@ def enum_parameter(
         defaultValue=default,
         usesStaticStrings=True,
     )
-    # By its path: only a dialog loads what needs widgets.
+    # By its path: only a dialog may load widgets.
     widget = f"{__package__}.choice_widget.ChoiceWidget"
     choice.setMetadata({"widget_wrapper": {"class": widget, "names": dict(names)}})
     return choice
 
 
 def advanced(parameter: QgsProcessingParameterDefinition) -> QgsProcessingParameterDefinition:
-    """Return ``parameter``, which dialogs fold away from now on."""
+    """Return ``parameter``, marked as advanced: dialogs fold it away."""
     parameter.setFlags(parameter.flags() | QgsProcessingParameterDefinition.Flag.FlagAdvanced)
     return parameter
 
 
-# --- Parameters as people know them: dialogs show labels, scripts give names ---
+# --- Parameters in messages: dialogs show labels, scripts use names ---
 
 _NAME = re.compile(r"\b[A-Z][A-Z_]+\b")
 _ASIDE = re.compile(r"\s*[(\[].*$")
-"""What a label says in brackets: a unit, a default."""
+"""The remark of a label in brackets: a unit, a default."""
 
 
 def with_labels(text: str, definitions: Sequence[QgsProcessingParameterDefinition]) -> str:
@@ -141,12 +141,12 @@ def with_labels(text: str, definitions: Sequence[QgsProcessingParameterDefinitio
 
 
 def is_in_a_dialog() -> bool:
-    """Tell whether people run algorithms here by dialogs, and not by the names of parameters."""
+    """Return whether algorithms are run by dialogs here, and not by the names of parameters."""
     return bool(QgsApplication.platform() == "desktop")
 
 
 def problems_with_labels(check: Callable[..., tuple[bool, str]]) -> Callable[..., tuple[bool, str]]:
-    """Have the problem that ``checkParameterValues`` returns name parameters as the dialog does."""
+    """Make the problem that ``checkParameterValues`` returns name parameters as the dialog does."""
 
     @functools.wraps(check)
     def checked(algorithm: Any, *arguments: Any) -> tuple[bool, str]:
@@ -159,7 +159,7 @@ def problems_with_labels(check: Callable[..., tuple[bool, str]]) -> Callable[...
 
 
 def errors_with_labels(work: Callable[..., Any]) -> Callable[..., Any]:
-    """Have the errors of a step of an algorithm name parameters as the dialog does."""
+    """Make the errors of a step of an algorithm name parameters as the dialog does."""
 
     @functools.wraps(work)
     def worked(algorithm: Any, *arguments: Any) -> Any:
@@ -173,10 +173,9 @@ def errors_with_labels(work: Callable[..., Any]) -> Callable[..., Any]:
     return worked
 
 
-# --- Values as a script spells them, where QGIS would take something else for them in silence ---
-# QGIS passes over parameters that there are not, takes any word but "false" for true, and a word for no
-# number
-# where a number may be left out.
+# --- Values in scripts that QGIS would silently misread ---
+# QGIS ignores unknown parameters, takes any word but "false" for true, and a word for a missing
+# number where a number may be left out.
 
 _TRUTHS = ("true", "false", "1", "0")
 
@@ -186,7 +185,7 @@ def value_problem(
     parameters: Mapping[str, Any],
     context: QgsProcessingContext,
 ) -> str:
-    """Return what is wrong with the first value that is not what it is taken for, or nothing."""
+    """Return the error of the first value that QGIS would misread, or an empty text."""
     known = {definition.name(): definition for definition in definitions}
     for name, value in parameters.items():
         if name not in known:
@@ -202,7 +201,7 @@ def value_problem(
 
 
 def _expected(definition: QgsProcessingParameterDefinition, value: Any, context: QgsProcessingContext) -> str:
-    """Return what should stand in the place of ``value``, nothing where that is fine or QGIS tells it."""
+    """Return the value expected in place of ``value``, empty where it is valid or QGIS reports it."""
     if not isinstance(value, str) or not value:
         return ""
     kind = definition.type()
@@ -221,13 +220,13 @@ def _expected(definition: QgsProcessingParameterDefinition, value: Any, context:
 
 def _is_number(value: str) -> bool:
     try:
-        # Python takes 1_000 for a number, QGIS does not.
+        # Python accepts 1_000 as a number, QGIS does not.
         return math.isfinite(float(value)) and "_" not in value
     except ValueError:
         return False
 
 
-# --- Where results are put in the layer tree: above what would cover them ---
+# --- The place of results in the layer tree: above layers that would cover them ---
 
 _AREAS = QgsWkbTypes.GeometryType.PolygonGeometry
 
@@ -235,15 +234,15 @@ _AREAS = QgsWkbTypes.GeometryType.PolygonGeometry
 def put_above_areas(sources: Sequence[str], context: QgsProcessingContext) -> None:
     """Have QGIS put the layers ``sources``, from top to bottom, above all polygons and pictures.
 
-    QGIS puts a result above the layer that happens to be current, where an aerial photo or buildings may
-    cover it. ``context`` is to load all of them.
+    QGIS puts a result above the current layer, where an aerial photo or buildings may
+    cover it. ``context`` must load all of them.
     """
     layers = [QgsProcessingUtils.mapLayerFromString(one, context) for one in sources]
     order = _Order([layer.id() for layer in layers if layer is not None])
     for source in sources:
         raising = _Raising(order)
         context.layerToLoadOnCompletionDetails(source).setPostProcessor(raising)
-        # The context deletes it, and does not keep it; its own owner it lives until then.
+        # The context deletes it, but does not keep it alive; its owner does until then.
         sip.transferto(raising, raising)
 
 
@@ -278,7 +277,7 @@ def _raise_in_tree(root: QgsLayerTreeGroup, ids: Sequence[str]) -> None:
     nodes = [node for node in (root.findLayer(one) for one in ids) if node is not None]
     children = root.children()
     place = next((k for k, child in enumerate(children) if _covers(child, ids)), len(children))
-    # Before the old ones go: QGIS takes a layer out of the project that is nowhere in the tree.
+    # Before the old ones go: QGIS removes a layer from the project that is nowhere in the tree.
     root.insertChildNodes(place, [node.clone() for node in nodes])
     for node in nodes:
         parent = node.parent()
@@ -297,25 +296,25 @@ def _raise_in_custom_order(project: QgsProject, ids: Sequence[str]) -> None:
 
 
 def _covers(node: QgsLayerTreeNode, ids: Sequence[str]) -> bool:
-    """Tell whether ``node`` is or holds a layer, none of ``ids``, that may cover what lies below it."""
+    """Return whether ``node`` is or contains a layer, except ``ids``, that may cover layers below it."""
     if isinstance(node, QgsLayerTreeGroup):
         return any(_covers(child, ids) for child in node.children())
     return isinstance(node, QgsLayerTreeLayer) and node.layerId() not in ids and _is_opaque(node.layer())
 
 
 def _is_opaque(layer: QgsMapLayer | None) -> bool:
-    """Tell whether ``layer`` may cover what lies below it, as all do but points, lines and tables."""
+    """Return whether ``layer`` may cover layers below it, as all do but points, lines and tables."""
     if isinstance(layer, QgsVectorLayer):
         return bool(layer.geometryType() == _AREAS)
     return layer is not None
 
 
-# --- What the algorithms have in common: their place in the toolbox, their help, styled results ---
+# --- The algorithms' common base: their place in the toolbox, their help, styled results ---
 
 RESOURCES = Path(__file__).parents[3] / "resources"
 
 Parameters = Mapping[str, Any]
-"""What an algorithm is given: by the names of its parameters what the user chose."""
+"""The input of an algorithm: the user's choices by the names of its parameters."""
 
 
 _AS_SHOWN = {
@@ -331,11 +330,11 @@ _WITH_LABELS = {
     "prepareAlgorithm": errors_with_labels,
     "processAlgorithm": errors_with_labels,
 }
-"""What tells people of parameters, and what has it name them as their dialog does."""
+"""The methods that report on parameters, and the wrapper that makes each use the dialog's labels."""
 
 
 class FleetAlgorithm(QgsProcessingAlgorithm):
-    """An algorithm of the provider; subclasses say who they are in their class attributes."""
+    """Base class of the provider's algorithms; subclasses set the class attributes."""
 
     GROUP = ("robotmaps", tr("Robot maps"))
     """Id and title of its group in the toolbox."""
@@ -348,7 +347,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
     STYLES: dict[str, str] = {}  # noqa: RUF012
     """The style, in resources/styles, of each output layer."""
     ABOVE_AREAS: tuple[str, ...] = ()
-    """Output layers that are put where no area covers them, from top to bottom."""
+    """Output layers that are put above all areas, from top to bottom."""
 
     def __init_subclass__(cls, **more: Any) -> None:
         super().__init_subclass__(**more)
@@ -378,7 +377,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         text = self.HELP
         if QgsApplication.platform() == "qgis_process":
             return plain_text(text)
-        # QGIS shows <b> in a dark grey, which its dark themes swallow; <pre> it does not break into lines.
+        # QGIS shows <b> in a dark grey, hardly visible in its dark themes; it does not wrap <pre>.
         for written, shown in _AS_SHOWN.items():
             text = text.replace(written, shown)
         return text
@@ -401,7 +400,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
         return (False, problem) if problem else super().checkParameterValues(parameters, context)
 
     def remember(self, layers: dict[str, str]) -> None:
-        """Keep which layers were made, by the names of their outputs, to be styled when they are loaded."""
+        """Record the layers made, by the names of their outputs, to style them when they are loaded."""
         self._made = layers
 
     def postProcessAlgorithm(self, context: QgsProcessingContext, feedback: QgsProcessingFeedback):
@@ -417,7 +416,7 @@ class FleetAlgorithm(QgsProcessingAlgorithm):
 
 
 def plain_text(page: str) -> str:
-    """Return a help as a terminal shows it: a blank line between paragraphs, no tags."""
+    """Return a help text for a terminal: a blank line between paragraphs, no tags."""
     text = re.sub(r"\s+", " ", page)
     text = re.sub(r"\s*<li>", "\n- ", text)
     text = re.sub(r"\s*</?(?:p|pre|ul|table|tr)>\s*", "\n\n", text)
@@ -426,9 +425,9 @@ def plain_text(page: str) -> str:
 
 
 def fields_of(columns: dict[str, str]) -> QgsFields:
-    """Return fields by name and kind, as a layer in memory spells kinds; to be called in the main thread.
+    """Return fields by name and kind, named as in memory layers; must be called in the main thread.
 
-    The way to make fields that is the same on Qt 5 and Qt 6.
+    This way of creating fields is the same on Qt 5 and Qt 6.
     """
     named = "".join(f"&field={name}:{kind}" for name, kind in columns.items())
     return QgsVectorLayer(f"NoGeometry?{named[1:]}", "fields", "memory").fields()

@@ -1,4 +1,4 @@
-"""What algorithms' dialogs show for a choice whose values have names."""
+"""Widget in algorithms' dialogs for a choice whose values have display names."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ ROOM = 30
 class ChoiceWidget(WidgetWrapper):
     """A list of names, of which one can be chosen, or several can be ticked, for the value of each.
 
-    Processing makes it from the metadata of the parameter (``widget_wrapper``).
+    Processing creates it from the metadata of the parameter (``widget_wrapper``).
     """
 
     def __new__(cls, parameter: QgsProcessingParameterEnum, dialog: Any, *_: Any, **__: Any) -> Any:
         if type(dialog).__name__ == MODELER:
-            # There a value can be that of another step, too, which only QGIS's own widget offers.
+            # In a model a value can come from another step, which only QGIS's own widget offers.
             registry = QgsGui.processingGuiRegistry()
             return registry.createModelerParameterWidget(
                 dialog.model, dialog.childId, parameter, dialog.context
@@ -38,7 +38,7 @@ class ChoiceWidget(WidgetWrapper):
         values = parameter.options()
         self._several = parameter.allowMultiple()
         box = self._to_tick(values, names) if self._several else self._to_choose(values, names)
-        # QGIS scrolls its dialog sideways for what is wider; the list that opens shows each name whole.
+        # QGIS scrolls its dialog sideways for wider ones; the open list shows each name in full.
         box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         box.setMinimumContentsLength(ROOM)
         return box

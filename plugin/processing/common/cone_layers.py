@@ -1,4 +1,4 @@
-"""Cone layers: points read with their values, checks against the ground, layers that cones are written to."""
+"""Cone layers: points read with their values, checks against the ground, output layers of cones."""
 
 from __future__ import annotations
 
@@ -43,12 +43,12 @@ from .algorithm import FleetAlgorithm, ParameterError, Parameters, fields_of
 from .outputs import fill_sink
 from .parameters import chosen_crs, site_crs_parameter
 
-# --- Points of a layer with the values of their fields, as cones, robots and stores are read ---
+# --- Points of a layer with the values of their fields, read as cones, robots and stores ---
 
 
 @dataclass(frozen=True)
 class PointRow:
-    """One feature: what it is called in errors, its name, its place (metres, site frame), its values."""
+    """One feature: its name in errors, its own name, its place (metres, site frame), its values."""
 
     where: str
     name: str
@@ -59,7 +59,7 @@ class PointRow:
     def number(self, field: str, otherwise: float) -> float:
         """Return the number in ``field``; ``otherwise`` where the layer has no such field, or no value.
 
-        :raises LayerReadingError: when it holds something else.
+        :raises LayerReadingError: when the value is no number.
         """
         value = self.values.get(field)
         if value is None or value == "":
@@ -99,9 +99,9 @@ def point_rows(
 ) -> Iterator[PointRow]:
     """Yield the features of the layer called ``layer``; the first of the fields ``names`` names each.
 
-    One that none of them names is called by its number in the layer.
+    A feature without a name is named by its number in the layer.
 
-    :raises LayerReadingError: at a feature that is not one point with a place on the site.
+    :raises LayerReadingError: at a feature that is not a single point with a place on the site.
     """
     for feature in features:
         where = tr("{layer}, feature {id}", layer=layer, id=feature.id())
@@ -116,7 +116,7 @@ def point_rows(
 
 def _place(feature: QgsFeature, placing: LayerToSiteTransform, where: str) -> tuple[float, float]:
     try:
-        # Named, since its vertices do not keep it alive.
+        # Held in a variable, since its vertices do not keep it alive.
         geometry = placing.to_metres(feature.geometry())
         vertices = [(vertex.x(), vertex.y()) for vertex in geometry.vertices()]
     except SiteTransformError:
@@ -129,7 +129,7 @@ def _place(feature: QgsFeature, placing: LayerToSiteTransform, where: str) -> tu
     return x, y
 
 
-# --- What cones are checked against: surfaces that are allowed, obstacles, distances ---
+# --- Checks of cones: allowed surfaces, obstacles, distances ---
 
 SURFACES, ALLOWED, OBSTACLES = "SURFACES", "ALLOWED", "OBSTACLES"
 OBSTACLE_DISTANCE, CONE_DISTANCE = "OBSTACLE_DISTANCE", "CONE_DISTANCE"
@@ -162,7 +162,7 @@ def ground_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 class ConeCheckSource:
-    """The layers of the checks and what the parameters say; to be made in the thread of the layers."""
+    """The layers and parameters of the checks; must be created in the thread of the layers."""
 
     def __init__(
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
@@ -172,7 +172,7 @@ class ConeCheckSource:
         obstacles = algorithm.parameterAsLayerList(parameters, OBSTACLES, context)
         self._transforms = context.transformContext()
         self._surfaces = obstacle_sources(surfaces, LayerExpressions(), expressions) if surfaces else None
-        # The role lets points pass: they are obstacles here, too.
+        # The role's filter lets points pass: they are obstacles here, too.
         self._obstacles = obstacle_sources(
             obstacles,
             LayerExpressions(),
@@ -189,7 +189,7 @@ class ConeCheckSource:
     def check(
         self, cones: Sequence[Cone], crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
     ) -> list[ConeFinding] | None:
-        """Return what is wrong with ``cones``, which are in ``crs``; None after a cancel.
+        """Return the findings on ``cones``, which are in ``crs``; None if cancelled.
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
@@ -274,7 +274,7 @@ def _say(findings: Sequence[ConeFinding], unchecked: bool, feedback: QgsProcessi
         feedback.pushInfo(tr("Nothing is wrong with the places of the cones."))
 
 
-# --- The layers that cones become, and the CRS they are in ---
+# --- The output layers of cones, and their CRS ---
 
 CONES, FINDINGS = "CONES", "FINDINGS"
 CONE_COUNT, FINDING_COUNT = "CONE_COUNT", "FINDING_COUNT"
@@ -291,7 +291,7 @@ _FINDINGS = {"kind": "string", "cone": "string", "text": "string"}
 
 
 def cone_crs_parameter() -> QgsProcessingParameterDefinition:
-    """Return the parameter of the CRS that the cones get."""
+    """Return the parameter of the cones' CRS."""
     return site_crs_parameter(
         tr("Site CRS, in metres (default: the project's, else the line's or the layer's)")
     )
@@ -311,7 +311,7 @@ def add_layers(algorithm: QgsProcessingAlgorithm) -> None:
 
 
 class ConeSetup:
-    """What is taken from the parameters in the main thread: fields, checks, and the CRS."""
+    """Setup read from the parameters in the main thread: fields, checks, and the CRS."""
 
     def __init__(
         self,
@@ -337,7 +337,7 @@ class ConeSetup:
         layout: str,
         feedback: QgsProcessingFeedback,
     ) -> dict:
-        """Check and write ``cones``; return the outputs, none after a cancel."""
+        """Check and write ``cones``; return the outputs, empty if cancelled."""
         findings = self._ground.check(cones, self.crs, feedback)
         if findings is None:
             return {}
@@ -361,7 +361,7 @@ class ConeSetup:
 
 
 def _do_not_load(made: str, context: QgsProcessingContext) -> None:
-    """Let QGIS not load the layer ``made`` when the algorithm has ended: an empty one says nothing."""
+    """Stop QGIS from loading the layer ``made`` at the end: an empty one is of no use."""
     details = context.layersToLoadOnCompletion()
     context.setLayersToLoadOnCompletion({key: details[key] for key in details if key != made})
 

@@ -1,4 +1,4 @@
-"""Parameters of a robot map: format, simplification, obstacles, checked before an export; what it reads."""
+"""Parameters of a robot map: format, simplification, obstacles, checked before an export; and its input."""
 
 from __future__ import annotations
 
@@ -47,11 +47,11 @@ from .parameters import (
     site_frame,
 )
 
-# --- The parameters that say how a map is written: as text, or in one of the two binary codecs ---
+# --- The parameters of a map's format: text, or one of the two binary codecs ---
 
 _REAL = QgsProcessingParameterNumber.Type.Double
 FORMAT, STRICT = "FORMAT", "STRICT"
-# No comma in a choice: QGIS would take it for two.
+# No comma in a choice: QGIS would split it in two.
 TEXT, BINARY, COMPACT = "text", "binary", "compact"
 _CODECS = {TEXT: None, BINARY: CODEC_TEXT, COMPACT: CODEC_COLUMNS}
 _NAMES = {
@@ -64,20 +64,20 @@ _NOTHING = RobotMap(Border(0.0, 0.0, 1.0, 1.0), ())
 
 @dataclass(frozen=True)
 class MapFormat:
-    """How a map is written; ``codec`` is nothing for text."""
+    """The format of a map; ``codec`` is empty for text."""
 
     codec: int | None = None
     strict: bool = False
 
     @property
     def suffix(self) -> str:
-        """The end of a file's name."""
+        """The suffix of a file name."""
         return "txt" if self.codec is None else "rmap"
 
     def written(self, robot_map: RobotMap) -> tuple[str, bytes]:
         """Return the map's text, and the bytes of its file.
 
-        :raises RobotMapError: when it cannot be written so, or a package for it is missing.
+        :raises RobotMapError: when it cannot be written in this format, or a package for it is missing.
         """
         text = write_text(robot_map, strict=self.strict)
         if self.codec is None:
@@ -111,12 +111,12 @@ def read_map_format(
     """
     codec = _CODECS[algorithm.parameterAsEnumString(parameters, FORMAT, context)]
     chosen = MapFormat(codec, algorithm.parameterAsBool(parameters, STRICT, context))
-    # Before the run: a city is read for nothing where its map cannot be written.
+    # Before the run: otherwise a city would be read in vain if its map cannot be written.
     chosen.written(_NOTHING)
     return chosen
 
 
-# --- The parameters that reduce outlines to what a robot needs, before a map is built of them ---
+# --- The parameters that simplify outlines for a robot, before a map is built of them ---
 
 PLANE_LOW, PLANE_HIGH, HEIGHT_STEP = "PLANE_LOW", "PLANE_HIGH", "HEIGHT_STEP"
 DISSOLVE, CHAIN, TOLERANCE, SHORTEST = "DISSOLVE", "CHAIN", "TOLERANCE", "SHORTEST"
@@ -172,7 +172,7 @@ _LENGTHS = {
 
 
 def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters: advanced, each off unless it is asked for."""
+    """Return the parameters: advanced, each off by default."""
     described: list[tuple[QgsProcessingParameterDefinition, str]] = [
         *((QgsProcessingParameterNumber(n, t, _REAL, optional=True), h) for n, (t, h) in _HEIGHTS.items()),
         *((QgsProcessingParameterBoolean(n, t, defaultValue=False), h) for n, (t, h) in _FLAGS.items()),
@@ -186,10 +186,10 @@ def shaping_parameters() -> list[QgsProcessingParameterDefinition]:
 def read_shaping(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> Shaping | None:
-    """Return what is asked for, None for nothing.
+    """Return the requested simplification, None for none.
 
     :raises ParameterError: when a value cannot be used.
-    :raises MissingGeometryError: when something asked for needs a package that this Python does not have.
+    :raises MissingGeometryError: when a requested step needs a package that this Python does not have.
     """
     lengths = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
     for name, value in lengths.items():
@@ -254,7 +254,7 @@ def _check_shapely() -> None:
         )
 
 
-# --- What an export will do, settled and checked before it starts ---
+# --- The plan of an export, checked before it starts ---
 
 OBSTACLES, OUTPUT = "OBSTACLES", "OUTPUT"
 HEIGHT_EXPRESSION, DEFAULT_HEIGHT = "HEIGHT_EXPRESSION", "DEFAULT_HEIGHT"
@@ -266,12 +266,12 @@ GENERAL = {
     "semantics": SEMANTICS_EXPRESSION,
     "outdoor": OUTDOOR_EXPRESSION,
 }
-"""The parameters whose expressions count for layers that have none of their own."""
+"""The parameters whose expressions apply to layers without their own."""
 
 
 @dataclass(frozen=True)
 class ObstacleParameters:
-    """What is read, where it lies, what is made of it and how it is written; usable from any thread."""
+    """Input, georeference, simplification and format; usable from any thread."""
 
     sources: list[ObstacleSource]
     site: SiteGeoreference
@@ -281,7 +281,7 @@ class ObstacleParameters:
 
     @property
     def meta(self) -> dict[str, str]:
-        """The leading lines of the map, spelled as those of a published site are."""
+        """The leading lines of the map, spelled like those of a published site."""
         frame = self.site.frame
         if not self.site.crs.isValid():
             return {}
@@ -294,7 +294,7 @@ class ObstacleParameters:
 
 @dataclass(frozen=True)
 class ExportParameters(ObstacleParameters):
-    """Everything that is needed of the parameters and layers to export one window."""
+    """Everything from the parameters and layers that the export of one window needs."""
 
     window: Window
     target: Path
@@ -303,7 +303,7 @@ class ExportParameters(ObstacleParameters):
 def read_export_parameters(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> ExportParameters:
-    """Return the plan for ``parameters``; to be called in the main thread.
+    """Return the plan for ``parameters``; must be called in the main thread.
 
     :raises FleetError: when a parameter or a layer cannot be used.
     :raises WindowError: when the window encloses nothing.
@@ -319,13 +319,13 @@ def read_export_parameters(
 def read_obstacle_parameters(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> ObstacleParameters:
-    """Return what is read for ``parameters``; to be called in the main thread.
+    """Return the input for ``parameters``; must be called in the main thread.
 
     :raises FleetError: when a parameter or a layer cannot be used.
-    :raises RobotMapError: when something asked for needs a package that this Python does not have.
+    :raises RobotMapError: when a requested step needs a package that this Python does not have.
     """
     layers = obstacle_layers(algorithm, parameters, context)
-    # As strings: parameterAsExpression replaces what is no expression by the default, in silence.
+    # As strings: parameterAsExpression silently replaces an invalid expression by the default.
     general = LayerExpressions(
         **{what: algorithm.parameterAsString(parameters, name, context) for what, name in GENERAL.items()}
     )
@@ -360,7 +360,7 @@ def obstacles_parameter() -> QgsProcessingParameterDefinition:
 def obstacle_layers(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> list[QgsVectorLayer]:
-    """Return the layers in OBSTACLES; without any the project's that have a role of obstacles.
+    """Return the layers in OBSTACLES; if empty, the project's with a role of obstacles.
 
     :raises LayerTypeError: naming the first that cannot be read or is no vector layer.
     :raises ParameterError: when there are none.
@@ -393,7 +393,7 @@ def default_height(
 ) -> float:
     """Return DEFAULT_HEIGHT in metres.
 
-    :raises ParameterError: when it is none.
+    :raises ParameterError: when it is invalid.
     """
     height = algorithm.parameterAsDouble(parameters, DEFAULT_HEIGHT, context)
     if not 0 <= height < math.inf:
@@ -419,15 +419,15 @@ def _target(algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: 
     return target
 
 
-# --- The obstacles of an export: read from their layers, then reduced to what is asked for ---
+# --- The obstacles of an export: read from their layers, then simplified as requested ---
 
 
 def obstacle_outlines(
     plan: ObstacleParameters, area: Window, feedback: QgsProcessingFeedback
 ) -> tuple[ObstacleReading, Outlines, RobotMap | None] | None:
-    """Return what was read in ``area`` and the outlines of which maps are built; None after a cancel.
+    """Return the outlines read in ``area`` and those of which maps are built; None if cancelled.
 
-    Last comes the map of ``area``, where it was built to say how much is reduced.
+    Last comes the map of ``area``, where it was built to report the reduction.
 
     :raises LayerReadingError: when a layer cannot be read.
     :raises MissingGeometryError: when a package is missing.
@@ -450,14 +450,14 @@ def _reduced(
     area: Window,
     feedback: QgsProcessingFeedback,
 ) -> tuple[Outlines, RobotMap] | None:
-    """Return the reduced outlines and their map of ``area``, None after a cancel; say what is other there."""
+    """Return the reduced outlines and their map of ``area``, None if cancelled; report the differences."""
     feedback.setProgressText(tr("Reducing obstacles"))
     try:
         made = shaped(outlines, shaping, lambda share: feedback.setProgress(100 * share), feedback.isCanceled)
     except MapCancelledError:
         return None
     before, after = build_map(outlines, area), build_map(made, area, plan.meta)
-    # Fewer walls can be more obstacles: what is left of a ring is open chains.
+    # Fewer walls can be more obstacles: the rest of a ring is open chains.
     feedback.pushInfo(
         tr(
             "{before} became {after}",
@@ -469,7 +469,7 @@ def _reduced(
 
 
 def surrounding_note(sources: Sequence[str]) -> list[str]:
-    """Return a warning where there are ``sources`` of obstacles that a whole map lies in."""
+    """Return a warning where there are ``sources`` of obstacles that contain a whole map."""
     if not sources:
         return []
     return [

@@ -1,4 +1,4 @@
-"""Robot maps read from files, and where they lie on the Earth."""
+"""Robot maps read from files, and their place on the Earth."""
 
 from __future__ import annotations
 
@@ -35,33 +35,33 @@ from ...ui.language import tr, tr_count
 from .algorithm import ParameterError, Parameters, advanced
 from .parameters import ORIGIN, ROTATION, frame_in_crs_parameters, given_crs, point_in, site_crs_parameter
 
-# --- How large a map is, in words ---
+# --- The size of a map in words ---
 
 
 def obstacles_in_words(obstacles: int, segments: int) -> str:
-    """Return how many obstacles there are, and of how many segments."""
+    """Return the number of obstacles, and of their segments."""
     return ", ".join(
         (tr_count(obstacles, "1 obstacle", "%n obstacles"), tr_count(segments, "1 segment", "%n segments"))
     )
 
 
-# --- A robot map's file and where on the Earth it lies, from an algorithm's parameters ---
+# --- A robot map's file and its place on the Earth, from an algorithm's parameters ---
 
 MAP = "MAP"
 SITE_METRES = (
     'ENGCRS["Site frame of a robot map",EDATUM["Site"],CS[Cartesian,2],AXIS["x",unspecified,ORDER[1]],'
     'AXIS["y",unspecified,ORDER[2]],LENGTHUNIT["metre",1]]'
 )
-"""The CRS of layers whose place is not known: QGIS takes a layer without one for degrees."""
+"""The CRS of layers without a known place: QGIS would take a layer without one for degrees."""
 
 
 class MapFileError(FleetError):
-    """A file that cannot be read, or is no robot map."""
+    """A file cannot be read, or is no robot map."""
 
 
 @dataclass(frozen=True)
 class MapPlace:
-    """The CRS that a map's layers get and the site frame in it."""
+    """The CRS of a map's layers and the site frame in it."""
 
     crs: QgsCoordinateReferenceSystem
     frame: SiteFrame
@@ -78,7 +78,7 @@ def layer_crs(crs: QgsCoordinateReferenceSystem) -> QgsCoordinateReferenceSystem
 
 
 def map_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that name the file and say where the map lies if it does not."""
+    """Return the parameters of the file and, where that does not contain it, of the map's place."""
     frame = frame_in_crs_parameters(
         tr("Origin of the site frame in it (default: as the map says, else 0,0)"),
         tr("Rotation of the site frame, counter-clockwise [degrees] (default: as the map says, else 0)"),
@@ -92,7 +92,7 @@ def map_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def file_problem(parameters: Parameters) -> str:
-    """Return what is wrong with the file before it is opened, or nothing."""
+    """Return the error in the file parameter before it is opened, or an empty text."""
     value = parameters.get(MAP)
     if isinstance(value, (str, Path)) and str(value) and not Path(value).is_file():
         return tr("There is no file {file}: choose a robot map (MAP).", file=value)
@@ -102,7 +102,7 @@ def file_problem(parameters: Parameters) -> str:
 def read_map_file(path: Path) -> RobotMap:
     """Return the map in a file, text or binary.
 
-    :raises MapFileError: naming the file, what is wrong in it, and where.
+    :raises MapFileError: naming the file, the error, and its place.
     """
     try:
         size = path.stat().st_size
@@ -148,9 +148,9 @@ def map_place(
     meta: Mapping[str, str],
     feedback: QgsProcessingFeedback,
 ) -> MapPlace:
-    """Return where a map with the leading lines ``meta`` lies; parameters win over what it says.
+    """Return the place of a map with the leading lines ``meta``; parameters win over those.
 
-    Where no CRS is known the layers get a local one in metres; a warning says so.
+    Where no CRS is known the layers get a local one in metres, with a warning.
 
     :raises ParameterError: when a parameter or a leading line cannot be used.
     :raises SiteCrsError: when SITE_CRS cannot carry a site.
@@ -204,7 +204,7 @@ def _crs(
 
 
 def _numbers(meta: Mapping[str, str], key: str, count: int) -> tuple[float, ...]:
-    """Return the numbers in the leading line ``key``, none where there is no such line."""
+    """Return the numbers in the leading line ``key``, empty where there is no such line."""
     if key not in meta:
         return ()
     try:
@@ -233,7 +233,7 @@ WGS_84 = "EPSG:4326"
 
 @dataclass(frozen=True)
 class PlacedMap:
-    """Where a map lies, with the project's choice of transforms."""
+    """The place of a map, with the project's choice of transforms."""
 
     place: MapPlace
     transform_context: QgsCoordinateTransformContext
@@ -245,13 +245,13 @@ class PlacedMap:
 
     @property
     def layers(self) -> SiteGeoreference:
-        """How layers come into the site frame; beside a local map their coordinates are the site's."""
+        """The georeference of layers; beside a local map their coordinates are the site's."""
         return SiteGeoreference(self.place.crs, self.place.frame, self.transform_context, local=self.is_local)
 
     def to_lonlat(self, xy: np.ndarray) -> np.ndarray:
         """Return (n, 2) metres in the site frame as (n, 2) longitudes and latitudes (WGS 84).
 
-        :raises ParameterError: when the map's place is not known, or PROJ cannot tell.
+        :raises ParameterError: when the map's place is not known, or PROJ has no transform.
         """
         if self.is_local:
             raise ParameterError(

@@ -52,7 +52,7 @@ def areas_of(
     feedback: QgsFeedback,
     speed: Speed | None = None,
 ) -> tuple[list[nav2.MaskArea], list[str]]:
-    """Return the areas of a layer in the site frame, and a warning for each feature that is not as it was.
+    """Return the areas of a layer in the site frame, and a warning for each feature that was changed.
 
     Only features that are ``counted`` are read. With ``speed`` an area without a speed above 0 is left out.
     Stops early when cancelled.
@@ -77,9 +77,9 @@ def areas_of(
 
 
 def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressionContext) -> Speed:
-    """Return the way from a feature to its speed in m/s by an expression; NaN where it has none.
+    """Return a function from a feature to its speed in m/s by an expression; NaN where it has none.
 
-    :raises ParameterError: when the expression is none.
+    :raises ParameterError: when the expression is invalid.
     """
     expression = QgsExpression(text)
     context.setFields(source.fields())
@@ -107,7 +107,7 @@ def speed_by(text: str, source: QgsProcessingFeatureSource, context: QgsExpressi
 def _polygons(
     geometry: QgsGeometry | None, placing: LayerToSiteTransform, notes: list[str]
 ) -> list[list[np.ndarray]]:
-    """Return the rings of each polygon of ``geometry`` in the site frame; what is odd goes into ``notes``."""
+    """Return the rings of each polygon of ``geometry`` in the site frame; ``notes`` receive its faults."""
     if geometry is None:
         return []
     shapes, odd = shapes_of(geometry)
@@ -126,7 +126,7 @@ class PictureError(FleetError):
 
 
 def png_of(svg: bytes) -> bytes:
-    """Return the PNG of ``svg``; raises PictureError when Qt does not take it."""
+    """Return the PNG of ``svg``; raises PictureError when Qt does not accept it."""
     renderer = QSvgRenderer(QByteArray(svg))
     image = QImage(renderer.defaultSize() * _SHARPNESS, QImage.Format.Format_RGB32)
     if not renderer.isValid() or image.isNull():
@@ -142,7 +142,7 @@ def png_of(svg: bytes) -> bytes:
     return bytes(buffer.data())
 
 
-# --- A robot map as a GeoPackage, written by QGIS itself: nothing has to be installed beside it ---
+# --- A robot map as a GeoPackage, written by QGIS itself: no other package is needed ---
 
 _WKB_TYPES = {
     "Polygon": QgsWkbTypes.Type.Polygon,
@@ -164,7 +164,7 @@ def write_geopackage(robot_map: RobotMap, target: Path, place: PlacedMap) -> Non
 def _write_layer(name: str, shapes: Sequence[MapShape], target: Path, place: PlacedMap) -> None:
     options = QgsVectorFileWriter.SaveVectorOptions()
     options.driverName, options.layerName = "GPKG", name
-    # Of the format's versions the one that GDAL 3.6 and older read.
+    # The version of the format that GDAL 3.6 and older read.
     options.datasourceOptions = ["VERSION=1.3"]
     if target.exists():
         options.actionOnExistingFile = QgsVectorFileWriter.ActionOnExistingFile.CreateOrOverwriteLayer
@@ -194,7 +194,7 @@ def _write_layer(name: str, shapes: Sequence[MapShape], target: Path, place: Pla
 def _fields(shape: MapShape) -> QgsFields:
     """Return fields for the attributes of a shape.
 
-    By way of a layer in memory: the types of QgsField have other names in each Qt.
+    Through a memory layer: the types of QgsField have other names in each Qt.
     """
     columns = "&".join(
         f"field={name}:{_FIELD_TYPES.get(type(value), 'string')}" for name, value in shape.attributes.items()
@@ -212,7 +212,7 @@ _KEEPOUT, _SPEED_IN_M_S = 0, 2
 
 @dataclass
 class NavigationExport:
-    """A map, where it lies, and what to make of it; ``warnings`` grow while files are made."""
+    """A map, its place, and the export settings; ``warnings`` grow while files are made."""
 
     robot_map: RobotMap
     place: PlacedMap

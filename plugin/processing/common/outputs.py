@@ -1,4 +1,4 @@
-"""Outputs: features in sinks, files and folders written whole or not at all."""
+"""Outputs: features in sinks, files and folders written completely or not at all."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from ....robot_bridge.core.files import StagedFiles, replacement
 from ...ui.errors import FleetError
 from ...ui.language import tr
 
-# --- Files that are there whole or not at all ---
+# --- Files written completely or not at all ---
 
 
 class OutputError(FleetError):
@@ -33,9 +33,9 @@ class OutputError(FleetError):
 
 
 def check_target(target: Path, what: str) -> None:
-    """Raise :class:`OutputError` unless ``what`` can be written to ``target``, as far as can be told before.
+    """Raise :class:`OutputError` unless ``what`` can be written to ``target``, as far as known in advance.
 
-    What is no file, such as a pipe or /dev/null, is refused: it would be replaced by one.
+    Anything but a regular file, such as a pipe or /dev/null, is refused: it would be replaced by one.
     """
     try:
         hindrance = _hindrance(Path(os.path.realpath(target)))
@@ -46,11 +46,11 @@ def check_target(target: Path, what: str) -> None:
 
 
 def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -> None:
-    """Write ``content`` to ``target`` by way of a file beside it: what stood there stays until the end.
+    """Write ``content`` to ``target`` through a temporary file: the old content stays until the end.
 
-    ``what`` it is, is said when it cannot be written. Of a link the file behind it is replaced.
+    ``what`` names it in errors. Of a link the file behind it is replaced.
 
-    :raises OutputError: naming the file and what to do; nothing is left behind.
+    :raises OutputError: naming the file and the remedy; no partial file is left.
     """
     check_target(target, what)
     file = Path(os.path.realpath(target))
@@ -63,11 +63,11 @@ def write_whole(target: Path, content: bytes, what: str = tr("The robot map")) -
 
 @contextmanager
 def replaced_whole(target: Path | None, what: str) -> Iterator[None]:
-    """Let the block write the layer file ``target`` whole or not at all: if it fails all is as it was before.
+    """Let the block write the layer file ``target`` completely or not at all: on failure it is restored.
 
-    With None the block writes no file. ``what`` it is, is said when what stood there is in the way.
+    With None the block writes no file. ``what`` names it in errors about the old file.
 
-    :raises OutputError: naming the file and what to do.
+    :raises OutputError: naming the file and the remedy.
     """
     file = None if target is None else Path(os.path.realpath(target))
     aside: dict[Path, Path] = {}
@@ -90,7 +90,7 @@ def replaced_whole(target: Path | None, what: str) -> Iterator[None]:
 
 
 def _parts_of(file: Path | None) -> list[Path]:
-    """Return the files that a layer in ``file`` consists of, or that are beside it while it is written."""
+    """Return the files of which a layer in ``file`` consists, or that are beside it while it is written."""
     if file is None:
         return []
     beside = [Path(f"{file}{ending}") for ending in ("-journal", "-wal", "-shm")]
@@ -106,7 +106,7 @@ def _put_back(aside: Mapping[Path, Path]) -> None:
 
 
 def _hindrance(file: Path) -> str:
-    """Return why ``file`` cannot be written, nothing where nothing is known to be in the way."""
+    """Return why ``file`` cannot be written, empty where no obstacle is known."""
     folder = file.parent
     if file.exists() and not file.is_file():
         return tr("it is there and is no file")
@@ -135,13 +135,13 @@ def _not_written(what: str, target: Path, reason: str) -> OutputError:
 class WholeFolder:
     """Collects files beside ``target``'s own and moves them there at the end, as ``StagedFiles`` does.
 
-    To be used in a ``with`` block.
+    Must be used in a ``with`` block.
 
     :raises OutputError: when the folder or a file in it cannot be written.
     """
 
     def __init__(self, target: Path, what: str):
-        """Collect files for the folder ``target``; ``what`` they are is said when they cannot be written."""
+        """Collect files for the folder ``target``; ``what`` names them in errors."""
         self._what, self._staged = what, StagedFiles(target)
 
     def __enter__(self) -> WholeFolder:
@@ -153,7 +153,7 @@ class WholeFolder:
         self._staged.__exit__(*error)
 
     def add(self, name: str, content: bytes) -> None:
-        """Keep ``content`` to become the file ``name``."""
+        """Add ``content`` as the file ``name``."""
         if (self._staged.target / name).is_dir():
             raise OutputError(
                 tr(
@@ -165,7 +165,7 @@ class WholeFolder:
             (self._staged.folder / name).write_bytes(content)
 
     def publish(self) -> None:
-        """Put every file into its place."""
+        """Move every file to its place."""
         with self._refusing():
             self._staged.publish()
 
@@ -185,10 +185,10 @@ class WholeFolder:
             ) from error
 
 
-# --- Shapes written to the layers that an algorithm makes ---
+# --- Shapes written to the output layers of an algorithm ---
 
 AT_ONCE = 1000
-"""How many features go into a layer together; a cancel is seen between them."""
+"""Number of features added to a layer together; cancellation is checked between them."""
 
 
 def polygon(rings: Sequence[np.ndarray]) -> QgsGeometry:
@@ -218,9 +218,9 @@ def fill_sink(
     rows: Sequence[tuple[QgsGeometry, Sequence[Any]]],
     feedback: QgsProcessingFeedback,
 ) -> bool:
-    """Add a feature for each (geometry, values) to ``sink``; return False when cancelled on the way.
+    """Add a feature for each (geometry, values) to ``sink``; return False if cancelled.
 
-    :raises OutputError: when the layer does not take them.
+    :raises OutputError: when the layer does not accept them.
     """
     for start in range(0, len(rows), AT_ONCE):
         if feedback.isCanceled():

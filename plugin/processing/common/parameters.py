@@ -1,4 +1,4 @@
-"""Parameters that algorithms share: points and extents, CRS and frame of the site, window, input layers."""
+"""Parameters shared by algorithms: points and extents, CRS and frame of the site, window, input layers."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ from ...ui.errors import LayerTypeError
 from ...ui.language import tr
 from .algorithm import ParameterError, Parameters, advanced
 
-# --- Points and extents that parameters give, brought into one CRS ---
+# --- Points and extents of parameters, transformed to one CRS ---
 
 
 def point_in(
@@ -51,12 +51,12 @@ def point_in(
     context: QgsProcessingContext,
     crs: QgsCoordinateReferenceSystem,
 ) -> tuple[float, float]:
-    """Return the point of the parameter ``name`` in ``crs``; one that names no CRS is in it already.
+    """Return the point of the parameter ``name`` in ``crs``; one without a CRS is in it already.
 
     :raises ParameterError: when it has no place there: QGIS itself would take degrees for metres.
     """
     point = algorithm.parameterAsPoint(parameters, name, context)
-    # A context without a project, or a point that names no CRS would be in the project's.
+    # Without a project in the context, as a point without a CRS would be in the project's.
     own = algorithm.parameterAsPointCrs(parameters, name, QgsProcessingContext())
     if own.isValid() and own != crs:
         way = _way(name, parameters.get(name), own, crs, context)
@@ -78,7 +78,7 @@ def extent_in(
 ) -> np.ndarray:
     """Return the outline, (n, 2) in ``crs``, of the extent of the parameter ``name``.
 
-    :raises ParameterError: when it is none, or has no place there.
+    :raises ParameterError: when it is invalid, or has no place there.
     """
     own = algorithm.parameterAsExtentCrs(parameters, name, QgsProcessingContext())
     if own.isValid():
@@ -134,18 +134,18 @@ def _no_place(name: str, value: Any, crs: QgsCoordinateReferenceSystem) -> Param
     )
 
 
-# --- Where the site lies: its CRS, as parameters, layers and the project say it, and its frame in that ---
+# --- The georeference of the site: its CRS, from parameters, layers and the project, and its frame ---
 
 SITE_CRS, ORIGIN, ROTATION = "SITE_CRS", "ORIGIN", "ROTATION"
 
 
 def site_crs_parameter(title: str) -> QgsProcessingParameterDefinition:
-    """Return the parameter of the CRS; ``title`` says which it is where it is not given."""
+    """Return the parameter of the CRS; ``title`` describes its default."""
     return QgsProcessingParameterCrs(SITE_CRS, title, optional=True)
 
 
 def frame_in_crs_parameters(origin: str = "", rotation: str = "") -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters of the frame in that CRS; their titles, where these are not the usual ones."""
+    """Return the parameters of the frame in that CRS; ``origin`` and ``rotation`` are titles of their own."""
     return [
         QgsProcessingParameterPoint(
             ORIGIN,
@@ -189,10 +189,10 @@ def chosen_crs(
 ) -> QgsCoordinateReferenceSystem:
     """Return the CRS of the site: SITE_CRS, else the project's or the layers' own.
 
-    With ``layer_first`` that of the first layer comes before the project's, unless it is in degrees. The
+    With ``layer_first`` that of the first layer wins over the project's, unless it is in degrees. The
     result is invalid when no CRS is known at all.
 
-    :raises FleetError: when SITE_CRS is no CRS, or what is chosen cannot carry a site.
+    :raises FleetError: when SITE_CRS is no CRS, or the chosen one cannot carry a site.
     """
     chosen, own = given_crs(algorithm, parameters, context), [stated_crs(crs) for crs in layers]
     if layer_first and not chosen.isValid() and own and own[0].isValid() and not own[0].isGeographic():
@@ -201,7 +201,7 @@ def chosen_crs(
     return site_crs_for(chosen, QgsCoordinateReferenceSystem() if project is None else project.crs(), own)
 
 
-# --- The window of a robot map, and the frame it lies in, from an algorithm's parameters ---
+# --- The window of a robot map, and its frame, from an algorithm's parameters ---
 
 CENTER, WIDTH, HEIGHT, EXTENT = "CENTER", "WIDTH", "HEIGHT", "EXTENT"
 LOCAL = "LOCAL"
@@ -211,7 +211,7 @@ _REAL = QgsProcessingParameterNumber.Type.Double
 
 
 def window_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say where the map is and in which frame."""
+    """Return the parameters of the map's window and frame."""
     return [
         QgsProcessingParameterPoint(CENTER, tr("Centre of the window (or choose an extent)"), optional=True),
         QgsProcessingParameterNumber(WIDTH, tr("Width of the window, along x [m]"), _REAL, PAPERS_SIDE_M),
@@ -224,7 +224,7 @@ def window_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def frame_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the advanced parameters that say which frame the site has."""
+    """Return the advanced parameters of the site's frame."""
     title = tr("Site CRS, in metres (default: the project's, else the layers')")
     local = QgsProcessingParameterBoolean(
         LOCAL, tr("Layers without a CRS are in metres of the site"), defaultValue=False
@@ -233,7 +233,7 @@ def frame_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def window_problem(parameters: Parameters) -> str:
-    """Return what is wrong with the choice of window, or nothing."""
+    """Return the error in the choice of window, or an empty text."""
     has_center, has_extent = _given(parameters, CENTER), _given(parameters, EXTENT)
     if has_center and has_extent:
         return tr("Both CENTER and EXTENT are given: give one of them, the window cannot be both.")
@@ -256,7 +256,7 @@ def site_frame(
     context: QgsProcessingContext,
     crs: QgsCoordinateReferenceSystem,
 ) -> SiteFrame:
-    """Return the site frame: from ORIGIN and ROTATION, else as the project has it, else ``crs`` itself."""
+    """Return the site frame: from ORIGIN and ROTATION, else the project's, else ``crs`` itself."""
     name = crs.authid() or (crs_name(crs) if crs.isValid() else "")
     if not _given(parameters, ORIGIN) and not _given(parameters, ROTATION):
         known = frame_in_project(context.project(), crs) if context.project() is not None else None
@@ -279,8 +279,8 @@ def map_window(
 ) -> Window:
     """Return the window in the site frame.
 
-    Positions without a CRS of their own are in ``crs``. An extent whose sides are not parallel to the site's
-    axes becomes the smallest window that holds it.
+    Positions without their own CRS are in ``crs``. An extent whose sides are not parallel to the site's
+    axes becomes the smallest window that contains it.
 
     :raises ParameterError: when the window has no place in ``crs``; WindowError when it encloses nothing.
     """
@@ -305,36 +305,36 @@ def _is_number(value: Any) -> bool:
     try:
         return math.isfinite(float(value))
     except (TypeError, ValueError):
-        # None is the default, and QGIS knows more kinds of values than numbers, such as properties.
+        # None is the default, and QGIS has more kinds of values than numbers, such as properties.
         return not isinstance(value, str)
 
 
 def _rounded(corner: np.ndarray) -> list[float]:
-    """Return the corner without the noise of a rotation there and back."""
+    """Return the corner without the rounding errors of a rotation forth and back."""
     return [float(value) for value in np.round(corner, 6)]
 
 
-# --- Layers that a parameter names, before they are read ---
+# --- Layers of a parameter, before they are read ---
 
 SHOWN = 6
-"""So many layers of a file are named."""
+"""Number of layers of a file that are named."""
 
 
 def layer_in(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
 ) -> QgsVectorLayer | None:
-    """Return the layer that the parameter ``name`` takes its features from, None where that is none."""
+    """Return the layer from which the parameter ``name`` takes its features, None where there is none."""
     value = parameters.get(name)
-    # What is given with "selected features only" is no layer to parameterAsVectorLayer.
+    # With "selected features only" the value is no layer to parameterAsVectorLayer.
     chosen = value.source.staticValue() if isinstance(value, QgsProcessingFeatureSourceDefinition) else value
     return algorithm.parameterAsVectorLayer({**parameters, name: chosen}, name, context)
 
 
 def layers_problem(parameters: Parameters, name: str, context: QgsProcessingContext) -> str:
-    """Return what is wrong with the first layer in the parameter ``name`` that cannot be read, or nothing.
+    """Return the error of the first layer in the parameter ``name`` that cannot be read, or an empty text.
 
-    Where there are others, Processing itself passes over such a layer in silence; and of a file with several
-    it takes the first.
+    Where there are others, Processing itself silently ignores such a layer; and of a file with several
+    layers it takes the first.
     """
     values = parameters.get(name)
     for value in values if isinstance(values, (list, tuple)) else [values]:
@@ -369,7 +369,7 @@ def _problem(name: str, value: str, context: QgsProcessingContext) -> str:
 
 
 def _layers_beside(layer: QgsMapLayer) -> list[str]:
-    """Return the layers with geometry in the file of ``layer``, none where it is the one or was named."""
+    """Return the layers with geometry in the file of ``layer``, empty where it is the only one or named."""
     registry = QgsProviderRegistry.instance()
     parts = registry.decodeUri(layer.providerType(), layer.source())
     if layer.providerType() != "ogr" or parts.get("layerName") or parts.get("layerId") is not None:
@@ -380,7 +380,7 @@ def _layers_beside(layer: QgsMapLayer) -> list[str]:
     return names if len(names) > 1 else []
 
 
-# --- The parameter PROFILE: what layers are, from a file instead of from the project ---
+# --- The parameter PROFILE: roles of layers, from a file instead of from the project ---
 
 PROFILE = "PROFILE"
 
@@ -400,7 +400,7 @@ def profile_parameter() -> QgsProcessingParameterDefinition:
 def setups_of(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> Setups:
-    """Return what tells the role and the expressions of a layer.
+    """Return the function that gives the role and the expressions of a layer.
 
     :raises ProfileError: when the profile cannot be read.
     """
@@ -415,7 +415,7 @@ def warn_of_profile(
     layers: Iterable[QgsMapLayer],
     feedback: QgsProcessingFeedback,
 ) -> None:
-    """Say which names the profile looks for, if there is one and it knows none of ``layers``.
+    """Report the names that the profile expects, if there is one and it matches none of ``layers``.
 
     :raises ProfileError: when the profile cannot be read.
     """
@@ -458,11 +458,11 @@ def check_vectors(layers: Sequence[QgsMapLayer]) -> None:
 def filter_in(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, name: str, context: QgsProcessingContext
 ) -> FeatureFilter | None:
-    """Return which features count of the layer that the parameter ``name`` takes its features from.
+    """Return the filter of the layer from which the parameter ``name`` takes its features.
 
-    None where that is no layer.
+    None where there is no layer.
 
-    :raises ExpressionError: when the layer's filter is no expression.
+    :raises ExpressionError: when the layer's filter is not an expression.
     """
     layer = layer_in(algorithm, parameters, name, context)
     if layer is None:

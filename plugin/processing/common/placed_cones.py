@@ -31,7 +31,7 @@ from ...layers.layer_source import each_feature, parse_seconds
 from ...ui.language import tr
 from .algorithm import ParameterError
 
-# --- Placed cones, read from what ``robot-bridge placements export`` wrote, and what they come to ---
+# --- Placed cones, read from the files of ``robot-bridge placements export``, and their summary ---
 
 PLACES = ("planned_easting", "planned_northing", "easting", "northing")
 
@@ -49,19 +49,19 @@ class PlacedCone:
 
     @property
     def off(self) -> tuple[float, float]:
-        """How far it stands off its place, in metres east and north."""
+        """The offset from its planned place, in metres east and north."""
         return self.placed[0] - self.planned[0], self.placed[1] - self.planned[1]
 
     @property
     def deviation(self) -> float:
-        """Metres between the two places."""
-        # Coordinates of millions of metres leave nothing beyond the micrometre.
+        """The distance between the two places in metres."""
+        # Coordinates of millions of metres have no precision beyond the micrometre.
         return round(math.hypot(*self.off), 6)
 
 
 @dataclass(frozen=True)
 class ConeDeviations:
-    """What the deviations of cones come to, in metres; ``within`` counts those up to the tolerance."""
+    """Summary of the deviations of cones, in metres; ``within`` counts those up to the tolerance."""
 
     count: int
     within: int
@@ -72,7 +72,7 @@ class ConeDeviations:
 
 
 def cone_deviations(cones: Sequence[PlacedCone], tolerance: float) -> ConeDeviations:
-    """Return what the deviations of at least one cone come to."""
+    """Return the summary of the deviations of at least one cone."""
     values = deviation_values(cones)
     return ConeDeviations(
         len(values),
@@ -92,7 +92,7 @@ def deviation_values(cones: Sequence[PlacedCone]) -> npt.NDArray[np.float64]:
 def read_placed_cones(
     source: QgsProcessingFeatureSource, feedback: QgsProcessingFeedback
 ) -> tuple[list[PlacedCone], int] | None:
-    """Return the cones, and how many features were left out for want of a place; None when cancelled.
+    """Return the cones, and the number of features left out for lack of a place; None if cancelled.
 
     :raises ParameterError: when fields are missing, or there is no cone.
     """
@@ -141,7 +141,7 @@ def _cone(feature: QgsFeature) -> PlacedCone | None:
 
 
 def _number(value: object) -> float | None:
-    """Return a number, of a CSV's text too; None for what is none."""
+    """Return a number, also from a CSV's text; None for anything else."""
     try:
         number = float(value)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -170,8 +170,8 @@ WITHIN, BEYOND = "#2a6f97", "#c62828"
 def bars(values: npt.NDArray[np.float64], tolerance: float) -> tuple[npt.NDArray, npt.NDArray]:
     """Return counts (k,) and edges (k + 1,) in metres, from 0; the tolerance is one of the edges.
 
-    A value on an edge counts below it, so that a deviation of just the tolerance is within it. What lies
-    beyond the last edge is counted in the last bar.
+    A value on an edge counts below it, so that a deviation of exactly the tolerance is within it. Values
+    beyond the last edge are counted in the last bar.
     """
     most = max(float(values.max()), tolerance)
     step = tolerance / max(1, round(tolerance / _round(most / 12.0)))
@@ -249,18 +249,18 @@ def ticks(most: int) -> list[int]:
     return list(range(0, most + 1, step))
 
 
-# --- The layers of a report's map: plan, cones, and lines that show deviations larger than they are ---
+# --- The layers of a report's map: plan, cones, and lines that show deviations enlarged ---
 
 MOST_NAMES = 60
-"""Cones that have their names on the map; with more of them names would hide the cones."""
+"""Cones up to which names are shown on the map; more names would hide the cones."""
 LONGEST_LINE = 0.1
-"""The part of the map's width that the largest deviation is to be long."""
+"""Length of the largest deviation as a fraction of the map's width."""
 SMALLEST_VIEW = 10.0
 """Metres across."""
 
 
 def extent_of(cones: Sequence[PlacedCone]) -> QgsRectangle:
-    """Return what the map has to show, with a margin."""
+    """Return the extent of the map, with a margin."""
     places = np.array([place for cone in cones for place in (cone.planned, cone.placed)])
     (x_min, y_min), (x_max, y_max) = places.min(axis=0), places.max(axis=0)
     extent = QgsRectangle(x_min, y_min, x_max, y_max)
@@ -269,7 +269,7 @@ def extent_of(cones: Sequence[PlacedCone]) -> QgsRectangle:
 
 
 def factor_of(cones: Sequence[PlacedCone], width: float) -> int:
-    """Return by how much deviations are to be drawn longer on a map that is ``width`` metres wide."""
+    """Return the factor by which deviations are enlarged on a map that is ``width`` metres wide."""
     most = max(cone.deviation for cone in cones)
     factor = LONGEST_LINE * width / most if most > 0 else 1.0
     power = 10.0 ** math.floor(math.log10(max(factor, 1.0)))

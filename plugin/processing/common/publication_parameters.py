@@ -1,4 +1,4 @@
-"""The parameters of ``fleet:publishsite``, and what a publication holds by them, checked before it starts."""
+"""The parameters of ``fleet:publishsite``, and the publication's plan, checked before it starts."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ LIMITS = {
     STALE_AFTER: ("liveness", "stale_after_s", LivenessLimits().stale_after_s),
     LOST_AFTER: ("liveness", "lost_after_s", LivenessLimits().lost_after_s),
 }
-"""Table, key and default of the parameters that, not given, stay as they are in ``site.toml``."""
+"""Table, key and default of the parameters that keep their value in ``site.toml`` if not given."""
 
 LAYERS = {
     "OBSTACLES": OBSTACLE_ROLES,
@@ -70,23 +70,23 @@ LAYERS = {
     "ROAD_SURFACES": (ROAD_SURFACE,),
     "KEEPOUTS": (KEEPOUT,),
 }
-"""The roles of the layers that each parameter takes from the project when it is empty,
+"""The roles of the project's layers that each parameter uses when it is empty,
 in the order of SiteSources."""
 
 SITE_VARIABLE = "fleet_site"
-"""The project variable that holds the id of its site."""
+"""The project variable with the id of its site."""
 
 WHERE_NOT_KNOWN = SiteBounds(0.0, 0.0, 1.0, 1.0)
 
 
 @dataclass(frozen=True)
 class PublishParameters:
-    """Everything that is needed of the parameters and layers; usable from any thread.
+    """Everything from the parameters and layers that a publication needs; usable from any thread.
 
-    The bounds of ``settings`` stand in where ``bounds_given`` is false, until the layers are read. Their
-    version is as the folder was when the plan was made, and so are its limits but for those ``given``;
+    If ``bounds_given`` is false, the bounds of ``settings`` are placeholders until the layers are read. Their
+    version, and their limits but for those ``given``, follow the folder when the plan was made;
     ``replace_other`` lets another site be replaced. At least one of ``folder`` and ``database``, an address,
-    is there.
+    is given.
     """
 
     folder: Path | None
@@ -104,9 +104,9 @@ class PublishParameters:
 def read_publish_parameters(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> PublishParameters:
-    """Return the plan for ``parameters``; to be called in the main thread.
+    """Return the plan for ``parameters``; must be called in the main thread.
 
-    :raises FleetError: when a parameter, a layer or what is in the folder stands in the way.
+    :raises FleetError: when a parameter, a layer or the content of the folder prevents it.
     """
     sources = _sources(algorithm, parameters, context)
     if not sources.all():
@@ -150,7 +150,7 @@ def read_publish_parameters(
 def layers_to_publish(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> list[QgsMapLayer]:
-    """Return the layers that are given, and those of the project where some are not given."""
+    """Return the layers given, and those of the project for parameters not given."""
     given = [name for name in LAYERS if parameters.get(name)]
     layers = [layer for name in given for layer in algorithm.parameterAsLayerList(parameters, name, context)]
     project = context.project()
@@ -253,7 +253,7 @@ def with_limits(
 ) -> SiteSettings:
     """Return ``settings`` with the limits ``given``; the others are those of the ``earlier`` site.toml.
 
-    What is not there either has its default; ``place`` names the site.toml in messages.
+    Limits missing there have their defaults; ``place`` names the site.toml in messages.
     """
     limits = dict(given)
     for name, (table, key, default) in LIMITS.items():
@@ -349,7 +349,7 @@ def publication_parameters() -> list[QgsProcessingParameterDefinition]:
         QgsProcessingParameterProviderConnection(
             DATABASE, tr("Database of the published site (PostGIS)"), "postgres", optional=True
         ),
-        # Optional for scripts that publish into a database only; a dialog proposes one as before.
+        # Optional for scripts that publish into a database only; a dialog still proposes one.
         QgsProcessingParameterFolderDestination(
             FOLDER, tr("Folder of the published site"), optional=True, createByDefault=True
         ),

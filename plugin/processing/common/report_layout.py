@@ -43,11 +43,11 @@ from ...ui.language import tr, tr_count
 from . import placed_cones
 from .outputs import OutputError, check_target, write_whole
 
-# --- Room for texts in the columns of a table: shared out, and kept to by leaving out the middle of a text
+# --- Widths of texts in the columns of a table: shared out, and texts shortened in the middle
 
 
 def shared_widths(room: float, needs: Sequence[float]) -> list[float]:
-    """Return ``room`` dealt out: each gets what it needs or an equal share, and the neediest what is left."""
+    """Return ``room`` shared out: each gets its need or an equal share, and the neediest the rest."""
     given = [0.0] * len(needs)
     order = sorted(range(len(needs)), key=needs.__getitem__)
     for done, each in enumerate(order):
@@ -58,7 +58,7 @@ def shared_widths(room: float, needs: Sequence[float]) -> list[float]:
 
 
 def shortened(text: str, room: float, width_of: Callable[[str], float]) -> str:
-    """Return ``text`` as it fits into ``room``, by ``width_of``: its end, often a number, tells it apart."""
+    """Return ``text`` fitted into ``room``, by ``width_of``: its end, often a number, distinguishes it."""
     if width_of(text) <= room:
         return text
     for kept in range(len(text) - 1, 1, -1):
@@ -69,7 +69,7 @@ def shortened(text: str, room: float, width_of: Callable[[str], float]) -> str:
     return "…"
 
 
-# --- Texts, places and pages of a report, in millimetres ---
+# --- Texts, positions and pages of a report, in millimetres ---
 
 PAGE = (210.0, 297.0)
 """Millimetres, as everything here."""
@@ -93,7 +93,7 @@ def add_text(
     bold: bool = False,
     page: int = 0,
 ) -> QgsLayoutItemLabel:
-    """Add ``text`` in letters of ``size`` points, return its label; ``area`` is as for :func:`place_item`."""
+    """Add ``text`` in letters of ``size`` points, return its label; ``area`` as for :func:`place_item`."""
     label = QgsLayoutItemLabel(layout)
     label.setText(text)
     letters = text_format(size, bold=bold)
@@ -120,7 +120,7 @@ def text_format(size: float, *, bold: bool) -> QgsTextFormat:
 
 
 def widths_of(layout: QgsPrintLayout, letters: QgsTextFormat) -> Callable[[str], float]:
-    """Return what tells how wide a text is in ``letters``, in millimetres."""
+    """Return a function for the width of a text in ``letters``, in millimetres."""
     context = QgsLayoutUtils.createRenderContextForLayout(layout, None)
     millimetre = context.convertToPainterUnits(1.0, QgsUnitTypes.RenderUnit.RenderMillimeters)
     return lambda text: QgsTextRenderer.textWidth(context, letters, [text]) / millimetre
@@ -152,23 +152,23 @@ COLUMNS = (
     (tr("Off cm"), 11, True),
     ("", 3, False),
 )
-"""Of each its head, its width in millimetres without the margins of its cells, and whether it has numbers."""
+"""Of each its head, its width in millimetres without the margins of its cells, and whether it is numeric."""
 NAMES = 3
-"""Columns of names, the first ones: they share their room as their names are long."""
+"""Columns of names, the first ones: they share their room in proportion to their names."""
 LETTERS = 7.5
 """Points."""
 BEYOND = "!"
-"""Stands beside a cone that is beyond the tolerance."""
+"""Mark of a cone that is beyond the tolerance."""
 
 
 def add_table(layout: QgsPrintLayout, cones: Sequence[placed_cones.PlacedCone], tolerance: float) -> None:
-    """Put the table on the second page, and on as many more as it takes, each with its heads."""
+    """Put the table on the second page, and on as many more as needed, each with its heads."""
     table = QgsLayoutItemTextTable(layout)
     layout.addMultiFrame(table)
     head = text_format(LETTERS, bold=True)
     table.setHeaderTextFormat(head)
     table.setContentTextFormat(text_format(LETTERS, bold=False))
-    # Bold letters are the wider ones: what fits in them fits.
+    # Bold letters are wider: a text that fits in bold fits.
     _fill(table, [_row(cone, tolerance) for cone in cones], widths_of(layout, head))
     table.setHeaderMode(QgsLayoutTable.HeaderMode.AllFrames)
     table.setCellMargin(0.7)
@@ -183,7 +183,7 @@ def add_table(layout: QgsPrintLayout, cones: Sequence[placed_cones.PlacedCone], 
 
 
 def _fill(table: QgsLayoutItemTextTable, rows: Sequence[list[str]], width_of: Callable[[str], float]) -> None:
-    """Give the table its rows, and columns in which the names fit as far as there is room."""
+    """Fill the table with rows, and fit its columns to the names as far as there is room."""
     heads, widths, numbers = zip(*COLUMNS, strict=True)
     texts = [{head, *(row[k] for row in rows)} for k, head in enumerate(heads[:NAMES])]
     room = shared_widths(sum(widths[:NAMES]), [max(map(width_of, column)) for column in texts])
@@ -248,12 +248,12 @@ def write_pdf(
     transforms: QgsCoordinateTransformContext,
     feedback: QgsProcessingFeedback,
 ) -> int | None:
-    """Write ``file``, whole or not at all, and return its number of pages; None when cancelled.
+    """Write ``file``, completely or not at all, and return its number of pages; None if cancelled.
 
     :raises OutputError: when it cannot be written.
     """
     check_target(file, tr("The report"))
-    # A project of its own, so that nothing is left in the user's.
+    # In a separate project, so that nothing is left in the user's.
     project = QgsProject()
     project.setCrs(report.crs)
     project.setTransformContext(transforms)
@@ -264,7 +264,7 @@ def write_pdf(
             return None
         part = Path(folder) / "report.pdf"
         settings = QgsLayoutExporter.PdfExportSettings()
-        # As text and not as drawings of letters: a report is searched and copied from.
+        # As text and not as outlines of letters: a report is searched and copied from.
         settings.textRenderFormat = Qgis.TextRenderFormat.AlwaysText
         done = QgsLayoutExporter(layout).exportToPdf(str(part), settings)
         if done != QgsLayoutExporter.ExportResult.Success:
@@ -295,7 +295,7 @@ def build_layout(report: ReportContent, project: QgsProject, folder: Path) -> Qg
 
 
 def _feet(layout: QgsPrintLayout, report: ReportContent) -> None:
-    """Number the pages, and say on those of the table what its columns are."""
+    """Number the pages, and explain the columns on those of the table."""
     key = tr(
         "E and N in metres of {crs}; {mark} beyond the tolerance of {tolerance:g} cm",
         crs=report.crs.authid() or report.crs.description(),
@@ -339,7 +339,7 @@ def _summary(report: ReportContent) -> str:
 
 
 def _times(report: ReportContent) -> list[str]:
-    """Return when the first and the last cone were placed; nothing where that is not known."""
+    """Return when the first and the last cone were placed; empty where that is not known."""
     times = [cone.at for cone in report.cones if cone.at is not None]
     if not times:
         return []
@@ -352,7 +352,7 @@ def _times(report: ReportContent) -> list[str]:
 
 
 def _natural(name: str) -> list[tuple[int, str]]:
-    """Return what sorts names by the numbers in them: r2 comes before r10."""
+    """Return a key that sorts names by the numbers in them: r2 comes before r10."""
     return [(int(part), "") if part.isdecimal() else (-1, part) for part in re.split(r"(\d+)", name)]
 
 

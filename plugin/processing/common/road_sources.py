@@ -1,4 +1,4 @@
-"""Roads and keepouts read from layers, the options of driving on them, and QGIS's own search for ways."""
+"""Roads and keepouts read from layers, the driving options, and QGIS's own path search."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ from ...ui.language import tr, tr_count
 from .algorithm import ParameterError, Parameters, advanced
 from .parameters import chosen_crs, filter_in, layer_in, site_crs_parameter
 
-# --- How robots drive and which roads they may use: what routes and assignments ask alike ---
+# --- Driving options and roads that may be used: parameters of routes and assignments ---
 
 SURFACES, LEAST_WIDTH, DISTANCE = "SURFACES", "LEAST_WIDTH", "DISTANCE"
 SPACING, TURNING_RADIUS, ROBOT_WIDTH = "SPACING", "TURNING_RADIUS", "ROBOT_WIDTH"
@@ -63,14 +63,14 @@ _LENGTHS = {
 
 @dataclass(frozen=True)
 class DrivingOptions:
-    """How paths are driven, which roads may be used, and how many metres a place may be away from one."""
+    """How paths are driven, which roads may be used, and the greatest distance of a place from one."""
 
     driving: Driving
     restrictions: Restrictions
     reach: float
 
     def doubts(self, roads: Centrelines) -> list[str]:
-        """Return what to warn of: surfaces that none of ``roads`` has."""
+        """Return a warning: surfaces that none of ``roads`` has."""
         there = {str(surface) for surface in roads.surface}
         unknown = (self.restrictions.surfaces or frozenset()) - there
         if not unknown:
@@ -104,9 +104,9 @@ def length_parameters() -> list[QgsProcessingParameterDefinition]:
 def driving_options(
     algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
 ) -> DrivingOptions:
-    """Return what the parameters ask for; as in the gateway no way leads where the robot is too wide.
+    """Return the options in the parameters; as in the gateway no way leads where the robot is too wide.
 
-    :raises RoadInputError: when a number is none to drive by.
+    :raises RoadInputError: when a number is invalid for driving.
     """
     metres = {name: algorithm.parameterAsDouble(parameters, name, context) for name in _LENGTHS}
     names = algorithm.parameterAsString(parameters, SURFACES, context).split(",")
@@ -118,13 +118,13 @@ def driving_options(
     )
 
 
-# --- Areas that a route must not lead through, from polygon layers ---
+# --- Areas that a route must avoid, from polygon layers ---
 
 KEEPOUTS = "KEEPOUTS"
 
 
 def keepout_parameter() -> QgsProcessingParameterDefinition:
-    """Return the parameter that names the layers."""
+    """Return the parameter of the layers."""
     return QgsProcessingParameterMultipleLayers(
         KEEPOUTS,
         tr("Areas that must not be driven through"),
@@ -134,7 +134,7 @@ def keepout_parameter() -> QgsProcessingParameterDefinition:
 
 
 class KeepoutAreas:
-    """The layers of one run; to be made in the thread of the layers."""
+    """The layers of one run; must be created in the thread of the layers."""
 
     def __init__(
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
@@ -147,9 +147,9 @@ class KeepoutAreas:
     def close(
         self, router: Router, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
     ) -> list[str]:
-        """Close the edges of ``router``, whose network is in ``crs``, that come into an area.
+        """Close the edges of ``router``, whose network is in ``crs``, that enter an area.
 
-        Return what was warned of.
+        Return the warnings.
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
@@ -161,9 +161,9 @@ class KeepoutAreas:
     def edges_inside(
         self, network: Network, crs: QgsCoordinateReferenceSystem, feedback: QgsProcessingFeedback
     ) -> tuple[list[int], list[str]]:
-        """Return the edges of ``network``, which is in ``crs``, that come into an area, and the warnings.
+        """Return the edges of ``network``, which is in ``crs``, that enter an area, and the warnings.
 
-        What runs along the rim of an area does not come into it.
+        An edge along the boundary of an area does not enter it.
 
         :raises LayerReadingError: when a layer has no known place in ``crs``.
         """
@@ -185,7 +185,7 @@ class KeepoutAreas:
         return closed, reading.warnings
 
 
-# --- Centrelines for the network, read from the layer that an algorithm is given ---
+# --- Centrelines for the network, read from the input layer of an algorithm ---
 
 ROADS, DEFAULT_WIDTH, SPEED_DEFAULT = "ROADS", "DEFAULT_WIDTH", "DEFAULT_SPEED"
 TOLERANCE, REPAIR = "TOLERANCE", "REPAIR"
@@ -201,14 +201,14 @@ _EXPRESSIONS = {
     "LEVEL": tr("Level of each road, 0 on the ground (default: fields level, layer, bridge, tunnel)"),
 }
 _ROLE = {"width": "width", "surface": "semantics"}
-"""Expressions that a layer's role has for the attributes of a road."""
+"""Expressions of a layer's role that give attributes of a road."""
 
 
 @dataclass
 class RoadReading:
     """Roads in metres; road ``k`` is a part of feature ``features[k]``.
 
-    ``without_width`` holds the roads whose width is not known and taken as the default one.
+    ``without_width`` are the roads of unknown width, which have the default one.
     """
 
     roads: Centrelines
@@ -220,7 +220,7 @@ class RoadReading:
 
 
 def road_parameters() -> list[QgsProcessingParameterDefinition]:
-    """Return the parameters that say what the roads are."""
+    """Return the parameters of the roads' attributes."""
     others: list[QgsProcessingParameterDefinition] = [
         QgsProcessingParameterExpression(name, title, parentLayerParameterName=ROADS, optional=True)
         for name, title in _EXPRESSIONS.items()
@@ -253,14 +253,14 @@ def road_parameters() -> list[QgsProcessingParameterDefinition]:
 
 
 def repair_parameter() -> QgsProcessingParameterDefinition:
-    """Return the parameter that asks for repairs."""
+    """Return the parameter that enables repairs."""
     return QgsProcessingParameterBoolean(
         REPAIR, tr("Repair: close gaps, cut overshoots, leave out what is drawn twice"), defaultValue=False
     )
 
 
 class RoadSource:
-    """The layer of roads of one run; made in the main thread, read in any."""
+    """The layer of roads of one run; created in the main thread, read in any."""
 
     def __init__(
         self, algorithm: QgsProcessingAlgorithm, parameters: Parameters, context: QgsProcessingContext
@@ -277,7 +277,7 @@ class RoadSource:
         self._expressions = road_layers.RoadExpressions(**given)
 
     def read(self, feedback: QgsProcessingFeedback) -> RoadReading | None:
-        """Return the roads; None after a cancel.
+        """Return the roads; None if cancelled.
 
         :raises FleetError: when the layer, its CRS or an expression cannot be used.
         """
@@ -290,7 +290,7 @@ class RoadSource:
                 )
             )
         if source.featureCount() == 0:
-            # Said before the CRS is asked for: an empty layer often has none.
+            # Reported before the CRS is checked: an empty layer often has none.
             raise ParameterError(_no_roads(source.sourceName(), 0, []))
         given = self._algorithm, self._parameters, self._context
         crs = chosen_crs(*given, [source.sourceCrs()], layer_first=True)
@@ -341,7 +341,7 @@ class RoadSource:
             self._algorithm.parameterAsDouble(self._parameters, key, self._context)
             for key in (DEFAULT_WIDTH, SPEED_DEFAULT)
         )
-        # Not every algorithm asks how fast roads are driven.
+        # Not every algorithm has a parameter for the speed of roads.
         speed = speed or DEFAULT_SPEED
         unknown = sum(one.width is None for one in known)
         if unknown:
@@ -366,7 +366,7 @@ class RoadSource:
 
 
 def _no_roads(name: str, count: int, warnings: list[str]) -> str:
-    """Return the error for a layer that holds no road, with what it holds instead."""
+    """Return the error for a layer without roads, with its actual content."""
     if count == 0:
         return tr(
             "ROADS: the layer {name} has no features: choose the layer of the road centrelines.", name=name
@@ -386,9 +386,9 @@ def network_of_roads(
     reading: RoadReading,
     feedback: QgsProcessingFeedback,
 ) -> tuple[Network, list[RoadFinding]] | None:
-    """Return the network and what was repaired in it, nothing where REPAIR is not asked for.
+    """Return the network and its repairs, empty unless REPAIR is set.
 
-    After a cancel return None.
+    None if cancelled.
     """
     for warning in reading.warnings:
         feedback.pushWarning(warning)
@@ -416,7 +416,7 @@ def network_of_roads(
 
 
 def network_as_drawn(reading: RoadReading, feedback: QgsProcessingFeedback) -> Network | None:
-    """Return the network with nothing repaired; None after a cancel."""
+    """Return the network without repairs; None if cancelled."""
     try:
         return build_network(reading.roads, _asking(feedback))
     except RoadsCancelledError:
@@ -431,14 +431,14 @@ def _asking(feedback: QgsProcessingFeedback) -> CancelCheck:
     return ask
 
 
-# --- QGIS's own graph search: what is left where neither RoutingKit nor SciPy is installed ---
+# --- QGIS's own graph search: the fallback where neither RoutingKit nor SciPy is installed ---
 
 QGIS = "qgis"
-"""The engine's name where one is chosen."""
+"""The engine's name in choices."""
 
 
 class GraphEngine:
-    """Finds ways by QgsGraphAnalyzer on a graph that is kept; it is made again when costs have changed."""
+    """Finds ways by QgsGraphAnalyzer on a cached graph; it is built again when costs have changed."""
 
     name = "QGIS (QgsGraphAnalyzer)"
 
@@ -449,7 +449,7 @@ class GraphEngine:
         self._arcs: list[int] = []
 
     def set_costs(self, arcs: np.ndarray, costs: np.ndarray) -> None:
-        """Give ``arcs`` other costs."""
+        """Set the costs of ``arcs``."""
         self._costs[arcs] = costs
         self._made = None
 
@@ -460,7 +460,7 @@ class GraphEngine:
         for node, before in starts:
             came_by, away = QgsGraphAnalyzer.dijkstra(made, node, 0)
             for goal, beyond in goals:
-                # Nodes that cannot be reached cost the greatest number there is.
+                # Unreachable nodes have the greatest number as their cost.
                 cost = before + away[goal] + beyond if goal == node or came_by[goal] >= 0 else math.inf
                 if cost < least:
                     least, tree, last = cost, came_by, goal
@@ -487,7 +487,7 @@ class GraphEngine:
 
 
 def router_on(network: Network, engine: str) -> Router:
-    """Return the router on ``network`` by an engine: QGIS, or one of those that the bridge knows."""
+    """Return the router on ``network`` by an engine: QGIS, or one of those of the bridge."""
     stock = not any(importlib.util.find_spec(name) for name in ("routingkit_cch", "scipy"))
     if engine == QGIS or (engine == AUTOMATIC and stock):
         return Router(network, _of_qgis)
