@@ -1,4 +1,4 @@
-"""Actions of the operator: icons, texts, keys, docks, and the plugin's menu."""
+"""Actions of the operator: icons, texts, shortcuts, docks, and the plugin's menu."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from .language import tr
 
 ICONS = Path(__file__).parents[2] / "resources" / "icons"
 EMERGENCY_KEYS = ("F10", "Pause")
-"""Either is enough; QGIS uses neither. Qt reads their names in English only: they are not translated."""
+"""Either works; QGIS uses neither. Qt reads their names in English only: they are not translated."""
 
 
 class Actions(QObject):
-    """Actions by the object names that scripts find them by; what they do is connected elsewhere."""
+    """Actions by the object names under which scripts find them; they are connected elsewhere."""
 
     def __init__(self, parent: QObject):
         super().__init__(parent)
@@ -38,7 +38,7 @@ class Actions(QObject):
             self.send_map,
             self.clear_emergency,
         )
-        """In the menu, and beside the draft or the emergency stop where they belong to it."""
+        """In the menu, and beside the draft or the emergency stop where they belong."""
         self.for_drafts = (
             self.cone,
             self.road_route,
@@ -55,8 +55,8 @@ class Actions(QObject):
             self.override,
             self.cancel,
         )
-        """What makes, changes and sends drafts: in a menu of its own, since one for all is too long for a
-        screen."""
+        """Actions that make, change and send drafts: in a menu of their own, since one for all is too long
+        for a screen."""
 
     def all(self) -> list[QAction]:
         """Return every action, in the order of the toolbar."""
@@ -104,7 +104,7 @@ class Actions(QObject):
         )
 
     def _make_for_choosing(self) -> None:
-        """Make the tools that a click on the map is for: a robot, or where it is to go."""
+        """Make the tools used by clicks on the map: on a robot, or on its goal."""
         self.select = self._made(
             "fleet_select",
             tr("Select robot"),
@@ -251,8 +251,8 @@ BROWSER = "Browser"
 class ActionDock(QgsDockWidget):
     """A panel of the main window that a :class:`DockAction` shows.
 
-    The window has it from the begin, so that QGIS lists it, and opens it where it was open in the session
-    before. Its parts are built when it is shown for the first time or something has come for it: QGIS starts
+    It is in the window from the beginning, so that QGIS lists it, and opens it if it was open in the last
+    session. Its parts are built when it is first shown or something has come for it: QGIS starts
     without them.
     """
 
@@ -262,26 +262,26 @@ class ActionDock(QgsDockWidget):
         self._is_placed = self._is_built = False
 
     def settle(self, iface: QgisInterface) -> None:
-        """Get a place in the window, closed; shown from now on, it has its parts."""
-        # QGIS shows every panel that it is given.
+        """Add the panel to the window, closed; when shown from now on, it builds its parts."""
+        # QGIS shows every panel that is added.
         iface.addDockWidget(AREA, self)
         self.hide()
         self._is_placed = True
 
     def setVisible(self, visible: bool) -> None:
-        # The one way by which Qt opens a panel, be it for an action or out of a saved arrangement.
+        # The one way by which Qt opens a panel, be it for an action or from a saved arrangement.
         if visible and self._is_placed:
             self.build()
         super().setVisible(visible)
 
     def build(self) -> None:
-        """Build the parts that the panel lacks as yet; they show what is known by now."""
+        """Build the missing parts of the panel; they show the current state."""
         if not self._is_built:
             self._is_built = True
             self._build()
 
     def remove(self) -> None:
-        """Take out what the panel put elsewhere, before it goes itself."""
+        """Remove what the panel added elsewhere, before it is removed itself."""
         if self._is_built:
             self._take_out()
 
@@ -295,8 +295,8 @@ class ActionDock(QgsDockWidget):
 class DockAction:
     """An entry of ``menu`` and the panel that it shows. :meth:`remove` undoes the constructor.
 
-    Opened for the first time, the panel is a tab beside QGIS's browser: beneath browser and layers a window
-    of 800 pixels has no room for its parts. Wherever the user drags it, QGIS has it there the next time.
+    When first opened, the panel is a tab beside QGIS's browser: beneath browser and layers a window
+    of 800 pixels has no room for its parts. If the user drags it elsewhere, QGIS restores that the next time.
     """
 
     def __init__(
@@ -317,7 +317,7 @@ class DockAction:
         self.action.setToolTip(tip)
         self._is_placed = self._lacks_height = False
         dock.settle(iface)
-        # Before the panel is shown. While QGIS starts would be too soon: it arranges its panels after that.
+        # Before the panel is shown. During QGIS's start would be too soon: it arranges its panels after that.
         self.action.toggled.connect(self._place)
         dock.setToggleVisibilityAction(self.action)
         self.action.triggered.connect(self._make_room)
@@ -337,7 +337,7 @@ class DockAction:
             self._lacks_height = True
 
     def _is_known_to_qgis(self) -> bool:
-        """Tell whether QGIS has put the panel where it was when it was closed last."""
+        """Return whether QGIS has restored the panel's last place."""
         arrangement = bytes(QgsSettings().value("UI/state", QByteArray()) or b"")
         return self.dock.objectName().encode("utf-16-be") in arrangement
 
@@ -349,12 +349,12 @@ class DockAction:
             window.resizeDocks([self.dock], [self.dock.sizeHint().height()], Qt.Orientation.Vertical)
 
     def _give_keyboard(self, opened: bool) -> None:
-        """Let who opened the panel by its key go on in it by keys."""
+        """Set the focus in the panel when it was opened by its shortcut."""
         if opened:
             self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)
 
     def remove(self) -> None:
-        """Take panel, layers and entry out."""
+        """Remove panel, layers and entry."""
         self.dock.remove()
         self._iface.removeDockWidget(self.dock)
         self.dock.deleteLater()
@@ -363,23 +363,23 @@ class DockAction:
 
 
 class PluginMenu:
-    """The menu ``title`` of ``window``. :meth:`remove` is for when every entry has been taken out."""
+    """The menu ``title`` of ``window``. :meth:`remove` must be called when every entry has been removed."""
 
     def __init__(self, window: QWidget, title: str):
         self._window, self._title = window, title
 
     def remove(self) -> None:
-        """Delete what QGIS has only taken off the list: each loading would add another one to the window."""
+        """Delete the menu, which QGIS only unlists: each loading would add another one to the window."""
         for menu in self._window.findChildren(QMenu, options=Qt.FindChildOption.FindDirectChildrenOnly):
             if menu.title() == self._title and menu.isEmpty():
                 menu.deleteLater()
 
 
 class MenuLetters(QObject):
-    """Keeps a letter of its own for each entry of a menu. :meth:`remove` ends that.
+    """Keeps a unique access key for each entry of a menu. :meth:`remove` ends that.
 
-    Translations give none: what is unique in a menu depends on all of its texts. Buttons show an action's
-    text without its letter.
+    Translations define none: uniqueness depends on all texts of a menu. Buttons show an action's
+    text without its access key.
     """
 
     def __init__(self, actions: Sequence[QAction], parent: QObject | None = None):
@@ -392,7 +392,7 @@ class MenuLetters(QObject):
         self._renew()
 
     def remove(self) -> None:
-        """Watch the entries no longer; they are about to go."""
+        """Stop watching the entries; they are about to be removed."""
         for action in self._actions:
             action.changed.disconnect(self._renew)
         self._actions = []
@@ -412,9 +412,9 @@ class MenuLetters(QObject):
 
 
 def with_letters(texts: Sequence[str]) -> list[str]:
-    """Return ``texts``, each with ``&`` before a letter that no other has.
+    """Return ``texts``, each with ``&`` before a letter that no other uses.
 
-    A text goes without where letters run out: earlier ones come first, and first letters of words.
+    A text gets none where letters run out: earlier texts take precedence, and first letters of words.
     """
     places = [_places(text) for text in texts]
     taken: dict[str, int] = {}
@@ -431,7 +431,7 @@ def with_letters(texts: Sequence[str]) -> list[str]:
 
 @functools.lru_cache(maxsize=256)
 def _places(text: str) -> Mapping[str, int]:
-    """Return where each letter of a text stands, first letters of words in front."""
+    """Return the position of each letter of a text, first letters of words in front."""
     found = [k for k, letter in enumerate(text) if letter.isalpha()]
     found.sort(key=lambda k: k > 0 and text[k - 1].isalpha())
     places: dict[str, int] = {}
@@ -443,7 +443,7 @@ def _places(text: str) -> Mapping[str, int]:
 def _give_letter(
     number: int, places: list[Mapping[str, int]], taken: dict[str, int], tried: set[str]
 ) -> bool:
-    """Find a letter for a text, if need be by giving others another one (augmenting paths)."""
+    """Find a letter for a text, if necessary by reassigning those of others (augmenting paths)."""
     for letter in places[number]:
         if letter not in taken:
             taken[letter] = number
@@ -481,18 +481,18 @@ KEYS = {
     "fleet_observations": "Ctrl+Shift+F12",
     "fleet_replay": "Alt+Shift+F12",
 }
-"""By an action's object name. Function keys: with Ctrl+Alt, keyboards of many countries write letters."""
+"""By an action's object name. Function keys: with Ctrl+Alt, many countries' keyboards type letters."""
 KEPT = ("fleet_emergency_stop",)
-"""What has keys of its own that no user changes."""
+"""Actions with fixed keys that no user can change."""
 OURS = "fleet_"
-"""What the object names of the plugin's actions begin with."""
+"""Prefix of the object names of the plugin's actions."""
 
 
 class Shortcuts:
-    """The keys as long as the plugin is loaded. :meth:`remove` undoes the constructor.
+    """The shortcuts while the plugin is loaded. :meth:`remove` undoes the constructor.
 
-    Every action of the plugin's menu is in the list, with a key or without. A key that something else in QGIS
-    has stays with that. The keys of the emergency stop are not in the list: nobody shall take them away.
+    Every action of the plugin's menu is in QGIS's list, with a key or without. A key already used in QGIS
+    is left there. The keys of the emergency stop are not in the list: they must not be taken away.
     """
 
     def __init__(self, window: QWidget, actions: Sequence[QAction], taken: Set[str]):
@@ -505,12 +505,12 @@ class Shortcuts:
                 self._manager.registerAction(action, "" if key in taken else key)
 
     def remove(self) -> None:
-        """Take the plugin's actions out of QGIS's list; what the user has changed is kept for the next time.
+        """Remove the plugin's actions from QGIS's list; the user's changes are kept for the next time.
 
         QGIS lists actions of the window by itself when it starts, and does not notice that one is deleted:
-        it would end abruptly when it looks through its list the next time.
+        it would crash when it iterates over its list the next time.
         """
-        # It lists the children of the window and not theirs.
+        # QGIS lists the children of the window and not theirs.
         listed = self._window.findChildren(QAction, options=Qt.FindChildOption.FindDirectChildrenOnly)
         for action in (*self._actions, *listed):
             if action.objectName().startswith(OURS):
@@ -519,8 +519,8 @@ class Shortcuts:
 
 
 def keys_in(window: QWidget) -> set[str]:
-    """Return the keys that something in ``window`` has."""
-    # Both at once: PyQt makes an object for each child that it passes.
+    """Return the keys in use in ``window``."""
+    # Both at once: PyQt makes an object for each child that it visits.
     having = window.findChildren((QAction, QShortcut))
     keys = [key for one in having if isinstance(one, QAction) for key in one.shortcuts()]
     keys += [one.key() for one in having if isinstance(one, QShortcut)]

@@ -1,4 +1,4 @@
-"""Dialogs and what stands in them: confirmations, wrapping labels, scroll areas, file dialogs."""
+"""Dialogs and their content: confirmations, wrapping labels, scroll areas, file dialogs."""
 
 from __future__ import annotations
 
@@ -33,16 +33,16 @@ def push_button(
     button.setObjectName(name)
     button.setToolTip(tip)
     if pressed is not None:
-        # The signal says whether the button is checked, which nobody asks.
+        # The signal carries whether the button is checked, which is not needed.
         button.clicked.connect(lambda _=False: pressed())
     return button
 
 
 class WrappingLabel(QLabel):
-    """Plain text that wraps; at least as high as ``lines`` lines, so that what is below it jumps less.
+    """Plain text that wraps; at least ``lines`` lines high, so that what is below it jumps less.
 
-    A layout that has too little room for everything takes it from labels that wrap first, and a dialog does
-    not ask them how high they become.
+    A layout that has too little room for everything shrinks labels that wrap first, and a dialog does
+    not ask for their height.
     """
 
     def __init__(self, text: str = "", lines: int = 1, parent: QWidget | None = None):
@@ -50,7 +50,7 @@ class WrappingLabel(QLabel):
         self._least = lines * self.fontMetrics().lineSpacing() + 2
         self.setWordWrap(True)
         self.setTextFormat(Qt.TextFormat.PlainText)
-        # How high it becomes is known at its width; guessed before, a dialog would stay that high.
+        # Its height is known only at its width; a dialog would keep an estimated one.
         self.setMinimumHeight(self._least)
 
     def setText(self, text: str) -> None:
@@ -62,7 +62,7 @@ class WrappingLabel(QLabel):
         self._fit()
 
     def _fit(self) -> None:
-        # Qt counts the least height that was set before among what the text takes.
+        # Qt includes the minimum height set before in the height of the text.
         self.setMinimumHeight(0)
         self.setMinimumHeight(max(self._least, self.heightForWidth(self.width())))
 
@@ -71,11 +71,11 @@ DIALOG_WIDTH = 460
 
 
 class QuestionDialog(QDialog):
-    """Texts, fields, and two buttons: ``yes`` accepts it, ``no`` leaves everything as it is.
+    """Texts, fields, and two buttons: ``yes`` accepts it, ``no`` changes nothing.
 
     ``yes`` and ``no`` are the name and the text of a button; without ``no`` that is *Cancel*. With
-    ``is_safe`` Enter presses ``no``, otherwise ``yes``; after a reason has been written it goes on to the
-    button ``yes``, which another Enter presses. What was added comes in that order; :meth:`lay_out` ends it.
+    ``is_safe`` Enter presses ``no``, otherwise ``yes``; in a reason it moves the focus to the button ``yes``,
+    which another Enter presses. Parts are shown in the order added; call :meth:`lay_out` last.
     """
 
     def __init__(
@@ -104,21 +104,21 @@ class QuestionDialog(QDialog):
         self._form = QFormLayout(self)
 
     def add_text(self, text: str, lines: int = 1) -> WrappingLabel:
-        """Put a text across the dialog, ``lines`` high at least; an empty one is left out."""
+        """Add a text across the dialog, at least ``lines`` high; an empty one is left out."""
         label = WrappingLabel(text, lines)
         if text:
             self._form.addRow(label)
         return label
 
     def add_field(self, text: str, field: QWidget, name: str) -> None:
-        """Put a field after ``text``, which has its letter."""
+        """Add a field after the label ``text``, which contains its access key."""
         field.setObjectName(name)
         label = QLabel(text)
         label.setBuddy(field)
         self._form.addRow(label, field)
 
     def add_choice(self, text: str, choices: Iterable[tuple[str, object]], name: str) -> QComboBox:
-        """Put a choice after ``text``; ``choices`` are words, and what ``currentData`` is for them."""
+        """Add a choice after ``text``; ``choices`` are words, and their values for ``currentData``."""
         box = QComboBox()
         for words, meaning in choices:
             box.addItem(words, meaning)
@@ -126,7 +126,7 @@ class QuestionDialog(QDialog):
         return box
 
     def add_reason(self, hint: str, longest: int, name: str) -> QLineEdit:
-        """Put a line for at most ``longest`` letters across the dialog, with ``hint`` while it is empty."""
+        """Add a line for at most ``longest`` letters across the dialog, with ``hint`` while it is empty."""
         line = ReasonLine()
         line.setObjectName(name)
         line.setPlaceholderText(hint)
@@ -139,17 +139,17 @@ class QuestionDialog(QDialog):
         return line
 
     def _offer_confirmation(self) -> None:
-        """Move the keyboard to the button that confirms, if that can be pressed."""
+        """Move the focus to the button that confirms, if that is enabled."""
         if self.confirm.isEnabled():
-            # From here on Enter presses the button that has the keyboard, whichever of the two that is.
+            # From here on Enter presses the button with the focus, whichever of the two that is.
             for button in self._foot.findChildren(QPushButton):
                 button.setAutoDefault(True)
             self.confirm.setFocus()
 
     def lay_out(self) -> None:
-        """Put the buttons beneath all that was added, and be as high as that is."""
+        """Add the buttons beneath all parts, and fit the height."""
         self._form.addRow(self._foot)
-        # Left to itself Qt takes the height for the width that it would like, which is less, with more lines.
+        # By default Qt takes the height for its preferred width, which is less, with more lines.
         width = max(DIALOG_WIDTH, self._form.totalMinimumSize().width())
         self.resize(width, self._form.totalHeightForWidth(width))
 
@@ -157,7 +157,7 @@ class QuestionDialog(QDialog):
 class ReasonLine(QLineEdit):
     """A line whose Enter, once ``left`` is connected, does not reach the default button of the dialog.
 
-    That button may close the dialog, and what was written would be lost. An empty line passes Enter on.
+    That button may close the dialog, and the text would be lost. An empty line passes Enter on.
     """
 
     left = pyqtSignal()
@@ -174,7 +174,7 @@ class ReasonLine(QLineEdit):
 
 def _button(name: str, text: str) -> QPushButton:
     button = push_button(name, text)
-    # Otherwise Enter presses whichever was used last.
+    # Otherwise Enter presses the button used last.
     button.setAutoDefault(False)
     return button
 
@@ -182,9 +182,9 @@ def _button(name: str, text: str) -> QPushButton:
 def confirm(
     parent: QWidget, name: str, text: str, yes: tuple[str, str], no: str, then: Callable[[], object]
 ) -> QMessageBox:
-    """Return a question, the object ``name``, that is not open yet; its title is for the caller to set.
+    """Return a question, the object ``name``, not open yet; the caller sets its title.
 
-    ``yes`` is the name and the text of the button that does ``then()``, ``no`` the text of the one that does
+    ``yes`` is the name and the text of the button that calls ``then()``, ``no`` the text of the one that does
     nothing, which Enter and Escape press.
     """
     box = QMessageBox(QMessageBox.Icon.Question, "", text, parent=parent)
@@ -200,7 +200,7 @@ def confirm(
 
 
 class ShrinkableScrollArea(QScrollArea):
-    """Scrolls ``content`` where it is too tall; it is always as wide as ``content`` needs."""
+    """Scrolls ``content`` where it is too tall; always as wide as ``content`` needs."""
 
     def __init__(self, content: QWidget, parent: QWidget | None = None):
         super().__init__(parent)
@@ -214,7 +214,7 @@ class ShrinkableScrollArea(QScrollArea):
     def minimumSizeHint(self) -> QSize:
         bar = self.verticalScrollBar()
         beside = bar.sizeHint().width() if bar.isVisibleTo(self) else 0
-        # Themes of QGIS draw a frame here all the same.
+        # Themes of QGIS draw a frame here nevertheless.
         beside += 2 * self.frameWidth()
         return QSize(self.widget().minimumSizeHint().width() + beside, super().minimumSizeHint().height())
 
@@ -234,16 +234,16 @@ FILE_DIALOG_OPTIONS = QFileDialog.Option.DontUseNativeDialog
 
 
 def file_to_write(parent: QWidget, title: str, proposal: str, kinds: str) -> str:
-    """Return the path that the operator chose to write, or nothing; asks before an existing file is replaced.
+    """Return the path chosen for writing, empty if cancelled; asks before an existing file is replaced.
 
-    ``proposal`` is the path to begin with, ``kinds`` a filter of Qt's such as ``CSV (*.csv)``.
+    ``proposal`` is the initial path, ``kinds`` a filter of Qt's such as ``CSV (*.csv)``.
     """
     path, _ = QFileDialog.getSaveFileName(parent, title, proposal, kinds, options=FILE_DIALOG_OPTIONS)
     return path
 
 
 def file_to_read(parent: QWidget, title: str, folder: str, kinds: str) -> str:
-    """Return the path of the existing file that the operator chose, or nothing; begins in ``folder``."""
+    """Return the existing file chosen, empty if cancelled; begins in ``folder``."""
     path, _ = QFileDialog.getOpenFileName(parent, title, folder, kinds, options=FILE_DIALOG_OPTIONS)
     return path
 

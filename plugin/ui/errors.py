@@ -1,6 +1,6 @@
-"""What can go wrong in the plugin; every message names what, where and what to do.
+"""Errors of the plugin, whose messages name subject, place and remedy; removal of parts despite errors.
 
-And parts that are removed whatever one of them raises.
+Every part is removed even if another one raises.
 """
 
 from __future__ import annotations
@@ -9,16 +9,16 @@ from typing import Any, Protocol
 
 
 class Part(Protocol):
-    """What undoes its constructor."""
+    """A part with a method that undoes its constructor."""
 
     def remove(self) -> None:
-        """Take out of QGIS all that the constructor has put there."""
+        """Remove from QGIS everything that the constructor added."""
 
 
 def remove_all(parts: list[Part]) -> None:
     """Remove ``parts``, the last one first, and empty the list.
 
-    :raises Exception: the first that one of them raised, when all the others are removed.
+    :raises Exception: the first one raised by a part, after all the others are removed.
     """
     errors = []
     while parts:
@@ -31,17 +31,17 @@ def remove_all(parts: list[Part]) -> None:
 
 
 class FleetError(Exception):
-    """Something that the operator has to know, in words that can be shown as they are.
+    """An error for the operator, with a text that can be shown unchanged.
 
-    ``topics`` are the conditions it is about (:mod:`..control.messages`): when one has ended it is not true
-    any more.
+    ``topics`` are the conditions it is about (:mod:`..control.messages`): when one has ended it is no longer
+    true.
     """
 
     topics: tuple[Any, ...] = ()
 
 
 class LibraryMissingError(FleetError):
-    """A Python package that the plugin needs is not there, or too old."""
+    """A Python package that the plugin needs is missing, or too old."""
 
 
 class AddressError(FleetError):
@@ -49,11 +49,11 @@ class AddressError(FleetError):
 
 
 class GatewayLinkError(FleetError):
-    """The gateway could not be reached, or what answered is no gateway.
+    """The gateway could not be reached, or the server that answered is no gateway.
 
-    ``final`` is true when trying again cannot help before somebody changes something; ``wants_token`` when
-    that is the token or the CA file; ``everywhere`` when it holds for all gateways of the fleet. ``ends``:
-    the gateway says that it ends.
+    ``final`` is true when another attempt cannot help before something is changed; ``wants_token`` when
+    that is the token or the CA file; ``everywhere`` when it applies to all gateways of the fleet. ``ends``:
+    the gateway announced its shutdown.
     """
 
     def __init__(
@@ -73,7 +73,7 @@ class GatewayLinkError(FleetError):
 
 
 class NotSentError(FleetError):
-    """What the operator asked for was not sent."""
+    """A request of the operator was not sent."""
 
     def __init__(self, message: str, topics: tuple[Any, ...] = ()):
         super().__init__(message)
@@ -84,7 +84,7 @@ class MapTransformError(FleetError):
     """Positions of the site cannot be placed on this canvas."""
 
 
-# --- What can be wrong with layers on their way into a site ---
+# --- Errors of layers on their way into a site ---
 
 
 class LayerReadingError(FleetError):
@@ -100,7 +100,7 @@ class LayerCrsError(LayerReadingError):
 
 
 class PublicationError(FleetError):
-    """A site cannot be published: its settings, its folder or what is there already."""
+    """A site cannot be published because of its settings, its folder or the existing publication."""
 
 
 class ProfileError(FleetError):
@@ -112,4 +112,4 @@ class LayerTypeError(LayerReadingError):
 
 
 class ExpressionError(LayerReadingError):
-    """An expression for height, semantics or the outdoor flag is not one."""
+    """An expression for height, semantics or the outdoor flag is invalid."""

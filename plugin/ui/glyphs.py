@@ -1,4 +1,4 @@
-"""Colours, drawings of robots and cones, the pen that they are drawn with, and strokes of many points."""
+"""Colours, drawings of robots and cones, pens, and strokes of many points."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ STATE_COLOURS = {
     RobotState.LOST: QColor("#C62828"),
     RobotState.OFFLINE: QColor("#757575"),
 }
-"""Each state has a shape of its own as well (see :mod:`.glyphs`)."""
+"""Each state has its own shape as well (see :mod:`.glyphs`)."""
 
 UNSURE_COLOUR = STATE_COLOURS[RobotState.STALE]
-"""Of a fresh robot that may be elsewhere: as one that was not heard for a while, with a broken outline."""
+"""Colour of a fresh robot that may be elsewhere: as of a stale one, with a broken outline."""
 
 STALE_LETTERS = QColor("#A15C00")
 
@@ -55,34 +55,34 @@ CONE = QColor("#F26A1B")
 SELECTED = QColor("#FFE14D")
 REFUSED = QColor("#E53935")
 WRONG = QColor("#C62828")
-"""Letters that say what is wrong."""
+"""Text colour of errors."""
 DOUBTFUL = QColor("#8A5A00")
-"""Letters that say what may be wrong."""
+"""Text colour of warnings."""
 WRONG_STYLE = "color: #B71C1C; background: #FDECEA;"
 DOUBTFUL_STYLE = "color: #6B4300; background: #FFF1D0;"
-"""Labels that bring their own background: some themes of QGIS are of a grey on which no red is legible."""
+"""Labels with their own background: some themes of QGIS are of a grey on which no red is legible."""
 DARK = 128
-"""Lightness of a background below which letters have to be paler."""
+"""Lightness of a background below which text must be paler."""
 
 
 def is_dark() -> bool:
-    """Tell whether lists have a dark background now."""
+    """Return whether lists have a dark background now."""
     return QApplication.palette().color(QPalette.ColorRole.Base).lightness() < DARK
 
 
 def for_letters(colour: QColor) -> QColor:
-    """Return a colour as letters of a list take it: paler on a dark background, darker on a light one."""
+    """Return a colour for text in a list: paler on a dark background, darker on a light one."""
     if is_dark():
         return colour.lighter(175)
-    # As a spot on the map amber is seen well; its letters on white are not.
+    # As a spot on the map amber is clearly visible; as text on white it is not.
     return QColor(STALE_LETTERS) if colour == STATE_COLOURS[RobotState.STALE] else colour
 
 
 @contextmanager
 def painting(device: QPaintDevice) -> Iterator[QPainter]:
-    """Give a painter on ``device`` that is ended whatever is raised meanwhile.
+    """Yield a painter on ``device`` that is ended even if an error is raised.
 
-    Kept by a traceback, a painter that is not ended outlives its device, and Qt ends the program for that.
+    If a traceback keeps a painter that was not ended beyond its device, Qt ends the program.
     """
     painter = QPainter(device)
     try:
@@ -92,22 +92,22 @@ def painting(device: QPaintDevice) -> Iterator[QPainter]:
 
 
 def pen(colour: QColor, width: float, strength: float = 1.0) -> QPen:
-    """Return a pen with round ends, ``width`` pixels; ``strength`` 1 is the colour as it is, 0 nothing."""
+    """Return a pen with round ends, ``width`` pixels; ``strength`` is the opacity, 0 to 1."""
     shade = QColor(colour)
     shade.setAlphaF(colour.alphaF() * strength)
     return QPen(shade, width, Qt.PenStyle.SolidLine, Qt.PenCapStyle.RoundCap, Qt.PenJoinStyle.RoundJoin)
 
 
 CELL = 32
-"""Width and height of the square that a robot's drawing fits in at any heading."""
+"""Width and height of the square that holds a robot's drawing at any heading."""
 BROKEN = [1.5, 1.1]
 """Dashes and gaps of an outline, in widths of its pen."""
 ICON_SCALE = 2.04
-"""From a robot's drawing to one of 64 pixels for tables."""
+"""Scale from a robot's drawing to an icon of 64 pixels for tables."""
 
 
 def state_icon(state: RobotState, *, unsure: bool = False) -> QIcon:
-    """Return the drawing of a robot in ``state``, pointing up, for tables and legends."""
+    """Return the icon of a robot in ``state``, pointing up, for tables and legends."""
     pixmap = QPixmap(64, 64)
     pixmap.fill(QColor(0, 0, 0, 0))
     with painting(pixmap) as painter:
@@ -120,7 +120,7 @@ def state_icon(state: RobotState, *, unsure: bool = False) -> QIcon:
 
 
 class StateIcons(dict[RobotState, QIcon]):
-    """The icon of each state that is asked for, drawn once; to be asked in the thread of the window."""
+    """The icon of each state, drawn on first use; must be used in the thread of the window."""
 
     def __missing__(self, state: RobotState) -> QIcon:
         self[state] = state_icon(state)
@@ -208,7 +208,7 @@ def _outline(state: RobotState, with_heading: bool) -> QPainterPath:
 
 
 def _cross(painter: QPainter, colour: QColor) -> None:
-    """Draw a cross on a disc, small enough to leave the heading to be seen."""
+    """Draw a cross on a disc, small enough to leave the heading visible."""
     centre, arm = QPointF(-7.0, 0.0), 3.1
     painter.setPen(pen(PAPER, 2.0))
     painter.setBrush(QBrush(colour))
@@ -247,7 +247,7 @@ def segments(start: Points, end: Points) -> QPainterPath:
     for name, axis in (("x", 0), ("y", 1)):
         elements[name][0::2], elements[name][1::2] = start[:, axis], end[:, axis]
     count = np.array([len(elements)], dtype=">i4")
-    # After the elements: where the last line began, and by which rule it would be filled.
+    # After the elements: the beginning of the last line, and the fill rule.
     last = np.array([len(elements) - 2, 0], dtype=">i4")
     data = QByteArray(count.tobytes() + elements.tobytes() + last.tobytes())
     path = QPainterPath()
@@ -256,14 +256,14 @@ def segments(start: Points, end: Points) -> QPainterPath:
 
 
 def lines(start: Points, end: Points) -> list[QLineF]:
-    """Return the lines from (n, 2) ``start`` to ``end`` pixels, each by itself."""
+    """Return the lines from (n, 2) ``start`` to ``end`` pixels, as separate objects."""
     return [QLineF(*ends) for ends in np.hstack([start, end]).tolist()]
 
 
 def flat(stroke: QPen) -> QPen:
     """Return ``stroke`` without the round ends, for which Qt takes fifty times as long.
 
-    They also do not reach beyond the line's: where what shines through meets, it would overlap.
+    They also do not reach beyond the line: translucent ones would overlap where they meet.
     """
     stroke.setCapStyle(Qt.PenCapStyle.FlatCap)
     return stroke
@@ -274,7 +274,7 @@ def route(painter: QPainter, pixels: Points, colour: QColor) -> None:
     painter.setBrush(QBrush(Qt.BrushStyle.NoBrush))
     legs = _legs(pixels)
     line = pen(colour, 2.8)
-    # So that there are no gaps where it turns.
+    # So that there are no gaps at its bends.
     line.setCapStyle(Qt.PenCapStyle.SquareCap)
     for stroke in (flat(pen(CASING, 5.6)), line):
         painter.setPen(stroke)

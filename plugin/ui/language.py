@@ -1,8 +1,8 @@
-"""The plugin's texts in the language of QGIS, and times and ages as text.
+"""Translation of the plugin's texts to the language of QGIS, and times and ages as text.
 
-What people read goes through :func:`tr`. Modules do so when they are imported, too: :class:`Language` is made
+Texts for people go through :func:`tr`. Modules call it on import, too: :class:`Language` must be created
 before any of them. Texts of the gateway, of robots and of the bridge's packages, and the protocol's names,
-are shown as they come.
+are shown unchanged.
 """
 
 from __future__ import annotations
@@ -15,31 +15,31 @@ from qgis.core import QgsApplication
 from qgis.PyQt.QtCore import QCoreApplication, QLocale, QTranslator
 
 CONTEXT = "FleetSupervisor"
-"""The context of every text of the plugin in its .ts files: the same text is the same word everywhere."""
+"""The context of every text of the plugin in its .ts files: equal texts have equal translations."""
 FOLDER = Path(__file__).parents[2] / "resources" / "translations"
 FILES = "fleet_supervisor_"
-"""What the names of the files begin with; the language follows."""
+"""Prefix of the files' names; the language follows."""
 
 
 def tr(text: str, /, **values: object) -> str:
     """Return ``text`` in the language of QGIS, with its ``{placeholders}`` filled in when values are given.
 
-    ``text`` is a literal: the files of translations are made from the source.
+    ``text`` must be a literal: the translation files are made from the source.
     """
     translated = QCoreApplication.translate(CONTEXT, text)
     return translated.format(**values) if values else translated
 
 
 def tr_page(text: str, /) -> str:
-    """Return a text of several paragraphs in the language of QGIS; line breaks in ``text`` are blanks.
+    """Return a text of several paragraphs in the language of QGIS; line breaks in ``text`` become blanks.
 
-    In one line, because QGIS takes every line break of a help for the end of a paragraph.
+    In one line, because QGIS treats every line break of a help as the end of a paragraph.
     """
     return tr(" ".join(text.split()))
 
 
 def tr_count(number: int, one: str, many: str, /, **values: object) -> str:
-    """Return the text for a number of things: ``one`` of them, or ``many`` with ``%n`` for the number.
+    """Return the text for a number of objects: ``one`` of them, or ``many`` with ``%n`` for the number.
 
     Only ``many`` is translated; its translations have as many forms as the language.
     """
@@ -50,9 +50,9 @@ def tr_count(number: int, one: str, many: str, /, **values: object) -> str:
 
 
 def first_of(texts: Sequence[str], most: int = 3, count: int | None = None) -> list[str]:
-    """Return the first ``most`` of ``texts`` and how many more there are: hundreds fit into no sentence.
+    """Return the first ``most`` of ``texts`` and the number of the others: hundreds fit into no sentence.
 
-    ``count`` is how many there are in all where ``texts`` are only some of them.
+    ``count`` is the total number where ``texts`` are only some of them.
     """
     shown = list(texts[:most])
     more = max(len(texts), count or 0) - len(shown)
@@ -60,22 +60,22 @@ def first_of(texts: Sequence[str], most: int = 3, count: int | None = None) -> l
 
 
 class Language:
-    """The translator that QGIS asks for the plugin's texts, from its making until it is removed."""
+    """The translator for the plugin's texts, installed in QGIS until it is removed."""
 
     def __init__(self, locale: str | None = None, folder: Path = FOLDER):
-        """Take the translation for ``locale``, by default that of QGIS; without one texts stay English."""
+        """Load the translation for ``locale``, by default that of QGIS; without one texts stay English."""
         file = QTranslator()
         self.found = file.load(QLocale(locale or QgsApplication.locale()), FILES, "", str(folder))
         self._translator = QTranslator()
         if self.found:
-            # Out of memory: Qt maps a file that it loads, and ends QGIS when somebody writes into that. The
-            # translator reads from these very bytes as long as it is there.
+            # From memory: Qt maps a file that it loads, and ends QGIS when somebody writes to that. The
+            # translator reads from these very bytes as long as it exists.
             self._texts = Path(file.filePath()).read_bytes()
             self._translator.loadFromData(self._texts)
             QCoreApplication.installTranslator(self._translator)
 
     def remove(self) -> None:
-        """Let QGIS ask this translator no more."""
+        """Uninstall the translator from QGIS."""
         QCoreApplication.removeTranslator(self._translator)
 
 
@@ -83,10 +83,10 @@ class Language:
 
 
 def time_of_day(at: float | None, now: float | None = None) -> str:
-    """Return a time, seconds since 1970, as in ``12:03:04``; nothing for none.
+    """Return a time, seconds since 1970, as in ``12:03:04``; empty for None.
 
-    A stop of last night must not read as one of today: where ``now``, this moment unless given, is on another
-    day, the date stands before the time.
+    A stop of last night must not read as one of today: where ``now``, by default the current time, is on
+    another day, the date precedes the time.
     """
     return _formatted(at, now, "%Y-%m-%d %H:%M:%S")
 
@@ -94,15 +94,15 @@ def time_of_day(at: float | None, now: float | None = None) -> str:
 def short_time(at: float | None, now: float | None = None) -> str:
     """Return a time as :func:`time_of_day` does, on another day as in ``11-21 12:03``: for narrow columns.
 
-    Their tool tips tell :func:`date_and_time`.
+    Their tool tips show :func:`date_and_time`.
     """
     return _formatted(at, now, "%m-%d %H:%M")
 
 
 def date_and_time(at: float | None) -> str:
-    """Return a time, seconds since 1970, as in ``2026-11-21 12:03:04``; nothing for none.
+    """Return a time, seconds since 1970, as in ``2026-11-21 12:03:04``; empty for None.
 
-    For what is written once and read on another day, such as the rows of a layer.
+    For texts that are read on another day, such as the rows of a layer.
     """
     return "" if at is None else time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(at))
 
@@ -125,5 +125,5 @@ def age_in_words(seconds: float) -> str:
 
 
 def last_seen_in_words(state: str, seconds: float, link: object) -> str:
-    """Return a robot's ``state``, how long ago it was heard, and how it is connected."""
+    """Return a robot's ``state``, the time since its last message, and its link."""
     return tr("{state}, last heard {age} ago over {link}", state=state, age=age_in_words(seconds), link=link)

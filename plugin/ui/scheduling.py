@@ -14,9 +14,9 @@ from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 from ...robot_bridge.core.clock import Clock
 from .errors import FleetError
 
-# Long work of the window's thread is done in slices between which the window paints and answers the mouse.
+# Long work in the window's thread is done in slices between which the window paints and handles the mouse.
 # QGIS's own tasks are no help where a click waits for the result: in QGIS 3.22 they wait until the map is
-# drawn, and what they call of QGIS keeps Python to itself as long as it takes.
+# drawn, and the functions of QGIS that they call hold Python's lock as long as they run.
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
@@ -24,21 +24,21 @@ Steps = Generator[float, None, T]
 """Work that yields, as often as it can, the share of it that is done: 0 to 1. It returns the result."""
 
 WAITING = math.nan
-"""Yielded in place of a share by work that waits for another thread: its slice ends, the window goes on."""
+"""Yielded in place of a share by work that waits for another thread: its slice ends, the window continues."""
 
 SLICE_SECONDS = 0.008
 ONE_STEP = 0.0
-"""Seconds for a slice of one step, however short that is: for steps that take most of a slice each."""
+"""Slice length in seconds for one step per slice: for steps that take most of a slice each."""
 REST_MS = 4
-"""Between two slices, for the window."""
+"""Pause between two slices, for the window."""
 
 
 def _nothing(*_: object) -> None:
-    """Be what is called where nobody wants to be told."""
+    """Do nothing; the default for callbacks."""
 
 
 def _raise(error: FleetError) -> None:
-    """Let a fault be seen that nobody expects."""
+    """Raise an error that no callback handles."""
     raise error
 
 
@@ -59,7 +59,7 @@ class CooperativeTask(QObject):
         self._done: Callable[[Any], None] = _nothing
         self._failed: Callable[[FleetError], None] = _raise
         self.share = 0.0
-        """How much is done, 0 to 1."""
+        """The share that is done, 0 to 1."""
         self._is_waiting = False
         self._timer = QTimer(self)
         self._timer.setSingleShot(True)
@@ -68,7 +68,7 @@ class CooperativeTask(QObject):
 
     @property
     def is_busy(self) -> bool:
-        """Whether some of the work is still to be done."""
+        """Whether there is work left to do."""
         return self._work is not None
 
     def begin(
@@ -78,12 +78,12 @@ class CooperativeTask(QObject):
         done: Callable[[T], None] = _nothing,
         failed: Callable[[FleetError], None] = _raise,
     ) -> T | None:
-        """Do the first slice of ``work`` at once: return what it returns if that was enough, else None.
+        """Run the first slice of ``work`` at once: return its result if that was enough, else None.
 
-        ``goes_on`` is called after each later slice, then ``done`` with what it returns or ``failed`` with
-        what it raised. What was under way before is given up.
+        ``goes_on`` is called after each later slice, then ``done`` with the result or ``failed`` with
+        the error raised. Work under way before is given up.
 
-        :raises FleetError: what the first slice raises; ``failed`` is not called then.
+        :raises FleetError: an error in the first slice; ``failed`` is not called then.
         """
         self._take(work, goes_on, done, failed)
         return self._slice()[1]
@@ -94,28 +94,28 @@ class CooperativeTask(QObject):
         done: Callable[[T], None] = _nothing,
         failed: Callable[[FleetError], None] = _raise,
     ) -> None:
-        """Do all of ``work`` in slices that come when the window has had time for what is under way now.
+        """Run all of ``work`` in slices, the first one after the window's current event.
 
-        ``done`` or ``failed`` is called as by :meth:`begin`. What was under way before is given up.
+        ``done`` or ``failed`` is called as by :meth:`begin`. Work under way before is given up.
         """
         self._take(work, _nothing, done, failed)
         self._timer.start()
 
     def finish(self) -> None:
-        """Do at once all that is left, and call ``done`` or ``failed`` for it.
+        """Run the rest at once, and call ``done`` or ``failed`` for it.
 
-        Work that begins other work in its place has that done as well.
+        If that begins other work, this is finished as well.
         """
         while self._work is not None:
             self._timer.stop()
             self._next()
 
     def stop(self) -> None:
-        """Give up what is under way; nothing is called for it any more."""
+        """Give up the work under way; nothing is called for it any more."""
         self._timer.stop()
         work, self._work = self._work, None
         self.share = 0.0
-        # What it does may be why it is to stop; it is not gone on with then.
+        # The work itself may be the caller; it is not continued then.
         if work is not None and not work.gi_running:
             work.close()
 
@@ -169,7 +169,7 @@ class CooperativeTask(QObject):
 
 
 def run_to_end(work: Steps[T]) -> T:
-    """Do all of ``work`` at once, which is for other threads than the window's."""
+    """Run all of ``work`` at once, for threads other than the window's."""
     while True:
         try:
             next(work)
@@ -178,7 +178,7 @@ def run_to_end(work: Steps[T]) -> T:
 
 
 def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
-    """Do ``work`` as one of so many ``parts``, after ``before`` of them."""
+    """Run ``work`` as one of so many ``parts``, after ``before`` of them."""
     while True:
         try:
             share = next(work)
@@ -188,31 +188,31 @@ def scaled_progress(work: Steps[T], before: int, parts: int) -> Steps[T]:
 
 
 STALLED_AFTER = 5.0
-"""Seconds without a sign of progress after which nobody waits for a thread any longer."""
+"""Seconds without progress after which nobody waits for a thread any longer."""
 _AT_ONCE_SECONDS = 0.002
-"""Seconds that the window waits for a thread, so that what is small is done in the slice that began it."""
+"""Seconds that the window waits for a thread, so that small work is done in the slice that began it."""
 
 
 class StalledError(Exception):
-    """A thread has made no progress for as long as anybody waits for it."""
+    """A thread has made no progress within the time limit."""
 
 
 class Reader(Protocol[T_co]):
-    """Reads something in a thread of its own."""
+    """A reader that runs in a thread of its own."""
 
     def read(self, go_on: Callable[[], bool]) -> T_co:
-        """Return what was read; ``go_on`` is called for each part, and the reading ends when it says no."""
+        """Return the result; ``go_on`` is called for each part, and reading ends when it returns false."""
 
 
 class ReadingThread(threading.Thread, Generic[T]):
-    """Has a reader read what may hang for ever: a database, a share, a server.
+    """Runs a reader that may hang for ever: on a database, a share, a server.
 
     A thread of its own and no task of QGIS: those share their few threads with the drawing of the map, where
-    the layers of a server that hangs keep all of them.
+    the layers of a server that hangs block all of them.
     """
 
     def __init__(self, reader: Reader[T]):
-        # QGIS can be closed while it hangs.
+        # A daemon, so that QGIS can be closed while it hangs.
         super().__init__(name="fleet reading", daemon=True)
         self._reader = reader
         self._progress_at = time.monotonic()
@@ -223,7 +223,7 @@ class ReadingThread(threading.Thread, Generic[T]):
 
     @property
     def is_reading(self) -> bool:
-        """Whether it has not come to its end, whoever waits for it."""
+        """Whether it has not ended, even if nobody waits for it."""
         return not self._ended.is_set()
 
     @property
@@ -232,7 +232,7 @@ class ReadingThread(threading.Thread, Generic[T]):
         return self.is_reading and time.monotonic() - self._progress_at > STALLED_AFTER
 
     def cancel(self) -> None:
-        """Have the reading end with the part that it is at."""
+        """End the reading after its present part."""
         self._is_cancelled = True
 
     def wait(self, seconds: float) -> None:
@@ -260,10 +260,10 @@ class ReadingThread(threading.Thread, Generic[T]):
             yield WAITING
 
     def result(self) -> Steps[T]:
-        """Wait for what is read, and return it; who gives up the wait ends the reading.
+        """Wait for the result, and return it; giving up the wait cancels the reading.
 
         :raises StalledError: as :meth:`wait_for_end`.
-        :raises Exception: what the reading raised.
+        :raises Exception: the error raised by the reader.
         """
         try:
             yield from self.wait_for_end()
@@ -279,13 +279,13 @@ class ReadingThread(threading.Thread, Generic[T]):
 
 
 class ReadingTurns:
-    """Has readers read for steps of the window's thread, in one thread after the other."""
+    """Runs readers for steps of the window's thread, in one thread after the other."""
 
     def __init__(self) -> None:
         self._thread: ReadingThread[Any] | None = None
 
     def read(self, reader: Reader[T]) -> Steps[T]:
-        """Return what ``reader`` reads, once the one before has left its source; raises as a thread does."""
+        """Return the result of ``reader``, run once the one before has ended; raises as a thread does."""
         while self._thread is not None and self._thread.is_reading:
             yield from self._thread.wait_for_end()
         self._thread = thread = ReadingThread(reader)
@@ -297,14 +297,14 @@ _LOOK_EVERY_MS = 20
 
 
 class BackgroundReading(QObject, Generic[T]):
-    """Has one reader after the other read in a thread, of which nobody waits for the end.
+    """Runs one reader after the other in a thread, without waiting for the end.
 
-    No more than one thread reads at a time: the next reader has its turn when the one before has left its
-    source, which it never does where that hangs.
+    No more than one thread reads at a time: the next reader starts when the one before has released its
+    source, which never happens where that hangs.
     """
 
     ended = pyqtSignal()
-    """What was asked for last has been read, or cannot be: :meth:`result` says which."""
+    """The reading requested last has ended or failed: :meth:`result` returns or raises."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -317,18 +317,18 @@ class BackgroundReading(QObject, Generic[T]):
 
     @property
     def is_under_way(self) -> bool:
-        """Whether something is still to be read."""
+        """Whether a reading is pending or under way."""
         return self._timer.isActive()
 
     def begin(self, reader: Reader[T]) -> None:
-        """Have ``reader`` read soon; what was under way is given up."""
+        """Run ``reader`` soon; a reading under way is given up."""
         self.stop()
         self._next, self._began_at = reader, time.monotonic()
         self._timer.start()
         self._advance()
 
     def stop(self) -> None:
-        """Give up what is under way; its thread ends when its source lets go of it."""
+        """Give up the reading under way; its thread ends when its source releases it."""
         self._timer.stop()
         self._next = None
         if self._thread is not None:
@@ -343,7 +343,7 @@ class BackgroundReading(QObject, Generic[T]):
             self._advance()
 
     def result(self) -> T:
-        """Return what was read; raises what the reading raised."""
+        """Return the result; raises the error of the reader."""
         assert self._thread is not None
         return run_to_end(self._thread.result())
 
@@ -361,11 +361,11 @@ class BackgroundReading(QObject, Generic[T]):
 PULL_EVERY_MS = 50
 PULLS_IN_HALF_A_SECOND = 500 // PULL_EVERY_MS
 _STRIDE = 3
-"""Pulls between the turns of two who asked one after the other: ten of them have a pull each."""
+"""Updates between two successive slots: ten of them have an update each."""
 
 
 class SignallingTask(QgsTask):
-    """A task of which ``ended`` has the task itself, in the window's thread, and whether it was done.
+    """A task whose signal ``ended`` carries the task, in the window's thread, and whether it succeeded.
 
     So no closure that holds the task need be connected to its signals. Where nothing else holds it, Python
     collects the two together, Qt calls what is left of the closure, and QGIS crashes. ``ended`` comes before
@@ -379,10 +379,10 @@ class SignallingTask(QgsTask):
 
 
 class UpdateScheduler:
-    """Counts the desk's pulls.
+    """Counts the desk's updates.
 
-    What is read by people need not change more than twice a second; but if all of it changed in the same
-    pull, the window would stand still for as long as all of it takes.
+    Texts for people need not change more than twice a second; but if all of them changed in the same
+    update, the window would be blocked for the sum of their times.
     """
 
     def __init__(self) -> None:
@@ -394,18 +394,18 @@ class UpdateScheduler:
         self.pulls += 1
 
     def turn(self) -> UpdateSlot:
-        """Return a turn in which nobody else comes, as far as there are enough pulls."""
+        """Return a slot that no other one shares, as far as there are enough updates."""
         self._turns += 1
         return UpdateSlot(self, self._turns * _STRIDE)
 
 
 class UpdateSlot:
-    """Comes in one pull of each half second, from ``first`` on."""
+    """Is due in one update of each half second, from ``first`` on."""
 
     def __init__(self, beat: UpdateScheduler, first: int) -> None:
         self._beat = beat
         self._first = first
 
     def is_due(self, half_seconds: int = 1) -> bool:
-        """Tell whether it comes in this pull, if it is to come once in so many half seconds."""
+        """Return whether it is due in this update, if it is due once in so many half seconds."""
         return (self._beat.pulls - self._first) % (half_seconds * PULLS_IN_HALF_A_SECOND) == 0

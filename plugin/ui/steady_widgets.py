@@ -1,4 +1,4 @@
-"""Widgets whose size does not depend on what they say: no text moves the button beside or below it."""
+"""Widgets whose size does not depend on their text: no text moves the button beside or below it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from qgis.PyQt.QtWidgets import (
 from .glyphs import painting
 
 NARROWEST = 60
-"""Pixels of width that a text asks for; it takes what there is."""
+"""Width in pixels that a text requests; it uses what is available."""
 AROUND_TEXT = 3
 """Pixels above and below a text."""
 AROUND_BUTTON_TEXT = 6
@@ -31,11 +31,11 @@ AROUND_BUTTON_TEXT = 6
 UNDERLINE = 3
 """Pixels of the line beneath a title in a colour."""
 MOST_COUNTED = 99
-"""The largest number that stands on a tab."""
+"""The largest number shown on a tab."""
 
 
 class ScrollingText(QScrollArea):
-    """Plain text that wraps, in a place as high as ``lines`` lines; a longer text scrolls.
+    """Plain text that wraps, in an area of ``lines`` lines; a longer text scrolls.
 
     The whole text is its tool tip too, unless another one is set. The label inside has the object name
     ``name``.
@@ -93,7 +93,7 @@ class ScrollingText(QScrollArea):
             self._label.setStyleSheet(style)
 
     def sizeHint(self) -> QSize:
-        # Before it was shown it would have the font of another style.
+        # Before it is shown it would have the font of another style.
         self._label.ensurePolished()
         around = 2 * (self.frameWidth() + AROUND_TEXT)
         return QSize(NARROWEST, self._lines * self._label.fontMetrics().lineSpacing() + around)
@@ -108,7 +108,7 @@ class ScrollingText(QScrollArea):
 
 
 class ElidedText(QLabel):
-    """One line of plain text that ends in dots where there is no more room; its tool tip is all of it."""
+    """One line of plain text, elided where there is no more room; its tool tip is the whole text."""
 
     def __init__(self, name: str, text: str = ""):
         super().__init__()
@@ -144,12 +144,12 @@ class ElidedText(QLabel):
 
 
 def _width(widget: QWidget, text: str) -> int:
-    """Return the pixels that Qt measures for ``text``; to the pixel, it is not how far it is drawn."""
+    """Return the width that Qt measures for ``text``; the drawn width may differ by a pixel."""
     return widget.fontMetrics().size(Qt.TextFlag.TextShowMnemonic, text).width()
 
 
 class _Steady:
-    """Asks for room for the longest of the texts that a button may bear, whichever it bears now."""
+    """Requests room for the longest of the texts that a button may have, whichever it has now."""
 
     _texts: tuple[str, ...] = ()
 
@@ -162,12 +162,12 @@ class _Steady:
         return self.sizeHint()
 
     def mouseDoubleClickEvent(self, event: QMouseEvent) -> None:
-        # The first press has given it another meaning: the second one was not meant for that.
+        # The first press has changed the button's meaning: the second one was not meant for that.
         event.accept()
 
 
 class SteadyButton(_Steady, QToolButton):
-    """A tool button that bears one of ``texts`` at a time; a double click is one press."""
+    """A tool button that shows one of ``texts`` at a time; a double click is one press."""
 
     def __init__(self, name: str, texts: Sequence[str]):
         super().__init__()
@@ -176,7 +176,7 @@ class SteadyButton(_Steady, QToolButton):
 
 
 class SteadyPushButton(_Steady, QPushButton):
-    """A push button that bears one of ``texts`` at a time, the first one to begin with."""
+    """A push button that shows one of ``texts`` at a time, the first one initially."""
 
     def __init__(self, name: str, texts: Sequence[str]):
         super().__init__(texts[0])
@@ -184,7 +184,7 @@ class SteadyPushButton(_Steady, QPushButton):
         self._texts = tuple(texts)
 
     def sizeHint(self) -> QSize:
-        # A style gives short texts a least width, to which the others must not be added.
+        # A style gives short texts a minimum width, to which the others must not be added.
         hints = []
         for text in self._texts:
             option = QStyleOptionButton()
@@ -197,7 +197,7 @@ class SteadyPushButton(_Steady, QPushButton):
 
 
 class ElidedButton(QToolButton):
-    """Takes the width that it is given; a longer text ends in dots, and its tool tip begins with all."""
+    """Uses the width available; a longer text is elided, and its tool tip begins with the whole text."""
 
     def __init__(self, name: str):
         super().__init__()
@@ -206,7 +206,7 @@ class ElidedButton(QToolButton):
         self._whole = self._tip = ""
 
     def set_words(self, text: str, tip: str = "") -> None:
-        """Bear ``text``; ``tip`` says more."""
+        """Show ``text``; ``tip`` adds details."""
         if (text, tip) != (self._whole, self._tip):
             self._whole, self._tip = text, tip
             self._fit()
@@ -230,7 +230,7 @@ class ElidedButton(QToolButton):
 
 
 class _SteadyTabBar(QTabBar):
-    """Asks for room for the longest title of each tab, which is its data, and underlines some in colours."""
+    """Requests room for the longest title of each tab, which is its data, and underlines some in colours."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -262,7 +262,7 @@ class _SteadyTabBar(QTabBar):
 
 
 class SteadyTabs(QTabWidget):
-    """Tabs that stay where they are when a number comes to stand behind a title."""
+    """Tabs that stay in place when a number is shown behind a title."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -272,7 +272,7 @@ class SteadyTabs(QTabWidget):
         font = self.tabBar().font()
         font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
         self.tabBar().setFont(font)
-        # Arrows would come and go, and move what is beneath them.
+        # Scroll arrows would come and go, and move the pages below.
         self.setUsesScrollButtons(False)
 
     def add_page(self, page: QWidget, title: str, *, counts: bool = False) -> None:
@@ -281,13 +281,13 @@ class SteadyTabs(QTabWidget):
         self.tabBar().setTabData(tab, _counted(title, MOST_COUNTED + 1) if counts else title)
 
     def show_count(self, page: QWidget, title: str, number: int) -> None:
-        """Show ``number`` behind the title of a page; nothing for none."""
+        """Show ``number`` behind the title of a page; nothing for 0."""
         self.setTabText(self.indexOf(page), _counted(title, number) if number else title)
 
     def show_colour(self, page: QWidget, colour: QColor | None) -> None:
-        """Show the title of a page in ``colour`` and underline it, None for the usual way.
+        """Show the title of a page in ``colour`` and underline it, None for the default.
 
-        QGIS's dark themes give the letters of every tab a colour of their own.
+        QGIS's dark themes set the text colour of every tab.
         """
         plain = self.palette().color(QPalette.ColorRole.WindowText)
         self.tabBar().setTabTextColor(self.indexOf(page), colour or plain)

@@ -1,4 +1,4 @@
-"""Tables: models of rows, widths of columns, lists whose rows have a place on the map, CSV files of them."""
+"""Tables: models of rows, widths of columns, lists whose rows have a place on the map, CSV export."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from .language import short_time, tr
 
 
 class RowModel(QAbstractTableModel):
-    """Holds :attr:`rows` under ``heads``; what a cell shows is for ``data`` of whoever derives from it."""
+    """Holds :attr:`rows` under ``heads``; subclasses implement ``data`` for the content of a cell."""
 
     def __init__(self, heads: Sequence[str], parent: QObject | None = None):
         super().__init__(parent)
@@ -37,7 +37,7 @@ class RowModel(QAbstractTableModel):
         return None
 
     def show_rows(self, rows: list[Any], key: Callable[[Any], object] | None = None) -> None:
-        """Show these; where they are the same by ``key`` as before, rows keep their selection."""
+        """Show these rows; where they are the same by ``key`` as before, rows keep their selection."""
         if key is not None and [key(row) for row in rows] == [key(row) for row in self.rows]:
             self.rows = rows
             if rows:
@@ -49,7 +49,7 @@ class RowModel(QAbstractTableModel):
 
 
 class TextModel(RowModel):
-    """Shows of each row the texts that ``cells`` makes of it, one for each head, and as tips too."""
+    """Shows for each row the texts of ``cells``, one for each head, and as tool tips too."""
 
     def __init__(
         self, heads: Sequence[str], cells: Callable[[Any], Sequence[str]], parent: QObject | None = None
@@ -74,11 +74,11 @@ UNCHECKED = number_of(Qt.CheckState.Unchecked)
 
 
 LOWEST = 44
-"""Pixels that a table keeps on a low screen: its head and a row or two."""
+"""Height in pixels of a table on a low screen: its head and a row or two."""
 
 
 def shrink_view(view: QAbstractItemView) -> None:
-    """Take a size less for the cells and headers of a table in a narrow panel, and let it be low."""
+    """Use a smaller font for cells and headers of a table in a narrow panel, and allow a low height."""
     view.setMinimumHeight(LOWEST)
     font = view.font()
     font.setPointSizeF(max(7.0, font.pointSizeF() - 1.0))
@@ -95,19 +95,19 @@ EDGES = 4
 
 
 def fit_headers(view: QTableView | QTreeView) -> None:
-    """Widen each column whose head would be cut off, now and when it gets the mark of sorting.
+    """Widen each column whose head would be cut off, now and when it gets the sort indicator.
 
-    None becomes narrower. The heads of ``view`` have their font and their columns' first widths already.
+    None becomes narrower. The heads of ``view`` must have their font and their columns' first widths already.
     """
     header = _heads(view)
     widen_headers(view)
-    # No function that holds the header itself: nothing else in Python would, so that Python took both for
-    # garbage, and the next click on a head crashed QGIS.
+    # No function that holds the header itself: nothing else in Python would, so that Python collected
+    # both, and the next click on a head crashed QGIS.
     header.sortIndicatorChanged.connect(lambda column, _order: _fit(_heads(view), column))
 
 
 def widen_headers(view: QTableView | QTreeView) -> None:
-    """Widen each column whose head would be cut off in the font that it has now."""
+    """Widen each column whose head would be cut off in its present font."""
     header = _heads(view)
     for column in range(header.count()):
         _fit(header, column)
@@ -131,7 +131,7 @@ TODAY = "00:00:00"
 
 
 class TimeColumn:
-    """The first column of ``view``, with ``beside`` pixels around a time; what the user drags it to stays."""
+    """The first column of ``view``, with ``beside`` pixels around a time; a width set by the user stays."""
 
     def __init__(self, view: QTableView | QTreeView, beside: int):
         self._view, self._beside = view, beside
@@ -139,7 +139,7 @@ class TimeColumn:
         self.make_room(None)
 
     def make_room(self, oldest: float | None) -> None:
-        """Have room for times from ``oldest`` on, seconds since 1970: another day's have their date."""
+        """Fit the width for times from ``oldest`` on, seconds since 1970: another day's have their date."""
         widest = max(TODAY, short_time(oldest), key=len)
         if len(widest) != self._letters:
             self._letters = len(widest)
@@ -151,7 +151,7 @@ ALONE = (Qt.KeyboardModifier.NoModifier, Qt.KeyboardModifier.KeypadModifier)
 
 
 class ZoomMenu(QObject):
-    """Tells of a row of ``view`` at a double click on it, and at Enter of the selected one."""
+    """Signals a row of ``view`` at a double click on it, and at Enter for the selected one."""
 
     requested = pyqtSignal(QModelIndex)
 
@@ -168,7 +168,7 @@ class ZoomMenu(QObject):
             return False
         selection, index = self._view.selectionModel(), self._view.currentIndex()
         if not selection.isSelected(index):
-            # What is renewed all the time may have selected rows and no current one.
+            # A view that is updated all the time may have selected rows and no current one.
             index = next(iter(selection.selectedRows()), QModelIndex())
         if index.isValid():
             self.requested.emit(index)
@@ -183,9 +183,9 @@ class CsvError(FleetError):
 
 
 def write_csv(path: str, head: Sequence[str], rows: Iterable[Sequence[object]]) -> int:
-    """Write a table as UTF-8 that spreadsheets open as such, and return how many rows it has.
+    """Write a table as UTF-8 with a BOM for spreadsheets, and return the number of its rows.
 
-    Nothing takes the place of an older file before the new one is complete.
+    An older file is only replaced when the new one is complete.
 
     :raises CsvError: when the file cannot be written.
     """
@@ -212,14 +212,14 @@ def write_csv(path: str, head: Sequence[str], rows: Iterable[Sequence[object]]) 
 
 
 def iso_time(at: float | None) -> str:
-    """Return a time since 1970 as ISO 8601 in the computer's time zone; nothing for none."""
+    """Return a time since 1970 as ISO 8601 in the computer's time zone; empty for None."""
     if at is None:
         return ""
     return datetime.fromtimestamp(at).astimezone().isoformat(timespec="milliseconds")
 
 
 def _cell(value: object) -> object:
-    # A spreadsheet would run a text such as =cmd() that came over the wire.
+    # A spreadsheet would run a text such as =cmd() received from the network.
     if isinstance(value, str) and value.startswith(_FORMULA):
         return f"'{value}"
     return "" if value is None else value

@@ -1,7 +1,7 @@
-"""The packages that a release brings along in ``plugin/vendor``, as pure Python, unchanged.
+"""The packages that a release contains in ``plugin/vendor``, as pure Python, unchanged.
 
-They are imported under their full names inside the plugin: ``sys.path`` stays as it is, and a copy that is
-installed for other programs is neither hidden nor replaced. In a checkout the installed one is taken.
+They are imported under their full names inside the plugin: ``sys.path`` stays unchanged, and a copy
+installed for other programs is neither hidden nor replaced. In a checkout the installed one is used.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _PLUGIN = (__package__ or "").rpartition(".")[0]
 
 
 def vendored_package(name: str, *modules: str) -> ModuleType | None:
-    """Return a package and ``modules`` of it: the plugin's own copy, else the installed one, else None."""
+    """Return a package and its ``modules``: the plugin's own copy, else the installed one, else None."""
     return _package(f"{_PLUGIN}.vendor.{name}", modules) or _package(name, modules)
 
 
@@ -30,12 +30,12 @@ def _package(name: str, modules: tuple[str, ...]) -> ModuleType | None:
     # A folder without __init__.py is found too, as a namespace, and is no library.
     if found is None or not found.origin:
         return None
-    # Not by importlib: QGIS forgets with a plugin what it saw imported, and it sees no more than this.
+    # Not by importlib: QGIS unloads with a plugin the modules whose import it saw, and it sees only this.
     __import__(name, fromlist=modules)
     return sys.modules[name]
 
 
-# --- Where the plugin takes the package ``websockets`` from: a release brings it along ---
+# --- The source of the package ``websockets``: a release contains it ---
 
 OLDEST = 14
 """The first version whose ``asyncio`` client has the interface that the connection uses."""
@@ -44,7 +44,7 @@ OLDEST = 14
 def websocket_library() -> ModuleType:
     """Return the package ``websockets``: the plugin's own copy if it has one, else the installed one.
 
-    ``connect`` and ``exceptions`` can be used on what is returned.
+    ``connect`` and ``exceptions`` are available on the result.
 
     :raises LibraryMissingError: when there is none, or the installed one is older than :data:`OLDEST`.
     """
