@@ -26,7 +26,7 @@ LAYOUT_STANDARDS = {
     "braking_lane": tr("length after UN R13-H; test after ISO 21994"),
     "corridor": tr("no standard: colours, width and spacing of Formula Student"),
 }
-"""Of layouts whose standard has words in its name."""
+"""Names of layouts whose standard has words in its name."""
 LAYOUT_DIMENSIONS = {
     "cone_base": tr("Across the base of a cone; the cones touch the track's limits"),
     "count": tr("Cones to go round"),
@@ -84,7 +84,7 @@ LAYOUT_DIMENSIONS = {
     "corridor.width": tr("Clear width of the corridor"),
     "corridor.spacing": tr("From pair to pair"),
 }
-"""By the dimension's name, or by layout and name where layouts mean different things by it."""
+"""By the dimension's name, or by layout and name where layouts give it different meanings."""
 
 DIMENSION_CHOICES = {
     "left": tr("left"),
@@ -95,7 +95,7 @@ DIMENSION_CHOICES = {
     "middle": tr("middle"),
     "right limit": tr("right limit"),
 }
-"""What the choices of dimensions mean, by the bridge's words."""
+"""The meaning of the choices of dimensions, by the bridge's words."""
 
 
 def standard_in_words(layout: type[Layout]) -> str:
@@ -104,18 +104,18 @@ def standard_in_words(layout: type[Layout]) -> str:
 
 
 def layout_in_words(layout: type[Layout]) -> str:
-    """Return what ``layout`` is called, and the standard that it follows."""
+    """Return the name of ``layout``, and the standard that it follows."""
     return f"{LAYOUT_TITLES[layout.NAME]} ({standard_in_words(layout)})"
 
 
 def dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:
-    """Return what the dimension of ``layout`` is."""
+    """Return the description of a dimension of ``layout``."""
     own = f"{layout.NAME}.{dimension.name}"
     return LAYOUT_DIMENSIONS[own] if own in LAYOUT_DIMENSIONS else LAYOUT_DIMENSIONS[dimension.name]
 
 
 def whole_dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:
-    """Return what the dimension is, with the number of each choice, for those who give numbers."""
+    """Return the description of a dimension, with the number of each choice, where numbers are entered."""
     words = dimension_in_words(layout, dimension)
     meanings = ", ".join(
         f"{choice:g} {DIMENSION_CHOICES[name]}" for choice, name in dimension.choices.items()
@@ -124,7 +124,7 @@ def whole_dimension_in_words(layout: type[Layout], dimension: Dimension) -> str:
 
 
 def fault_in_words(dimension: Dimension, fault: DimensionFault) -> str:
-    """Return what to give in place of a value that has ``fault``."""
+    """Return the valid values in place of one that has ``fault``."""
     if fault is DimensionFault.NOT_CHOSEN:
         return tr("give one of {choices}", choices=dimension.choices_text)
     if fault is DimensionFault.TOO_SMALL:
@@ -145,4 +145,4 @@ RESULT_QUALITY = {
     PYVRP: tr("solved"),
     PREVIEW_KEPT: tr("solved: nothing better than the preview was found"),
 }
-"""How good a plan is, by the method that found it."""
+"""The quality of a plan, by the method that found it."""

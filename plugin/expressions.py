@@ -47,11 +47,11 @@ Numbers = npt.NDArray[np.float64]
 
 @dataclass(frozen=True)
 class RobotSnapshot:
-    """Robots that the desk knows at ``taken`` (seconds, monotonic clock); nothing in it is changed later.
+    """Robots known to the desk at ``taken`` (seconds, monotonic clock); immutable.
 
-    ``rows`` leads from a name to a row of the arrays: ``states`` (n) names of states, ``xy`` (n, 2) places in
-    ``crs``, ``age`` (n,) seconds since the last message and ``battery`` (n,) part of a full one, NaN where
-    not known. Without ``is_whole`` there are other robots than these.
+    ``rows`` maps a name to a row of the arrays: ``states`` (n) names of states, ``xy`` (n, 2) places in
+    ``crs``, ``age`` (n,) seconds since the last message and ``battery`` (n,) fraction of a full one, NaN
+    where not known. Without ``is_whole`` there are other robots than these.
     """
 
     crs: QgsCoordinateReferenceSystem
@@ -69,7 +69,7 @@ class RobotSnapshot:
         return None if row is None else self.states[row]
 
     def charge(self, robot: str) -> float | None:
-        """Return how full a robot's battery is, 0 to 1; None where that is not known."""
+        """Return the charge of a robot's battery, 0 to 1; None where that is not known."""
         return self._number(self.battery, robot)
 
     def silence(self, robot: str, now: float | None = None) -> float | None:
@@ -79,7 +79,7 @@ class RobotSnapshot:
         return None if age is None else age + max(0.0, now - self.taken)
 
     def place(self, robot: str) -> QgsPointXY | None:
-        """Return where a robot is, in :attr:`crs`; None where that is not known."""
+        """Return a robot's position, in :attr:`crs`; None where that is not known."""
         row = self.rows.get(robot)
         if row is None or not np.isfinite(self.xy[row]).all():
             return None
@@ -91,13 +91,13 @@ class RobotSnapshot:
 
 
 MOST_NAMED = 200
-"""Robots that the desk is told of wherever they are because expressions name them: those named last."""
+"""Robots received wherever they are because expressions name them: those named last."""
 NAMED_FOR_S = 60.0
-"""Seconds for which it is told of a robot after an expression named it."""
+"""Seconds for which a robot is received after an expression named it."""
 
 
 class SnapshotHolder:
-    """Holds the newest :class:`RobotSnapshot`, None while no gateway has told of any robot.
+    """Holds the newest :class:`RobotSnapshot`, None while no gateway has reported any robot.
 
     Expressions are evaluated in QGIS's threads: :meth:`read` may be called in any.
     """
@@ -114,19 +114,19 @@ class SnapshotHolder:
 
     @property
     def watched(self) -> frozenset[str]:
-        """Robots that the desk is told of wherever they are, since expressions name them."""
+        """Robots received wherever they are, since expressions name them."""
         return self._watched
 
     def watch(self, robots: Iterable[str]) -> None:
-        """Keep these robots noted as long as expressions name them, though they are known."""
+        """Keep these robots recorded as long as expressions name them, though they are known."""
         self._watched = frozenset(robots)
 
     def read(self, robot: str) -> RobotSnapshot | None:
-        """Return the snapshot for an expression that names ``robot``; that is noted if it is not in view."""
+        """Return the snapshot for an expression that names ``robot``, which is recorded if not in view."""
         robots = self.robots
         if robots is None or robots.is_whole:
             return robots
-        # Who is in view needs no place among those that are told of wherever they are.
+        # A robot in view needs no place among those received wherever they are.
         if robot in self._watched or (robot not in robots.rows and is_robot_name(robot)):
             self._note(robot)
         return robots
@@ -139,7 +139,7 @@ class SnapshotHolder:
                 del self._named[next(iter(self._named))]
 
     def collect_named(self) -> list[str]:
-        """Return the robots that were noted since the last call, the one that was named last at the end."""
+        """Return the robots recorded since the last call, the one that was named last at the end."""
         if not self._named:
             return []
         with self._lock:
@@ -151,7 +151,7 @@ _NAMES = np.array([state.value for state in STATES], dtype=object)
 
 
 class ExpressionUpdater(QObject):
-    """Makes a new picture for expressions out of the desk's, and has that know the robots that they name.
+    """Makes snapshots of the desk's state for expressions, and has the desk receive the robots they name.
 
     :meth:`remove` leaves them without one.
     """
@@ -162,7 +162,7 @@ class ExpressionUpdater(QObject):
         super().__init__(state)
         self._state, self._view, self._fleet = state, view, fleet
         self._named: dict[str, float] = {}
-        """When expressions named robots last, the last one at the end."""
+        """When expressions last named robots, the last one at the end."""
         self._turn = scheduler.turn()
         self._rows: dict[str, int] = {}
         self._arrangement = -1
@@ -171,11 +171,11 @@ class ExpressionUpdater(QObject):
         state.robots_removed.connect(self.feed)
 
     def remove(self) -> None:
-        """Feed nothing more."""
+        """Stop making snapshots."""
         self._fleet.replace(None)
 
     def feed(self) -> None:
-        """Make the picture of this moment."""
+        """Make the current snapshot."""
         state, now = self._state, self._state.clock.steady()
         if state.site is None:
             self._fleet.replace(None)
@@ -203,7 +203,7 @@ class ExpressionUpdater(QObject):
             self.feed()
 
     def _watch_named(self) -> None:
-        """Ask for the robots that expressions have named within the last minute, and for no others."""
+        """Request the robots that expressions have named within the last minute, and no others."""
         now = self._state.clock.steady()
         for name in self._fleet.collect_named():
             self._named.pop(name, None)
@@ -217,7 +217,7 @@ class ExpressionUpdater(QObject):
             del self._named[oldest]
         if self._named.keys() != self._fleet.watched:
             self._fleet.watch(self._named)
-            # In one order: in another one they would be asked for again.
+            # In a stable order: in another one they would be requested again.
             self._view.watch_named(sorted(self._named))
 
 
@@ -225,7 +225,7 @@ class ExpressionUpdater(QObject):
 
 
 def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
-    """Return the CRS of a place: as given, that of the layer that is looked at, that of the project.
+    """Return the CRS of a place: as given, else that of the layer evaluated, else that of the project.
 
     :raises FleetError: when QGIS does not know the one that is given.
     """
@@ -241,7 +241,7 @@ def crs_of_place(given: Any, of_layer: Any) -> QgsCoordinateReferenceSystem:
 
 
 GROUP = tr("Fleet")
-"""Where QGIS lists the functions."""
+"""The group in which QGIS lists the functions."""
 _OUT_OF_VIEW = tr_page("""
 <p>Of more than 5 000 robots QGIS is told of those on the map. Another one is asked for when an expression
 names it, and for a minute from then on, up to 200 of them: about a second later it has its value, NULL
@@ -274,12 +274,12 @@ old; a layer shows them when it is drawn.</p>
 
 
 class _RobotFunction(QgsExpressionFunction):
-    """Says something of robots, whatever the feature is."""
+    """A function of robots, independent of the feature."""
 
     def isStatic(
         self, _node: QgsExpressionNodeFunction, _parent: QgsExpression, _context: QgsExpressionContext
     ):
-        # QGIS works out once what cannot change; robots do.
+        # QGIS evaluates constant expressions once; robots change.
         return False
 
     def usesGeometry(self, _node: QgsExpressionNodeFunction):
@@ -290,12 +290,12 @@ class _RobotFunction(QgsExpressionFunction):
 
 
 class DistanceToRobot(_RobotFunction):
-    """Measures from where a robot is now."""
+    """Measures the distance from a robot's present position."""
 
     def __init__(self, fleet: SnapshotHolder):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("robot"), parameter("geometry", True), parameter("crs", True)]
-        # Handles NULL itself: an argument that is left out comes as NULL, too.
+        # Handles NULL itself: an omitted argument is NULL, too.
         super().__init__(
             DISTANCE_TO_ROBOT,
             parameters,
@@ -355,7 +355,7 @@ def _placed(
     site_crs: QgsCoordinateReferenceSystem,
     context: QgsExpressionContext | None,
 ) -> QgsGeometry:
-    """Return ``geometry`` in ``site_crs``; the way there is looked for once in a context."""
+    """Return ``geometry`` in ``site_crs``; the transform is looked up once per context."""
     of_layer = context.variable("layer_crs") if context is not None else None
     key = f"fleet {DISTANCE_TO_ROBOT} {crs} {of_layer} {site_crs.authid()}"
     if context is not None and context.hasCachedValue(key):
@@ -402,12 +402,12 @@ generated one, then the smaller before the larger.</p>
 
 
 class RoadSurface(QgsExpressionFunction):
-    """Tells the road surface at a place by what ``store`` keeps."""
+    """Returns the road surface at a place from ``store``."""
 
     def __init__(self, store: SurfaceStore):
         parameter = QgsExpressionFunction.Parameter
         parameters = [parameter("x"), parameter("y"), parameter("layer", True), parameter("crs", True)]
-        # Handles NULL itself: an argument that is left out comes as NULL, too.
+        # Handles NULL itself: an omitted argument is NULL, too.
         super().__init__(
             ROAD_SURFACE_FUNCTION,
             parameters,
@@ -453,7 +453,7 @@ class RoadSurface(QgsExpressionFunction):
         return None if found is None else found.label
 
     def _kept(self, layer: Any, crs: Any, context: QgsExpressionContext | None) -> tuple[Any, Any]:
-        """Return the surfaces and the way to them, which are looked for once in a context."""
+        """Return the surfaces and the transform to them, which are looked up once per context."""
         of_layer = context.variable("layer_crs") if context is not None else None
         key = f"fleet road_surface {_named(layer)} {crs} {of_layer}"
         if context is not None and context.hasCachedValue(key):
@@ -537,7 +537,7 @@ drawn.</p>
 
 
 class RobotValue(_RobotFunction):
-    """Tells one thing of a robot by its name."""
+    """Returns one value of a robot by its name."""
 
     def __init__(
         self, name: str, help_text: str, fleet: SnapshotHolder, value: Callable[[RobotSnapshot, str], object]
@@ -559,7 +559,7 @@ class RobotValue(_RobotFunction):
 
 
 def robot_values(fleet: SnapshotHolder) -> list[RobotValue]:
-    """Return the functions; each needs to be kept as long as QGIS has it."""
+    """Return the functions; each must be kept alive as long as QGIS has it."""
     notes = _NOTES + _OUT_OF_VIEW
     return [
         RobotValue("robot_state", _STATE_HELP + notes, fleet, RobotSnapshot.state),
@@ -569,16 +569,16 @@ def robot_values(fleet: SnapshotHolder) -> list[RobotValue]:
 
 
 class ExpressionFunctions:
-    """The functions as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
+    """The functions while the plugin is loaded. :meth:`remove` undoes the constructor."""
 
     def __init__(self, surfaces: SurfaceStore, fleet: SnapshotHolder):
-        # QGIS does not keep Python's functions alive; what it does not take, as when two copies of the plugin
-        # are loaded, is not ours to take out.
+        # QGIS does not keep Python's functions alive; those that it rejects, as when two copies of the plugin
+        # are loaded, are not ours to remove.
         made = [RoadSurface(surfaces), DistanceToRobot(fleet), *robot_values(fleet)]
         self._functions = [one for one in made if QgsExpression.registerFunction(one)]
 
     def remove(self) -> None:
-        """Take every function out of QGIS."""
+        """Remove every function from QGIS."""
         for function in self._functions:
             QgsExpression.unregisterFunction(function.name())
         self._functions = []

@@ -16,7 +16,7 @@ from .ui.language import tr
 
 @dataclass(frozen=True)
 class HelpTopic:
-    """A page of docs/ without its suffix, and a heading in it as links write it; empty for the page's top."""
+    """A page of docs/ without its suffix, and a heading in it in link form; empty for the page's top."""
 
     page: str
     heading: str = ""
@@ -47,11 +47,11 @@ TOPICS = {
     "fleet_abort_all_button": HelpTopic("operator", "stop-robots"),
     "fleet_emergency_stop_button": HelpTopic("operator", "emergency-stop"),
 }
-"""By the object name of a widget; what lies in one belongs to it."""
+"""By the object name of a widget; applies to all widgets inside it."""
 
 
 def topic_of(widget: QWidget | None) -> HelpTopic:
-    """Return what explains ``widget`` or the nearest one around it."""
+    """Return the topic of ``widget`` or the nearest parent that has one."""
     while widget is not None:
         if widget.objectName() in TOPICS:
             return TOPICS[widget.objectName()]
@@ -64,7 +64,7 @@ WIDTH, HEIGHT = 760, 640
 
 
 class HelpWindow(QDialog):
-    """One page at a time, at the heading that was asked for; links lead on."""
+    """One page at a time, at the requested heading; links lead on."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -131,7 +131,7 @@ class HelpWindow(QDialog):
 
 
 def heading_link(heading: str) -> str:
-    """Return what a link to ``heading`` is written with."""
+    """Return the link form of ``heading``."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
 
 
@@ -148,7 +148,7 @@ ICON = Path(__file__).parents[1] / "resources" / "icons" / "fleet.svg"
 
 
 class HelpActions(QObject):
-    """Answers F1 within ``panel`` by what has the keyboard there. :meth:`remove` undoes the constructor."""
+    """Handles F1 within ``panel`` by the widget with the focus. :meth:`remove` undoes the constructor."""
 
     def __init__(self, iface: QgisInterface, menu: str, panel: QWidget):
         super().__init__(iface.mainWindow())
@@ -161,7 +161,7 @@ class HelpActions(QObject):
         panel.installEventFilter(self)
 
     def remove(self) -> None:
-        """Close what is open and take the entries out of the menus."""
+        """Close open windows and remove the entries from the menus."""
         # Not among all children of the main window, for each of which PyQt makes an object.
         for window in QApplication.topLevelWidgets():
             if isinstance(window, HelpWindow):
@@ -175,7 +175,7 @@ class HelpActions(QObject):
         kinds = (QEvent.Type.ShortcutOverride, QEvent.Type.KeyPress)
         if event.type() not in kinds or event.key() != Qt.Key.Key_F1:
             return False
-        # QGIS has F1 for its own help: taken here first, it comes back as a key.
+        # QGIS uses F1 for its own help: with the shortcut overridden, it is delivered as a key.
         event.accept()
         if event.type() == QEvent.Type.KeyPress:
             show_help(topic_of(QApplication.focusWidget()), self._panel)

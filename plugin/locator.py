@@ -21,17 +21,17 @@ from .ui.language import tr
 
 NAME = "fleet_robots"
 MOST = 50
-"""Results: nobody reads more, and the list is made again with each letter."""
+"""Results: nobody reads more, and the list is computed again with each letter."""
 SAME = 1.0
-"""The score of the very name that was looked for."""
+"""The score of an exact match."""
 OTHER_CASE = 0.95
-"""The score of that name in other letters, small or capital; of several nobody knows which was meant."""
+"""The score of a match in another case; if there are several, it is unknown which was meant."""
 CHOICE_FOR_S = 3.0
-"""Seconds for which a choice waits for what the gateway finds."""
+"""Seconds for which a choice waits for the gateway's search."""
 
 
 class RobotMatch(NamedTuple):
-    """A robot that holds what was looked for in its name, and how well."""
+    """A robot whose name contains the text, and its score."""
 
     name: str
     score: float
@@ -40,9 +40,9 @@ class RobotMatch(NamedTuple):
 
 
 class RobotList:
-    """The robots that the desk knows or the gateway found; what was looked for last, and listed of it.
+    """The robots known to the desk or found by the gateway; the last search text and its listed results.
 
-    It is one for the filter and its clones, which are gone when a result is chosen.
+    It is shared by the filter and its clones, which are gone when a result is chosen.
     """
 
     def __init__(self, fleet: SnapshotHolder, search: RobotSearch):
@@ -52,13 +52,13 @@ class RobotList:
         """The scores of the robots that are listed."""
 
     def begin(self, text: str) -> list[RobotMatch]:
-        """Look for ``text``, at the gateway too, and return what is known already, the best first."""
+        """Start a search for ``text``, at the gateway too, and return the known results, the best first."""
         self._search.search(text)
         self.text, self._listed = text, {}
         return self.more()
 
     def more(self) -> list[RobotMatch]:
-        """Return what is known by now and not listed yet of what was looked for, and count it as listed."""
+        """Return results of the search that are known by now and not listed yet, and count them as listed."""
         robots, now = self._fleet.robots, steady_time()
         if robots is None:
             return []
@@ -68,15 +68,15 @@ class RobotList:
         return [_match(name, score, robots, found.get(name), now) for score, name in best]
 
     def names(self, text: str) -> list[str]:
-        """Return the names that ``text`` is a part of, the best first."""
+        """Return the names that contain ``text``, the best first."""
         return [name for _, name in self._ranked(text)]
 
     def has(self, text: str) -> bool:
-        """Tell whether a robot is known whose very name ``text`` is, letter by letter."""
+        """Return whether a robot with exactly the name ``text`` is known."""
         return bool(ranked := self._ranked(text)) and ranked[0][0] == SAME
 
     def named(self, text: str) -> str | None:
-        """Return the robot whose very name ``text`` is, or the only one of that name in another case."""
+        """Return the robot with exactly the name ``text``, or the only one of that name in another case."""
         ranked = self._ranked(text)[:2]
         if not ranked or ranked[0][0] < OTHER_CASE:
             return None
@@ -84,21 +84,21 @@ class RobotList:
         return None if is_one_of_several else ranked[0][1]
 
     def is_listed(self, robot: str, text: str) -> bool:
-        """Tell whether ``robot`` was listed when ``text`` was looked for last, and is there still."""
+        """Return whether ``robot`` was listed when ``text`` was last searched, and still exists."""
         robots = self._fleet.robots
         if text != self.text or robot not in self._listed or robots is None:
             return False
-        # One that is out of view by now is there all the same.
+        # One that is out of view by now exists all the same.
         return robot in robots.rows or not robots.is_whole
 
     def is_marked_by_hand(self, robot: str) -> bool:
-        """Tell whether QGIS did not mark this robot, which is listed, by itself for want of a better one."""
-        # Of those with the best score QGIS marks one, in its own order.
+        """Return whether QGIS did not mark this listed robot merely as the best one available."""
+        # QGIS marks one of those with the best score, in its own order.
         score = self._listed[robot]
         return score == SAME or score < max(self._listed.values())
 
     def expects_more(self, text: str) -> bool:
-        """Tell whether the gateway has still to say which robots there are; it is asked."""
+        """Return whether the gateway's search results are still to come; the search is sent."""
         self._search.search(text)
         return self._search.awaits(text)
 
@@ -120,22 +120,22 @@ def _match(
 
 
 class RobotViewer(Protocol):
-    """Who shows a robot: the window."""
+    """A window that shows robots."""
 
     def go_to(self, robot: str) -> None:
-        """Select a robot alone and show where it is."""
+        """Select a robot alone and show it on the map."""
 
 
 class LocatorField(Protocol):
-    """Who knows the locator's field."""
+    """Access to the locator's field."""
 
     def typed(self) -> str | None:
-        """Return what stands in the field, None where there is none."""
+        """Return the text in the field, None where there is none."""
 
 
 @dataclass(frozen=True)
 class Choice:
-    """What was typed when a row was chosen that may be another robot's, and the row; until when it counts."""
+    """The text typed when a row was chosen that may be another robot's, the row, and its expiry."""
 
     typed: str
     row: str
@@ -143,12 +143,12 @@ class Choice:
 
 
 class RobotFilter(QgsLocatorFilter):
-    """Finds robots by any part of their name, and has ``viewer`` show the one that was chosen.
+    """Finds robots by any part of their name, and has ``viewer`` show the chosen one.
 
-    ``field`` knows what stands in the locator's field.
+    ``field`` gives access to the locator's field.
 
-    QGIS looks with a clone of the filter, in the window's thread: it is fast. In a thread of its own it could
-    wait for Python for ever, where the plugin is unloaded meanwhile and QGIS waits for that thread.
+    QGIS searches with a clone of the filter, in the window's thread: it is fast. In a thread of its own it
+    could wait for Python's lock for ever, if the plugin is unloaded meanwhile and QGIS waits for that thread.
     """
 
     def __init__(self, robots: RobotList, icons: StateIcons, viewer: RobotViewer, field: LocatorField):
@@ -169,7 +169,7 @@ class RobotFilter(QgsLocatorFilter):
         return QgsLocatorFilter.Flag.FlagFast
 
     def prefix(self):
-        # Shorter ones of plugins are passed over, unless the user has chosen them: see RobotLocator.
+        # Shorter ones of plugins are ignored, unless the user has chosen them: see RobotLocator.
         return "robot"
 
     def priority(self):
@@ -186,18 +186,18 @@ class RobotFilter(QgsLocatorFilter):
             self.resultFetched.emit(self._result(match))
 
     def further_results(self) -> list[QgsLocatorResult]:
-        """Return the results that came since, where what was looked for stands in the field still."""
+        """Return the results that arrived since, if the text searched for is still in the field."""
         if self._typed_name() != self._robots.text:
             return []
         results = [self._result(match) for match in self._robots.more()]
         for result in results:
-            # QGIS does so with what is fetched.
+            # QGIS does so with fetched results.
             result.filter = self
         return results
 
     def triggerResult(self, result: QgsLocatorResult):
-        # QGIS looks a moment after the last letter. Whoever presses Enter sooner is given a row of what was
-        # typed before, which may be another robot: what is typed counts.
+        # QGIS searches a moment after the last letter. Pressing Enter sooner chooses a row for the text
+        # typed before, which may be another robot: the text typed counts.
         self._waiting = None
         typed, row = self._typed_name(), result.displayString
         if typed is None:
@@ -211,7 +211,7 @@ class RobotFilter(QgsLocatorFilter):
             self._go_by(typed, row)
 
     def settle(self) -> None:
-        """Go where was chosen to go before the gateway had said which robots there are."""
+        """Carry out a choice made before the gateway had reported the robots."""
         choice = self._waiting
         if choice is None or self._robots.expects_more(choice.typed):
             return
@@ -220,7 +220,7 @@ class RobotFilter(QgsLocatorFilter):
             self._go_by(choice.typed, choice.row)
 
     def withdraw(self) -> None:
-        """Go nowhere by what was chosen before: something else was since."""
+        """Drop an earlier choice: another one was made since."""
         self._waiting = None
 
     def _go_by(self, typed: str, row: str) -> None:
@@ -232,7 +232,7 @@ class RobotFilter(QgsLocatorFilter):
             self._viewer.go_to(name)
 
     def _typed_name(self) -> str | None:
-        """Return what stands in the locator's field behind the prefix."""
+        """Return the text in the locator's field after the prefix."""
         text = self._field.typed()
         if text is None:
             return None
@@ -255,10 +255,10 @@ class RobotFilter(QgsLocatorFilter):
 
 
 def rank_robots(pattern: str, names: list[str]) -> list[tuple[float, str]]:
-    """Return the names that ``pattern`` is a part of, each with a score from 0 to 1, the best first.
+    """Return the names that contain ``pattern``, each with a score from 0 to 1, the best first.
 
-    A name that is the same comes before one that is so in another case, then one that begins so, then one
-    that has it within, shorter ones before longer ones: QGIS lists by the score.
+    An exact match comes before one in another case, then names that begin with it, then names that
+    contain it, shorter ones before longer ones: QGIS sorts by the score.
     """
     pattern = pattern.strip()
     folded = pattern.casefold()
@@ -274,13 +274,13 @@ def rank_robots(pattern: str, names: list[str]) -> list[tuple[float, str]]:
 
 PREFIX = "rb"
 PREFIX_KEY = f"locator-filters/items/{NAME}/prefix"
-"""Where QGIS keeps the prefix that the user has chosen."""
+"""QGIS's setting with the prefix chosen by the user."""
 if Qgis.versionInt() < 33000:
     PREFIX_KEY = f"gui/locator_filters/prefix_{NAME}"
 
 
 class RobotLocator(QObject):
-    """The filter as long as the plugin is loaded. :meth:`remove` undoes the constructor."""
+    """The filter while the plugin is loaded. :meth:`remove` undoes the constructor."""
 
     def __init__(
         self, iface: QgisInterface, fleet: SnapshotHolder, desk: FleetController, viewer: RobotViewer
@@ -291,13 +291,13 @@ class RobotLocator(QObject):
         desk.search.answered.connect(self._show_found)
         desk.selection.changed.connect(self._filter.withdraw)
         settings = QgsSettings()
-        # As if the user had chosen it: of plugins themselves QGIS takes none of less than three letters.
+        # As if the user had chosen it: of plugins themselves QGIS accepts none of less than three letters.
         if not settings.value(PREFIX_KEY, ""):
             settings.setValue(PREFIX_KEY, PREFIX)
         iface.registerLocatorFilter(self._filter)
 
     def remove(self) -> None:
-        """Take the filter out; QGIS deletes it. A prefix of the user's own stays."""
+        """Remove the filter, which QGIS deletes. A prefix chosen by the user stays."""
         self._desk.search.answered.disconnect(self._show_found)
         self._desk.selection.changed.disconnect(self._filter.withdraw)
         self._iface.deregisterLocatorFilter(self._filter)
@@ -306,7 +306,7 @@ class RobotLocator(QObject):
             settings.remove(PREFIX_KEY)
 
     def typed(self) -> str | None:
-        """Return what stands in the locator's field of the window, None where the window has none."""
+        """Return the text in the locator's field of the window, None where the window has none."""
         widget = self._widget()
         field = None if widget is None else widget.findChild(QLineEdit)
         return None if field is None else field.text()
@@ -315,9 +315,9 @@ class RobotLocator(QObject):
         return self._iface.mainWindow().findChild(QgsLocatorWidget)
 
     def _show_found(self) -> None:
-        """Add what the gateway found to the list; QGIS marks the first row until the operator moves on."""
+        """Add the gateway's results to the list; QGIS marks the first row until the operator moves on."""
         if (widget := self._widget()) is not None:
-            # To search again would ask all filters again, and take the mark from the operator's row.
+            # A new search would query all filters again, and move the mark from the operator's row.
             for result in self._filter.further_results():
                 widget.locator().foundResult.emit(result)
         self._filter.settle()

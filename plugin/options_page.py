@@ -1,4 +1,4 @@
-"""The plugin's page in QGIS's options: connections, what the map shows, alarms."""
+"""The plugin's page in QGIS's options: connections, map display, alarms."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from .ui.dialogs import file_field
 from .ui.language import tr
 from .ui.scheduling import PULL_EVERY_MS
 
-# --- What the map shows, and where files go ---
+# --- Map display, and the folder for files ---
 
 SPINS = (
     ("robot_size", tr("&Size of robots on the map"), " ×", 0.1, 1, tr("1 is as they come")),
@@ -52,7 +52,7 @@ SPINS = (
 )
 DRAWN_BY = {False: tr("the live map: arrows"), True: tr("the layer Robots (live), in its style")}
 WIDTH = 90
-"""Pixels of a field for a number, so that all are as wide."""
+"""Width in pixels of a number field, so that all are equal."""
 
 
 class PreferencesForm(QWidget):
@@ -100,7 +100,7 @@ class PreferencesForm(QWidget):
         self._folder.setFilePath(preferences.folder)
 
     def preferences(self) -> Preferences:
-        """Return what stands in the fields."""
+        """Return the preferences in the fields."""
         numbers = {name: spin.value() for name, spin in self._spins.items()}
         return Preferences(
             **numbers,
@@ -119,13 +119,13 @@ def _add(form: QFormLayout, text: str, field: QWidget) -> None:
 
 
 class OptionsPage(QgsOptionsPageWidget):
-    """Shows what is kept; OK and Apply of the options keep what stands in the fields.
+    """Shows the stored values; OK and Apply of the options store those in the fields.
 
-    Connections are kept at once, as elsewhere in QGIS.
+    Connections are stored at once, as elsewhere in QGIS.
     """
 
     kept = pyqtSignal(object, object)
-    """What was kept: the Preferences and the Thresholds."""
+    """The stored Preferences and Thresholds."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -154,7 +154,7 @@ class OptionsPage(QgsOptionsPageWidget):
         self.destroyed.connect(self.connections.end)
 
     def apply(self) -> None:
-        """Keep what stands in the fields; QGIS calls this on OK and on Apply."""
+        """Store the values in the fields; QGIS calls this on OK and on Apply."""
         preferences, limits = self.preferences.preferences(), self.alarms.limits()
         write_preferences(preferences)
         self.kept.emit(preferences, limits)
@@ -176,7 +176,7 @@ TITLE = "Fleet Supervisor"
 
 
 class OptionsFactory(QgsOptionsWidgetFactory):
-    """Makes the page when the options are opened. :meth:`remove` undoes the constructor."""
+    """Creates the page when the options are opened. :meth:`remove` undoes the constructor."""
 
     def __init__(
         self,
@@ -197,7 +197,7 @@ class OptionsFactory(QgsOptionsWidgetFactory):
         return page
 
     def remove(self) -> None:
-        """Take the page out of the options."""
+        """Remove the page from the options."""
         self._iface.unregisterOptionsWidgetFactory(self)
 
     def _kept(self, preferences: Preferences, limits: Thresholds) -> None:

@@ -1,4 +1,4 @@
-"""The plugin: builds its parts when QGIS loads it and takes every one of them out again."""
+"""The plugin: builds its parts when QGIS loads it and removes all of them when it is unloaded."""
 
 from __future__ import annotations
 
@@ -66,23 +66,23 @@ class FleetProvider(QgsProcessingProvider):
 
 
 class RegisteredProvider:
-    """The provider of algorithms, as long as the plugin is loaded."""
+    """The provider of algorithms, while the plugin is loaded."""
 
     def __init__(self, provider: FleetProvider):
-        # The registry deletes a provider that it does not take, as when two copies of the plugin are loaded.
+        # The registry deletes a provider that it rejects, as when two copies of the plugin are loaded.
         is_taken = QgsApplication.processingRegistry().addProvider(provider)
         self._provider = provider if is_taken else None
 
     def remove(self) -> None:
-        """Take the provider out, which QGIS deletes."""
+        """Remove the provider, which QGIS deletes."""
         if self._provider is not None:
             QgsApplication.processingRegistry().removeProvider(self._provider)
 
 
 class FleetPlugin:
-    """What QGIS holds of the plugin.
+    """The plugin's entry point for QGIS.
 
-    ``initProcessing`` is all that ``qgis_process`` calls; ``initGui`` adds what needs a window.
+    ``initProcessing`` is all that ``qgis_process`` calls; ``initGui`` adds the parts that need a window.
     """
 
     def __init__(self, iface: QgisInterface | None, language: Language | None = None):
@@ -90,7 +90,7 @@ class FleetPlugin:
         self._fleet = SnapshotHolder()
         self._window = None
         self._parts: list[Part] = [] if language is None else [language]
-        """What was built, in its order; :meth:`unload` removes it in the reverse one."""
+        """The parts built, in order; :meth:`unload` removes them in reverse order."""
 
     @property
     def window(self):
@@ -108,7 +108,7 @@ class FleetPlugin:
             if self._iface is not None:
                 self._open_desk(self._iface, QgsProject.instance())
         except Exception:
-            # QGIS forgets a plugin that does not start; what it had put into QGIS by then would stay.
+            # QGIS drops a plugin that fails to start; its parts already in QGIS would stay.
             self.unload()
             raise
 
@@ -117,7 +117,7 @@ class FleetPlugin:
         remove_all(self._parts)
 
     def _open_desk(self, iface: QgisInterface, project: QgsProject):
-        # Only here, for qgis_process.
+        # Imported only here, for qgis_process.
         from .admin.accounts_dialog import AccountsAction
         from .admin.supervision import RecordingsAction, RobotRemoval, SiteChoiceAction
         from .expressions import ExpressionUpdater
@@ -136,9 +136,9 @@ class FleetPlugin:
         from .ui.actions import MenuLetters, PluginMenu, Shortcuts, keys_in
 
         main = iface.mainWindow()
-        # Before it has the plugin's own widgets, which are thousands.
+        # Before it contains the plugin's own widgets, which are thousands.
         taken = keys_in(main)
-        # The first ones, so that they go last: everything else has left menu and project by then.
+        # The first ones, so that they are removed last: everything else has left menu and project by then.
         self._add(PluginMenu(main, MENU))
         self._add(LiveLayers(project))
         window = self._window = self._add(FleetWindow(iface))
@@ -164,10 +164,10 @@ class FleetPlugin:
         ):
             self._add(part(*needs))
         others = [part.action for part in self._parts if hasattr(part, "action")]
-        # The last ones, so that they go first: while every action is still there.
+        # The last ones, so that they are removed first: while every action still exists.
         self._add(Shortcuts(main, [*window.actions.all(), *others], taken))
         for menu in ([*window.menu_entries(), *others], window.actions.for_drafts):
-            # Letters may run out in a long menu: what has no key gets one first.
+            # Letters may run out in a long menu: entries without a shortcut get one first.
             self._add(MenuLetters(sorted(menu, key=lambda entry: not entry.shortcut().isEmpty())))
 
     def _add(self, part: Any):

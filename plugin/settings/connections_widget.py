@@ -1,4 +1,4 @@
-"""The list of kept connections, and the dialog of one."""
+"""The list of stored connections, and the dialog of one."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ GOOD, BAD = "✔", "✘"
 
 
 class ResultLabel(QLabel):
-    """Empty until something is told; its mark tells good from bad without colour."""
+    """Empty until there is a result; its mark distinguishes success from failure without colour."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -49,11 +49,11 @@ class ResultLabel(QLabel):
         self.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
 
     def show_verdict(self, good: bool, text: str) -> None:
-        """Show how it ended."""
+        """Show the result."""
         self.setText(f"{GOOD if good else BAD} {text}")
 
     def wait(self, text: str) -> None:
-        """Show that it is under way."""
+        """Show that the test is under way."""
         self.setText(text)
 
 
@@ -61,10 +61,10 @@ LOOK_EVERY_MS = 50
 
 
 class ConnectionTest(QObject):
-    """One trial at a time. The network is waited for in a thread; :meth:`end` waits for that thread."""
+    """One test at a time. A thread waits for the network; :meth:`end` waits for that thread."""
 
     tested = pyqtSignal(bool, str)
-    """Whether the gateway let the operator in, and what to say of it."""
+    """Whether the gateway accepted the operator, and the text about it."""
 
     def __init__(self, parent: QObject | None = None):
         super().__init__(parent)
@@ -75,7 +75,7 @@ class ConnectionTest(QObject):
         self._timer.timeout.connect(self._look)
 
     def begin(self, url: str, operator: str, credentials: OperatorCredentials) -> None:
-        """Try to connect; a trial that is under way is given up."""
+        """Try to connect; a test under way is given up."""
         self._site = None
         try:
             self._connection.open(url, operator, credentials)
@@ -85,7 +85,7 @@ class ConnectionTest(QObject):
         self._timer.start()
 
     def end(self) -> None:
-        """Give up what is under way."""
+        """Cancel the test under way."""
         self._timer.stop()
         self._connection.shut_down()
 
@@ -93,7 +93,7 @@ class ConnectionTest(QObject):
         news = self._connection.collect_updates()
         self._site = news.site or self._site
         if not self._connection.is_open:
-            # The thread of a trial that is over ends within a moment: it is looked after until then.
+            # The thread of a finished test ends within a moment: it is kept until then.
             if not self._connection.is_ending:
                 self._timer.stop()
             return
@@ -114,7 +114,7 @@ class ConnectionTest(QObject):
 
 
 class ConnectionDialog(QDialog):
-    """Edits ``connection``; ``kept`` tells it as it was kept. Nothing is kept before OK."""
+    """Edits ``connection``; ``kept`` signals it once it is stored. Nothing is stored before OK."""
 
     kept = pyqtSignal(object)
 
@@ -134,7 +134,7 @@ class ConnectionDialog(QDialog):
         self._token = _line("fleet_connection_token", "", tr("kept by QGIS, encrypted; or choose one below"))
         self._token.setEchoMode(QLineEdit.EchoMode.Password)
         self._token.setEnabled(self._store.is_there)
-        # Without a parent yet: the keyboard goes from row to row, in the order in which they get one.
+        # Without a parent yet: the tab order of the rows is the order in which they get one.
         self._auth = QgsAuthConfigSelect()
         self._auth.setObjectName("fleet_connection_auth")
         self._auth.setConfigId(connection.auth)
@@ -152,14 +152,14 @@ class ConnectionDialog(QDialog):
         self._lay_out()
 
     def connection(self) -> GatewayConnection:
-        """Return what stands in the fields.
+        """Return the connection in the fields.
 
         :raises FleetError: when the name or the URL cannot be used.
         """
         return self._written().checked()
 
     def accept(self) -> None:
-        """Keep the connection and close, or say why that cannot be and stay."""
+        """Store the connection and close, or show the error and stay."""
         try:
             made = self.connection()
             if made.name != self._before.name and self._connections.get(made.name) is not None:
@@ -178,17 +178,17 @@ class ConnectionDialog(QDialog):
         super().accept()
 
     def _with_token(self, made: GatewayConnection, token: str) -> GatewayConnection:
-        """Keep a token under the connection's name: several operators may have one for the same gateway."""
+        """Store a token under the connection's name: several operators may have one for the same gateway."""
         name = f"{profile.TITLE}: {made.name}"
         auth = self._store.write(self._store.id_of(name), name, made.url, token, made.operator)
         return replace(made, auth=auth)
 
     def try_it(self) -> None:
-        """Greet the gateway with what stands in the fields, and say what became of it."""
+        """Test the connection in the fields, and show the result."""
         self._verdict.wait(tr("Connecting …"))
         try:
             made = self._written()
-            # The name is of no matter to the gateway.
+            # The name does not matter to the gateway.
             made = replace(made, name=made.name or "-").checked()
             token = self._token.text().strip()
             if not token and made.auth:
@@ -247,7 +247,7 @@ TITLES = (tr("Name"), tr("Gateway"), tr("Operator"))
 
 
 class ConnectionsWidget(QWidget):
-    """A list with its buttons. What is changed is kept at once, as with QGIS's other connections."""
+    """A list with its buttons. Changes are stored at once, as for QGIS's other connections."""
 
     def __init__(self, parent: QWidget | None = None):
         super().__init__(parent)
@@ -288,7 +288,7 @@ class ConnectionsWidget(QWidget):
         self.show_all()
 
     def show_all(self, selected: str = "") -> None:
-        """List what is kept, with ``selected`` in hand."""
+        """List the stored connections, with ``selected`` selected."""
         self._list.clear()
         for one in self._connections.all():
             item = QTreeWidgetItem([one.name, one.url, one.operator])
@@ -306,14 +306,14 @@ class ConnectionsWidget(QWidget):
         self._ask(GatewayConnection("", connection_status.DEFAULT_URL))
 
     def edit(self) -> None:
-        """Ask how the selected connection is to be."""
+        """Edit the selected connection."""
         for name in self.selected()[:1]:
             connection = self._connections.get(name)
             if connection is not None:
                 self._ask(connection)
 
     def remove_selected(self) -> None:
-        """Keep the selected connections no longer."""
+        """Delete the selected connections."""
         names = self.selected()
         for name in names:
             self._connections.remove(name)
@@ -324,7 +324,7 @@ class ConnectionsWidget(QWidget):
             )
 
     def try_selected(self) -> None:
-        """Greet the gateway of the selected connection."""
+        """Test the selected connection."""
         connection = self._connections.get(next(iter(self.selected()), ""))
         if connection is None:
             return
@@ -340,7 +340,7 @@ class ConnectionsWidget(QWidget):
         self._trial.begin(connection.url, connection.operator or tr("connection test"), credentials)
 
     def read_file(self, file: str) -> None:
-        """Keep the connections in ``file`` as well; of one name those in the file count."""
+        """Add the connections in ``file``; of equal names those in the file win."""
         try:
             found = profile.connections_in(Path(file).read_text(encoding="utf-8"), file)
         except (OSError, UnicodeDecodeError) as error:
@@ -353,7 +353,7 @@ class ConnectionsWidget(QWidget):
         for connection in found:
             known = self._connections.get(connection.name)
             replaced += known is not None
-            # A file carries no tokens: the one that is here stays, unless it is for another gateway.
+            # A file contains no tokens: the stored one stays, unless it is for another gateway.
             auth = known.auth if known is not None and known.url == connection.url else ""
             values = (connection.name, connection.url, connection.operator, connection.ca_file)
             self._connections.store(GatewayConnection(*values, auth))
@@ -382,7 +382,7 @@ class ConnectionsWidget(QWidget):
         self._verdict.show_verdict(True, text)
 
     def end(self) -> None:
-        """Give up a test that is under way."""
+        """Cancel a test under way."""
         self._trial.end()
 
     def _ask(self, connection: GatewayConnection) -> None:

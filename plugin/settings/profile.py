@@ -1,4 +1,4 @@
-"""What the QGIS profile keeps: connections, gateways, preferences; and tokens, in its authentication data."""
+"""Data in the QGIS profile: connections, gateways, preferences, and tokens in its authentication data."""
 
 from __future__ import annotations
 
@@ -21,44 +21,44 @@ from ..ui.language import tr
 
 TITLE = "Fleet Supervisor"
 METHOD = "Basic"
-"""The method whose user name is the operator and whose password is the token."""
+"""The authentication method: its user name is the operator, its password the token."""
 HEADERS = "APIHeader"
 
 
 class TokenStoreError(FleetError):
-    """A token could not be kept, or not be read."""
+    """A token could not be stored, or not be read."""
 
 
 class TokenStore:
     """Tokens as authentication configurations, listed in QGIS's options under *Authentication*.
 
-    QGIS asks for its master password when it has to.
+    QGIS asks for its master password when necessary.
     """
 
     @property
     def is_there(self) -> bool:
-        """Whether this QGIS can keep tokens."""
+        """Whether this QGIS can store tokens."""
         return not QgsApplication.authManager().isDisabled()
 
     def has(self, url: str) -> bool:
-        """Tell whether a token is kept for a gateway; nobody is asked for anything."""
+        """Return whether a token is stored for a gateway, without asking for the master password."""
         return bool(self.kept_for(url))
 
     def kept_for(self, url: str) -> str:
-        """Return the id of the configuration that was kept here for a gateway, nothing where none is."""
+        """Return the id of the configuration stored here for a gateway, empty where there is none."""
         return self.id_of(_name(url))
 
     def id_of(self, name: str) -> str:
-        """Return the id of the configuration called ``name``, nothing where there is none."""
+        """Return the id of the configuration called ``name``, empty where there is none."""
         if not self.is_there:
             return ""
         known = QgsApplication.authManager().availableAuthMethodConfigs().items()
         return next((key for key, one in known if one.name() == name), "")
 
     def read(self, url: str) -> str:
-        """Return the token for a gateway; empty where none is kept.
+        """Return the token for a gateway; empty where none is stored.
 
-        :raises TokenStoreError: when QGIS does not give it, as without its master password.
+        :raises TokenStoreError: when QGIS does not return it, as without its master password.
         """
         config = self.kept_for(url)
         return self.token_in(config) if config else ""
@@ -66,7 +66,7 @@ class TokenStore:
     def token_in(self, config: str) -> str:
         """Return the token in the authentication configuration with the id ``config``.
 
-        :raises TokenStoreError: when QGIS does not give it, or it holds no token.
+        :raises TokenStoreError: when QGIS does not return it, or it contains no token.
         """
         if not self.is_there:
             raise TokenStoreError(
@@ -95,16 +95,16 @@ class TokenStore:
         return _token(loaded)
 
     def keep(self, url: str, token: str, operator: str = "") -> str:
-        """Keep a token for a gateway, in place of one that is kept, and return its configuration's id.
+        """Store a token for a gateway, replacing a former one, and return its configuration's id.
 
-        :raises TokenStoreError: when QGIS does not take it.
+        :raises TokenStoreError: when QGIS does not accept it.
         """
         return self.write(self.kept_for(url), _name(url), url, token, operator)
 
     def write(self, config_id: str, name: str, url: str, token: str, operator: str) -> str:
-        """Keep a token in the configuration ``config_id``, empty for a new one, and return its id.
+        """Store a token in the configuration ``config_id``, empty for a new one, and return its id.
 
-        :raises TokenStoreError: when QGIS does not take it.
+        :raises TokenStoreError: when QGIS does not accept it.
         """
         config = QgsAuthMethodConfig(METHOD)
         config.setName(name)
@@ -129,7 +129,7 @@ class TokenStore:
         return str(config.id())
 
     def forget(self, url: str) -> None:
-        """Keep no token for a gateway any more."""
+        """Delete the token for a gateway."""
         config = self.kept_for(url)
         if config:
             QgsApplication.authManager().removeAuthenticationConfig(config)
@@ -140,7 +140,7 @@ def _name(url: str) -> str:
 
 
 def _token(config: QgsAuthMethodConfig) -> str:
-    """Return the token: a password, or what a header of a web service would be sent with."""
+    """Return the token: a password, or the value that a web service's header would have."""
     if config.method() == METHOD:
         return config.config("password").strip()
     if config.method() == HEADERS:
@@ -165,12 +165,12 @@ CHOOSE = tr("Choose a file that Export wrote.")
 
 
 class BadConnectionError(FleetError):
-    """A connection, or a file of them, cannot be used as it is."""
+    """A connection, or a file of them, is invalid."""
 
 
 @dataclass(frozen=True)
 class GatewayConnection:
-    """What it takes to connect. ``auth`` is the id of an authentication configuration of QGIS, or empty."""
+    """The data of a connection. ``auth`` is the id of an authentication configuration of QGIS, or empty."""
 
     name: str
     url: str
@@ -179,9 +179,9 @@ class GatewayConnection:
     auth: str = ""
 
     def checked(self) -> GatewayConnection:
-        """Return the connection without blanks around its values.
+        """Return the connection with its values stripped.
 
-        :raises FleetError: when the name is empty or the URL cannot be a gateway's.
+        :raises FleetError: when the name is empty or the URL is invalid for a gateway.
         """
         name = " ".join(self.name.split())
         if not name:
@@ -191,7 +191,7 @@ class GatewayConnection:
 
 
 def connections_text(connections: Sequence[GatewayConnection]) -> str:
-    """Return connections as JSON, without tokens and without what only this computer's QGIS knows."""
+    """Return connections as JSON, without tokens and without data specific to this computer's QGIS."""
     rows = [
         {"name": one.name, "url": one.url, "operator": one.operator, "ca_file": one.ca_file}
         for one in connections
@@ -203,7 +203,7 @@ def connections_text(connections: Sequence[GatewayConnection]) -> str:
 def connections_in(text: str, source: str) -> list[GatewayConnection]:
     """Return the connections in ``text``, the content of the file ``source``.
 
-    :raises FleetError: naming ``source``, the entry and what is wrong with it.
+    :raises FleetError: naming ``source``, the entry and its error.
     """
     try:
         if len(text) > _LARGEST:
@@ -260,7 +260,7 @@ _KEYS = ("url", "operator", "ca_file", "auth")
 
 
 class Connections:
-    """Named connections in the settings of the QGIS profile; every part that makes one sees the same."""
+    """Named connections in the settings of the QGIS profile; all instances share the same data."""
 
     def names(self) -> list[str]:
         """Return the names, in their order."""
@@ -281,7 +281,7 @@ class Connections:
         return GatewayConnection(name, *values)
 
     def store(self, connection: GatewayConnection, instead_of: str = "") -> None:
-        """Keep a connection, in place of one of that name and of the one called ``instead_of``."""
+        """Store a connection, replacing one of that name and the one called ``instead_of``."""
         if instead_of and instead_of != connection.name:
             was_last = self.last == instead_of
             self.remove(instead_of)
@@ -291,7 +291,7 @@ class Connections:
             QgsSettings().setValue(f"{_group(connection.name)}/{key}", getattr(connection, key))
 
     def remove(self, name: str) -> None:
-        """Keep the connection ``name`` no longer; its token stays with QGIS's authentication."""
+        """Delete the connection ``name``; its token stays in QGIS's authentication database."""
         QgsSettings().remove(_group(name))
         if self.last == name:
             self.set_last("")
@@ -302,7 +302,7 @@ class Connections:
         return str(QgsSettings().value(LAST, "") or "")
 
     def set_last(self, name: str) -> None:
-        """Note the connection that was used last by its name, empty for one without."""
+        """Record the name of the connection that was used last, empty for one without."""
         if name != self.last:  # what is written is written to the disk, in the window's thread
             QgsSettings().setValue(LAST, name)
 
@@ -312,21 +312,21 @@ def _group(name: str, within: str = GROUP) -> str:
     return f"{within}/{quote(name, safe='')}"
 
 
-# --- Other gateways of a fleet: a desk that is opened while one is dead knows them ---
+# --- Other gateways of a fleet: known to a desk that is opened while one is down ---
 
 GATEWAYS = "fleet_supervisor/gateways"
 LONGEST_DATABASE = 128
-"""characters that tell a database from every other."""
+"""characters that distinguish a database from every other."""
 
 
 class KnownGateways:
-    """What gateways told, by the address of the one that the operator connects to.
+    """Reports of gateways about their fleets, by the address of the one that the operator connects to.
 
-    It is no secret, and no reason to trust an address: that has TLS, and the fleet that answers there.
+    An address here is no secret, and not trusted: TLS and the fleet's identity are checked on connecting.
     """
 
     def of(self, url: str) -> FleetGateways | None:
-        """Return what the gateway at ``url`` told, None where it told nothing or that cannot be read."""
+        """Return the report of the gateway at ``url``, None where there is none or it cannot be read."""
         try:
             kept = decode_json(str(QgsSettings().value(_group(url, GATEWAYS), "") or "null"))
         except ValueError:
@@ -342,7 +342,7 @@ class KnownGateways:
         return FleetGateways(database, tuple(usable)) if usable else None
 
     def keep(self, url: str, told: FleetGateways) -> None:
-        """Keep what was told in place of what was told before."""
+        """Store a report, replacing the former one."""
         if not told.gateways:
             if QgsSettings().contains(_group(url, GATEWAYS)):
                 QgsSettings().remove(_group(url, GATEWAYS))
@@ -351,21 +351,21 @@ class KnownGateways:
             QgsSettings().setValue(_group(url, GATEWAYS), json.dumps(content))
 
 
-# --- Preferences, and where files are written to ---
+# --- Preferences, and the folder for files ---
 
 PREFERENCES = "fleet_supervisor/preferences"
 
 RANGES = {"positions_rate": (1.0, 20.0), "layer_seconds": (1.0, 60.0), "robot_size": (0.5, 3.0)}
-"""What each number may be."""
+"""The range of each number."""
 
 
 @dataclass(frozen=True)
 class Preferences:
-    """``positions_rate`` is how many times a second positions are asked for at most, from the next connection
-    on; ``layer_seconds`` are the seconds between two writes of the layer of robots; ``robot_size`` is how
-    large robots are drawn, 1 as they come; ``drawn_by_layer`` is whether the layer of robots draws them, in
-    its style, in place of the live map's arrows; ``folder`` is where files are written to unless another is
-    chosen, empty for the user's documents.
+    """``positions_rate`` is the greatest number of positions requested per second, from the next connection
+    on; ``layer_seconds`` are the seconds between two writes of the layer of robots; ``robot_size`` is the
+    scale at which robots are drawn, 1 by default; ``drawn_by_layer`` is whether the layer of robots draws
+    them, in its style, in place of the overlay's arrows; ``folder`` is where files are written to unless
+    another is chosen, empty for the user's documents.
     """
 
     positions_rate: float = 10.0
@@ -376,7 +376,7 @@ class Preferences:
 
 
 def read_preferences() -> Preferences:
-    """Return what is kept; a number that is none, or out of its range, counts as never set."""
+    """Return the stored preferences; an invalid number, or one out of its range, counts as not set."""
     settings = QgsSettings()
     values: dict[str, object] = {}
     for name, (least, most) in RANGES.items():
@@ -394,18 +394,18 @@ def read_preferences() -> Preferences:
 
 
 def write_preferences(preferences: Preferences) -> None:
-    """Keep every value."""
+    """Store every value."""
     for field in fields(preferences):
         QgsSettings().setValue(f"{PREFERENCES}/{field.name}", getattr(preferences, field.name))
 
 
 def exports_folder() -> str:
-    """Return the folder that dialogs for files begin in: the first that is there."""
+    """Return the folder in which file dialogs begin: the first that exists."""
     documents = QStandardPaths.writableLocation(QStandardPaths.StandardLocation.DocumentsLocation)
     folders = (Path(one) for one in (read_preferences().folder, documents) if one)
     return str(next((folder for folder in folders if folder.is_dir()), Path.home()))
 
 
 def export_path(name: str) -> str:
-    """Return where a file called ``name`` is written to unless the user chooses another place."""
+    """Return the default path for a file called ``name``."""
     return str(Path(exports_folder()) / name)

@@ -1,4 +1,4 @@
-"""A gateway and three simulated robots as processes of this computer, for practice."""
+"""A gateway and three simulated robots as processes on this computer, for practice."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ ROOT = Path(__file__).parents[2]
 SITE = ROOT / "resources" / "sample_site"
 PROGRAM = "robot-bridge"
 POSES = {"r1": "20,8,0", "r2": "48,84,0", "r3": "92,22,3.1416"}
-"""Where each robot stands at first: x, y (metres) and theta (radians) in the sample site's frame."""
+"""Start position of each robot: x, y (metres) and theta (radians) in the sample site's frame."""
 LISTENING = re.compile(r"listening on (ws://127\.0\.0\.1:\d+)")
 PATIENCE_MS = 3000
 WITH_QGIS = "--until-stdin-closes"
-"""Has a program end with its QGIS, also when that crashes."""
+"""Makes a program end with its QGIS, even when that crashes."""
 
 
 def find_program() -> str:
@@ -27,7 +27,7 @@ def find_program() -> str:
 
 
 def how_to_install() -> str:
-    """Return what to do where there is no robot-bridge."""
+    """Return the remedy where there is no robot-bridge."""
     return tr(
         "The practice fleet needs robot-bridge, which is not on this computer. In a terminal, in the "
         "project's folder: python3 -m venv gateway, then gateway/bin/pip install . and put gateway/bin on "
@@ -36,12 +36,12 @@ def how_to_install() -> str:
 
 
 class PracticeFleet(QObject):
-    """Starts on loopback only, on a free port, and keeps its database in a folder that goes with it."""
+    """Starts on loopback only, on a free port, with its database in a folder that is deleted with it."""
 
     ready = pyqtSignal(str)
-    """The fleet is there; the URL of its desk."""
+    """The fleet is running; the URL of its desk."""
     failed = pyqtSignal(str)
-    """It did not come up: why, and what to do."""
+    """It did not start: the reason, and the remedy."""
 
     def __init__(self, program: str | None = None, parent: QObject | None = None):
         super().__init__(parent)
@@ -58,7 +58,7 @@ class PracticeFleet(QObject):
         return bool(self._processes)
 
     def start(self) -> None:
-        """Start the gateway, and the robots once it listens; :attr:`ready` or :attr:`failed` tells how."""
+        """Start the gateway, then the robots; :attr:`ready` or :attr:`failed` signals the result."""
         if self.running:
             return
         if not self.program:
@@ -74,7 +74,7 @@ class PracticeFleet(QObject):
         gateway.start(self.program, words)
 
     def stop(self) -> None:
-        """End every process, in good order where they do so soon."""
+        """End every process, in good order if it does so soon."""
         processes, self._processes, self._gateway, self.url = self._processes, [], None, ""
         for process in processes:
             process.blockSignals(True)
@@ -89,7 +89,7 @@ class PracticeFleet(QObject):
     def _process(self) -> QProcess:
         process = QProcess(self)
         process.setProcessChannelMode(QProcess.ProcessChannelMode.MergedChannels)
-        # QGIS's own Python may be told its places by these, which are wrong for another one.
+        # QGIS's own Python may get its paths from these variables, which are wrong for another one.
         environment = QProcessEnvironment.systemEnvironment()
         for name in ("PYTHONHOME", "PYTHONPATH"):
             environment.remove(name)

@@ -40,9 +40,9 @@ FLEET = "fleet"
 class TourStep:
     """One page of the tour.
 
-    ``target`` is the object name of the widget that it points at. ``offer`` is what its button does, and
-    ``button`` the words on it. ``practice`` is said only while the desk is connected to the practice fleet,
-    as it asks for what would move or stop real robots on another one.
+    ``target`` is the object name of the widget that it points at. ``offer`` is the action of its button, and
+    ``button`` the button's text. ``practice`` is shown only while the desk is connected to the practice
+    fleet, as it asks for actions that would move or stop real robots on another one.
     """
 
     title: str
@@ -136,13 +136,13 @@ STEPS = (
 
 
 LOOK_MS = 50
-"""How often it looks whether its widget has moved: docks are dragged and tabs are changed."""
+"""Interval of checks whether its widget has moved: docks are dragged and tabs are changed."""
 MARGIN = 4
 COLOUR = QColor("#FF8F00")
 
 
 class Spotlight(QWidget):
-    """Lies over the whole window, takes no mouse and no focus, and paints nothing but the frame."""
+    """Covers the whole window, transparent for mouse and focus, and paints only the frame."""
 
     def __init__(self, window: QWidget):
         super().__init__(window)
@@ -155,7 +155,7 @@ class Spotlight(QWidget):
         self._clock.timeout.connect(self._look)
 
     def point_at(self, name: str) -> None:
-        """Frame the widget of that object name; nothing for an empty name or one that is not there."""
+        """Frame the widget of that object name; nothing for an empty name or a missing widget."""
         self._target = self.parentWidget().findChild(QWidget, name) if name else None
         if self._target is not None:
             self._target.destroyed.connect(self._forget)
@@ -190,7 +190,7 @@ class Spotlight(QWidget):
 
 WIDTH = 400
 FROM_LEFT, FROM_TOP = 12, 48
-"""Pixels from the upper left corner of what it lies over: beneath one item of the message bar."""
+"""Pixels from the upper left corner of the covered area: beneath one item of the message bar."""
 
 
 class TourPanel(QFrame):
@@ -199,14 +199,14 @@ class TourPanel(QFrame):
     changed = pyqtSignal(int)
     """The step that is shown, from 0."""
     requested = pyqtSignal(str)
-    """What the step's button offers was asked for."""
+    """The action offered by the step's button was requested."""
     closed = pyqtSignal()
 
     def __init__(self, window: QWidget):
         super().__init__(window)
         self.setObjectName("fleet_tour")
         self.setFrameShape(QFrame.Shape.Box)
-        # Themes of QGIS make frames transparent, and this one lies over the map.
+        # Themes of QGIS make frames transparent, and this one is over the map.
         self.setStyleSheet(
             "QFrame#fleet_tour { background: palette(window); border: 1px solid palette(mid); }"
         )
@@ -247,23 +247,23 @@ class TourPanel(QFrame):
         self.changed.emit(self._at)
 
     def set_practice(self, on: bool) -> None:
-        """Say whether the desk is connected to the practice fleet, so that things may be tried."""
+        """Set whether the desk is connected to the practice fleet, so that things may be tried."""
         if on != self._practice:
             self._practice = on
             self._show_text()
 
     def say(self, text: str, *, busy: bool = False) -> None:
-        """Show how it went with what the step's button does."""
+        """Show the outcome of the action of the step's button."""
         self._status.setText(text)
         self._status.setVisible(bool(text))
         if busy and self._offer.hasFocus():
-            # Left to Qt, Close would get the keyboard.
+            # By default, Close would get the focus.
             self._next.setFocus()
         self._offer.setEnabled(not busy)
         self._fit()
 
     def place(self, over: QWidget) -> None:
-        """Lie over a part of the window, at its upper left: the sample site's robots are further down."""
+        """Move over a part of the window, at its upper left: the sample site's robots are further down."""
         self._fit()
         self.move(over.mapTo(self.parentWidget(), QPoint(FROM_LEFT, FROM_TOP)))
 
@@ -335,7 +335,7 @@ OPEN = (ConnectionPhase.CONNECTING, ConnectionPhase.CONNECTED, ConnectionPhase.R
 
 
 class TourAction(QObject):
-    """Offers the tour once, starts it from the menu, and ends the practice fleet with it."""
+    """Offers the tour once, starts it from the menu, and stops the practice fleet with it."""
 
     def __init__(
         self, iface: QgisInterface, menu: str, window: FleetWindow, fleet: PracticeFleet | None = None
@@ -357,7 +357,7 @@ class TourAction(QObject):
         self._offer_once()
 
     def start(self) -> None:
-        """Show the tour from its begin."""
+        """Show the tour from its beginning."""
         self._take_offer_away()
         if self.panel is None:
             self._window.dock.setUserVisible(True)
@@ -373,7 +373,7 @@ class TourAction(QObject):
         self._point()
 
     def end(self) -> None:
-        """Close the tour, and end the practice fleet with it."""
+        """Close the tour, and stop the practice fleet with it."""
         for part in (self.panel, self._spotlight):
             if part is not None:
                 part.hide()
@@ -385,7 +385,7 @@ class TourAction(QObject):
         self.fleet.stop()
 
     def remove(self) -> None:
-        """Take every part out of the window."""
+        """Remove every part from the window."""
         self._window.desk.state.link_changed.disconnect(self._show_practice)
         self.end()
         self._take_offer_away()
@@ -441,7 +441,7 @@ class TourAction(QObject):
         self._url_before = panel.url()
         panel.use(GatewayConnection("", url))
         try:
-            # Not by the button: that would keep the address for the next session.
+            # Not by the button: that would store the address for the next session.
             self._window.desk.open_link(url, panel.operator() or "tour", OperatorCredentials())
         except FleetError as error:
             self._tell(str(error))
