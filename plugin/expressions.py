@@ -128,10 +128,10 @@ class SnapshotHolder:
             return robots
         # A robot in view needs no place among those received wherever they are.
         if robot in self._watched or (robot not in robots.rows and is_robot_name(robot)):
-            self._note(robot)
+            self._record(robot)
         return robots
 
-    def _note(self, robot: str) -> None:
+    def _record(self, robot: str) -> None:
         with self._lock:
             self._named.pop(robot, None)
             self._named[robot] = None

@@ -254,25 +254,25 @@ class AccountsDialog(SupervisorDialog):
     def _ask_rows(self) -> None:
         self._has_none = False
         # First: the accounts are shown with who is connected.
-        self._listing.ask(administration.GetSessions(), LIST, self._take_sessions)
-        self._listing.ask(administration.GetOperators(), LIST, self._take_operators)
+        self._listing.ask(administration.GetSessions(), LIST, self._receive_sessions)
+        self._listing.ask(administration.GetOperators(), LIST, self._receive_operators)
 
     def _key(self, row: Account) -> str:
         return row.name
 
-    def _take_sessions(self, result: dict[str, Any]) -> None:
+    def _receive_sessions(self, result: dict[str, Any]) -> None:
         self._sessions = [open_session(one) for one in result["sessions"]]
 
-    def _take_operators(self, result: dict[str, Any]) -> None:
+    def _receive_operators(self, result: dict[str, Any]) -> None:
         self._show(operators_report(result))
 
     def _show(self, found: administration.Operators) -> None:
         self._show_rows(read_accounts(found.operators, self._sessions, self._desk.state.link.operator))
         self._has_none = not found.operators
         if found.operators:
-            self._say_once_known(tr_count(len(found.operators), "1 account", "%n accounts"))
+            self._show_once_known(tr_count(len(found.operators), "1 account", "%n accounts"))
         else:
-            self._say_once_known(
+            self._show_once_known(
                 tr(
                     "This gateway has no accounts: everybody on its computer may do everything. The first "
                     "account, a supervisor's, ends that."

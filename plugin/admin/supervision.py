@@ -109,7 +109,7 @@ class SiteChoiceDialog(SupervisorDialog):
         self._lay_out()
 
     def _ask_rows(self) -> None:
-        self._listing.ask(administration.GetSites(), SITE_LIST, self._take_sites)
+        self._listing.ask(administration.GetSites(), SITE_LIST, self._receive_sites)
 
     def _key(self, row: administration.SiteOffer) -> str:
         return row.site
@@ -117,10 +117,10 @@ class SiteChoiceDialog(SupervisorDialog):
     def _can_change(self, row: administration.SiteOffer) -> bool:
         return not row.served and row.refusal is None
 
-    def _take_sites(self, result: dict[str, Any]) -> None:
+    def _receive_sites(self, result: dict[str, Any]) -> None:
         offers = sites_report(result).sites
         self._show_rows(offers)
-        self._say_once_known(tr_count(len(offers), "1 site", "%n sites"))
+        self._show_once_known(tr_count(len(offers), "1 site", "%n sites"))
 
     def _choose(self) -> None:
         offer = self.selected()
@@ -189,9 +189,9 @@ class RecordingsDialog(QDialog):
         self.status.setObjectName("fleet_recordings_said")
         self._timer = QTimer(self)
         self._timer.setInterval(ASK_EVERY_MS)
-        self._timer.timeout.connect(self._look)
+        self._timer.timeout.connect(self._query)
         self._lay_out()
-        self._link.activated.connect(self._look)
+        self._link.activated.connect(self._query)
         self._place.sliderReleased.connect(lambda: self._change(place_s=float(self._place.value())))
         self._place.actionTriggered.connect(self._step)
         self._seconds.editingFinished.connect(self._apply)
@@ -205,13 +205,13 @@ class RecordingsDialog(QDialog):
     def showEvent(self, event: QShowEvent) -> None:
         super().showEvent(event)
         self._timer.start()
-        self._look()
+        self._query()
 
     def hideEvent(self, event: QHideEvent) -> None:
         super().hideEvent(event)
         self._timer.stop()
 
-    def _look(self, *_: object) -> None:
+    def _query(self, *_: object) -> None:
         """Query the playback of the recording, or show why there is none to query."""
         names = [one.link for one in self._desk.state.links.links if one.kind == REPLAY and one.up]
         if names != [self._link.itemText(row) for row in range(self._link.count())]:
@@ -434,8 +434,8 @@ class RobotRemoval:
         if why:
             self._desk.warning.emit(tr("No robot was removed: {why}", why=why))
             return
-        if told := part_in_words(self._desk.state.robots):
-            self._desk.warning.emit(f"{told} {tr('Others cannot be chosen here.')}")
+        if part := part_in_words(self._desk.state.robots):
+            self._desk.warning.emit(f"{part} {tr('Others cannot be chosen here.')}")
         chosen = set(self._desk.selection.robots)
         dialog = RemovalDialog([name for name in gone if name in chosen], gone, self._iface.mainWindow())
         dialog.confirmed.connect(self._remove)

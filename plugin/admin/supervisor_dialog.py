@@ -203,7 +203,7 @@ class SupervisorDialog(QDialog):
         # A table that is filled again does not signal that nothing is selected any more.
         self._renew()
 
-    def _say_once_known(self, text: str) -> None:
+    def _show_once_known(self, text: str) -> None:
         """Show this now that the rows are there, unless the outcome of a change is shown."""
         if self.status.text() == ASKING:
             self.status.setText(text)

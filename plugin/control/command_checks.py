@@ -136,11 +136,11 @@ class LayerCheck(QObject):
         # A dictionary per draft: another draft is checked concurrently, and may find the layer read.
         unread: dict[str, Unread] = {}
         for number, check in enumerate(self._checks):
-            work = self._look_by(check, layers[check], draft, transform, unread)
+            work = self._check_by(check, layers[check], draft, transform, unread)
             findings += yield from scaled_progress(work, number, len(self._checks))
         return self._unseen(unread) + findings
 
-    def _look_by(
+    def _check_by(
         self,
         check: Check,
         layers: Sequence[QgsVectorLayer],
@@ -463,7 +463,7 @@ def _target_text(x: float, y: float, target: OtherTarget, away: float) -> str:
     )
 
 
-# --- What stands where a command leads to ---
+# --- Robots and cones at the goal of a command ---
 
 STANDS_M_S = 0.05
 CLEAR_OF_CONES_M = 0.5

@@ -272,8 +272,8 @@ class LayerReadings:
     def __init__(self, project: QgsProject) -> None:
         self._project = project
         self._files: dict[str, FileState] = {}
-        project.layersAdded.connect(self._note_files)
-        self._note_files(list(project.mapLayers().values()))
+        project.layersAdded.connect(self._record_files)
+        self._record_files(list(project.mapLayers().values()))
         self._turns: dict[str, ReadingTurns] = {}
         self.empty: set[str] = set()
         """Ids of layers that had no features at the last reading."""
@@ -304,7 +304,7 @@ class LayerReadings:
 
     def remove(self) -> None:
         """Stop recording layers that are added."""
-        self._project.layersAdded.disconnect(self._note_files)
+        self._project.layersAdded.disconnect(self._record_files)
 
     def _read(self, id: str, reader: LayerReader) -> Steps[LayerReading]:
         try:
@@ -315,7 +315,7 @@ class LayerReadings:
     def _is_replaced(self, id: str, file: FileState) -> bool:
         return file is not None and self._files.get(id, file) != file
 
-    def _note_files(self, layers: Sequence[QgsMapLayer]) -> None:
+    def _record_files(self, layers: Sequence[QgsMapLayer]) -> None:
         paths = {layer.id(): file_of(layer) for layer in layers}
         ReadingThread(_FileStates(paths, self._files)).start()
 

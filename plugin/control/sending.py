@@ -86,13 +86,13 @@ class OutgoingCommands(QObject):
 
     def _checked(self, draft: PendingCommand) -> None:
         self._waiting.popleft().then(draft)
-        self._go_on()
+        self._continue()
 
     def _cannot_be_checked(self, error: FleetError) -> None:
         self.failed.emit(self._waiting.popleft().draft, str(error))
-        self._go_on()
+        self._continue()
 
-    def _go_on(self) -> None:
+    def _continue(self) -> None:
         if self._waiting:
             self._check_first()
         self.changed.emit()
@@ -128,7 +128,7 @@ class CommandSender(QObject):
         """The draft sent by the last press, and when."""
         self.outgoing.failed.connect(self._not_checked)
         checks.displaced.connect(self.outgoing.add)
-        checks.found.connect(self._looked_at)
+        checks.found.connect(self._way_found)
         drafts.changed.connect(self._changed)
         ways.found.connect(self._found_later)
         checks.overtaken.connect(self._overtaken)
@@ -177,7 +177,7 @@ class CommandSender(QObject):
         self._awaits_way = draft
         self.waiting_changed.emit()
 
-    def _looked_at(self, draft: PendingCommand) -> None:
+    def _way_found(self, draft: PendingCommand) -> None:
         """Send the target whose way is known by now, if that was requested."""
         waiting = self._awaits_way
         if waiting is None or draft.way.kind is ApproachKind.SOUGHT:

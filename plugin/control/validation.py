@@ -61,15 +61,15 @@ class ValidationRunner(QObject):
         self._draft: PendingCommand | None = None
         self._afresh = self._is_put = False
         self._then: Callable[[PendingCommand], None] | None = None
-        self._anew = QTimer(self)
-        self._anew.setSingleShot(True)
-        self._anew.setInterval(0)
-        self._anew.timeout.connect(self._begin_anew)
+        self._restart_timer = QTimer(self)
+        self._restart_timer.setSingleShot(True)
+        self._restart_timer.setInterval(0)
+        self._restart_timer.timeout.connect(self._restart)
         board.changed.connect(self._changed)
 
     @property
     def is_under_way(self) -> bool:
-        """Whether the draft on the board is being looked at."""
+        """Whether the draft on the board is being checked."""
         return self._draft is not None
 
     @property
@@ -103,7 +103,7 @@ class ValidationRunner(QObject):
             checked = self._begin()
         except FleetError:
             self._draft, self._afresh, self._is_put, self._then = before
-            self._anew.start()
+            self._restart_timer.start()
             raise
         self._draft = draft if checked is None else checked
         place(self._draft)
@@ -127,7 +127,7 @@ class ValidationRunner(QObject):
             self._give_up()
             raise
         if checked is not None:
-            self._take(checked)
+            self._apply(checked)
         self.progressed.emit()
 
     def withdraw(self) -> bool:
@@ -142,7 +142,7 @@ class ValidationRunner(QObject):
         if self._draft is not None:
             self._slices.stop()
             # A layer that is changed feature by feature signals each change.
-            self._anew.start()
+            self._restart_timer.start()
 
     def stop(self) -> None:
         """Stop checking."""
@@ -155,27 +155,27 @@ class ValidationRunner(QObject):
         # A caller that removes a draft need not be notified that it is not sent.
         ordered = self._ordered if draft is not None else None
         self._give_up()
-        self._tell_of(ordered)
+        self._report_overtaken(ordered)
         if draft is not None and not draft.is_checked and not self._board.is_dragged:
             # Undo led to a draft whose check was not finished.
             self._draft = draft
-            self._anew.start()
+            self._restart_timer.start()
         self.progressed.emit()
 
     @property
     def _ordered(self) -> PendingCommand | None:
         return self._draft if self.has_order else None
 
-    def _tell_of(self, ordered: PendingCommand | None) -> None:
+    def _report_overtaken(self, ordered: PendingCommand | None) -> None:
         if ordered is not None:
             self.overtaken.emit(ordered)
 
     def _begin(self) -> PendingCommand | None:
-        self._anew.stop()
+        self._restart_timer.stop()
         work = self.work(self._draft, self._afresh)
-        return self._slices.begin(work, self.progressed.emit, self._take, self._failed)
+        return self._slices.begin(work, self.progressed.emit, self._apply, self._failed)
 
-    def _begin_anew(self) -> None:
+    def _restart(self) -> None:
         if self._draft is None:
             return
         try:
@@ -184,12 +184,12 @@ class ValidationRunner(QObject):
             self._failed(error)
             return
         if checked is not None:
-            self._take(checked)
+            self._apply(checked)
 
     def _failed(self, error: FleetError) -> None:
-        self._take(replace(self._draft, findings=Findings(refused=(str(error),)), is_checked=True))
+        self._apply(replace(self._draft, findings=Findings(refused=(str(error),)), is_checked=True))
 
-    def _take(self, checked: PendingCommand) -> None:
+    def _apply(self, checked: PendingCommand) -> None:
         """Put the findings into the draft on the board."""
         if checked != self._draft:
             # From here on this draft is the one being checked.
@@ -207,7 +207,7 @@ class ValidationRunner(QObject):
             then(checked)
 
     def _give_up(self) -> None:
-        self._anew.stop()
+        self._restart_timer.stop()
         self._slices.stop()
         self._draft, self._then = None, None
         self._afresh = self._is_put = False

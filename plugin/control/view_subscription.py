@@ -187,7 +187,7 @@ class ViewSubscription(QObject):
         self._limits = AlarmLimits()
         self._search = RobotSearch("list", state, sender, self)
         self._asked: View | None = None
-        self._looked_at = -LEAST_REST_S
+        self._polled_at = -LEAST_REST_S
         self._seen: tuple[QgsRectangle, Bounds] | None = None
         """The canvas's extent in the map, and in the site frame."""
 
@@ -223,9 +223,9 @@ class ViewSubscription(QObject):
                 self._subscribe(None)
             return
         now = self._clock.steady()
-        if now - self._looked_at < LEAST_REST_S:
+        if now - self._polled_at < LEAST_REST_S:
             return
-        self._looked_at = now
+        self._polled_at = now
         if (view := self._wanted(site.bounds)) is not None:
             self._subscribe(view)
 
@@ -241,10 +241,10 @@ class ViewSubscription(QObject):
         wanted = (*drafted, *self._selected, *self._search.names, *self._alarmed, *self._named)
         # A gateway refuses the whole view for one invalid robot name.
         always = dict.fromkeys(filter(is_robot_name, wanted))
-        told = View(canvas, list(always)[: positions.MOST_ALWAYS], alarms=self._limits)
+        view = View(canvas, list(always)[: positions.MOST_ALWAYS], alarms=self._limits)
         if self._asked is None or not _will_do(self._asked.bounds, canvas):
-            return replace(told, bounds=_grown(canvas))
-        renewed = replace(told, bounds=self._asked.bounds)
+            return replace(view, bounds=_grown(canvas))
+        renewed = replace(view, bounds=self._asked.bounds)
         return None if renewed == self._asked else renewed
 
     def _in_site(self, site: Bounds) -> Bounds:

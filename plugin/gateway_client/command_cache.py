@@ -121,7 +121,7 @@ class CommandCache:
             # Commands requested before this desk connected arrive after those requested since.
             self._reports = dict(sorted(self._reports.items(), key=lambda item: requested_at(item[1])))
         self._forget_oldest()
-        self._look_through()
+        self._find_newest()
         return [report for report in changed if report.command in self._reports]
 
     def clear(self) -> None:
@@ -161,7 +161,7 @@ class CommandCache:
         for command in list(self._reports)[: max(0, len(self._reports) - 2 * MOST_COMMANDS)]:
             del self._reports[command]
 
-    def _look_through(self) -> None:
+    def _find_newest(self) -> None:
         self._under_way.clear()
         self._reached.clear()
         for report in self._reports.values():

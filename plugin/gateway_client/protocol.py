@@ -376,9 +376,9 @@ class GatewayProtocol:
             _check_number("the gateway's clock", now)
             self._gateway_ahead = now - self._clock.steady()
 
-    def _learn(self, told: object) -> None:
+    def _learn(self, reported: object) -> None:
         """Learn other addresses of the fleet, and have them kept for the next session."""
-        self._addresses.learn(told)
+        self._addresses.learn(reported)
         others = tuple(one for one in self._addresses.known if one != self._addresses.given)
         self._buffer.add(gateways=FleetGateways(self._database, others))
 

@@ -155,7 +155,7 @@ class RobotTable:
             if away:
                 away.difference_update(newer.names)
         numbers, received = newer._numbers[:, : len(newer)], AT["received"]
-        self._say_in_own_words(numbers, newer._words)
+        self._use_own_words(numbers, newer._words)
         if newer.names == self.names and (numbers[received] >= self.column("received")).all():
             # The same robots again, as when all drive: no need to search each one's row.
             self._numbers = numbers
@@ -167,7 +167,7 @@ class RobotTable:
             self._forget_words()
         return gone
 
-    def _say_in_own_words(self, numbers: Numbers, words: list[str]) -> None:
+    def _use_own_words(self, numbers: Numbers, words: list[str]) -> None:
         """Convert indices of ``words`` to indices of this table's own, to which new ones are added."""
         own = [self._places.setdefault(word, len(self._places)) for word in words]
         self._words += list(self._places)[len(self._words) :]

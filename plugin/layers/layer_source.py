@@ -365,17 +365,17 @@ class LayerWatch(QObject):
             if known is None or sip.isdeleted(known):
                 self._watched[layer.id()] = layer
                 for name in _signals_of(layer):
-                    getattr(layer, name).connect(self._tell)
+                    getattr(layer, name).connect(self._announce)
 
     def remove(self) -> None:
         """Stop watching layers."""
         for layer in self._watched.values():
             if not sip.isdeleted(layer):
                 for name in _signals_of(layer):
-                    getattr(layer, name).disconnect(self._tell)
+                    getattr(layer, name).disconnect(self._announce)
         self._watched.clear()
 
-    def _tell(self, *_what: object) -> None:
+    def _announce(self, *_what: object) -> None:
         self.changed.emit()
 
 

@@ -46,7 +46,7 @@ class ProjectWatch(QObject):
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(0)
-        self._soon.timeout.connect(self._tell)
+        self._soon.timeout.connect(self._announce)
         project.cleared.connect(self._cleared)
         project.readProject.connect(self._read)
         project.projectSaved.connect(self._complete)
@@ -74,7 +74,7 @@ class ProjectWatch(QObject):
     def _complete(self, *_: object) -> None:
         self._is_cleared = False
 
-    def _tell(self) -> None:
+    def _announce(self) -> None:
         if not self.is_reading:
             self.opened.emit()
 
@@ -99,13 +99,13 @@ class LiveLayers(QObject):
         self._project = project
         project.writeProject.connect(self._leave_out_of_tree)
         project.writeMapLayer.connect(self._leave_out)
-        project.readProject.connect(self._take_out)
+        project.readProject.connect(self._remove_layers)
 
     def remove(self) -> None:
         """Disconnect from the project's reading and writing."""
         self._project.writeProject.disconnect(self._leave_out_of_tree)
         self._project.writeMapLayer.disconnect(self._leave_out)
-        self._project.readProject.disconnect(self._take_out)
+        self._project.readProject.disconnect(self._remove_layers)
 
     def _leave_out_of_tree(self, document: QDomDocument) -> None:
         left_out = {layer.id() for layer in live_layers(self._project)}
@@ -134,7 +134,7 @@ class LiveLayers(QObject):
         for name in [attributes.item(k).nodeName() for k in range(attributes.count())]:
             element.removeAttribute(name)
 
-    def _take_out(self, *_: object) -> None:
+    def _remove_layers(self, *_: object) -> None:
         was_dirty = self._project.isDirty()
         for layer in live_layers(self._project):
             keep_style(self._project, layer)
@@ -284,7 +284,7 @@ class RowLayer:
         self._watch.remove()
         self._writing.stop()
         self._shown = (), None
-        self._take_out()
+        self._remove_layers()
 
     def _renew(self) -> None:
         self._writing.begin_soon(self._renewed())
@@ -314,7 +314,7 @@ class RowLayer:
     def _have_layer(self, site: SiteReport) -> None:
         """Provide a layer in the site's CRS, without features written for a site elsewhere."""
         if self.layer is not None and self.layer.crs() != QgsCoordinateReferenceSystem(site.crs):
-            self._take_out()
+            self._remove_layers()
         frame = frame_of(site)
         if self.layer is None:
             self._make(site.crs)
@@ -324,7 +324,7 @@ class RowLayer:
             return
         self._frame, self._written = frame, {}
 
-    def _take_out(self) -> None:
+    def _remove_layers(self) -> None:
         if self.layer is not None:
             dirty = self._project.isDirty()
             self._project.removeMapLayer(self._id)

@@ -175,8 +175,8 @@ class LiveView(QObject):
     def follow(self, mode: FollowMode) -> None:
         """Keep the selected robots or all of them in view, or stop doing so."""
         self.following = mode
-        if mode is FollowMode.ALL and (told := part_in_words(self._desk.state.robots)):
-            self._desk.warning.emit(f"{tr('All robots cannot be followed.')} {told}")
+        if mode is FollowMode.ALL and (part := part_in_words(self._desk.state.robots)):
+            self._desk.warning.emit(f"{tr('All robots cannot be followed.')} {part}")
         if mode is FollowMode.SELECTED and not self._desk.selection.robots:
             self._desk.warning.emit(
                 tr("No robot is selected to be followed. Select one in the table or on the map.")

@@ -251,7 +251,7 @@ class ObservationDock(ActionDock):
         super().remove()
         self.thumbnails.remove()
 
-    def _take_out(self) -> None:
+    def _remove_parts(self) -> None:
         self._timer.stop()
         self.layer.remove()
 

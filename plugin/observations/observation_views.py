@@ -187,10 +187,10 @@ class ObservationFeed(QObject):
         key = answer.order.key
         if key in self._pages:
             self._pages.discard(key)
-            self._take_page(answer)
+            self._receive_page(answer)
         elif self._image is not None and key == self._image[0]:
             number, self._image = self._image[1], None
-            self._take_image(number, answer)
+            self._receive_image(number, answer)
         elif key in self._reviews:
             number = self._reviews.pop(key)
             if answer.error is None:
@@ -198,7 +198,7 @@ class ObservationFeed(QObject):
             else:
                 self.refused.emit(number, answer.error)
 
-    def _take_page(self, answer: RequestResult) -> None:
+    def _receive_page(self, answer: RequestResult) -> None:
         if answer.error is not None:
             if self._desk.state.link.phase is ConnectionPhase.CONNECTED:
                 self._desk.warning.emit(tr("What robots saw is not known: {error}", error=answer.error))
@@ -209,7 +209,7 @@ class ObservationFeed(QObject):
             self._ask_page(GetObservations(state=ObservationState.PENDING, before=before, limit=PAGE))
         self._fetch_image()
 
-    def _take_image(self, number: int, answer: RequestResult) -> None:
+    def _receive_image(self, number: int, answer: RequestResult) -> None:
         if answer.error is not None or not self._thumbnails.make(number, answer.result or {}):
             self._without.add(number)
         self._fetch_image()

@@ -95,7 +95,7 @@ class OlderCommands(QObject):
                 self._desk.warning.emit(tr("Older commands: {why}", why=answer.error))
             wish.is_refused = True
         else:
-            self._look_at(_commands_in(answer), wish)
+            self._count_new(_commands_in(answer), wish)
         if wish.waiting == 0 and not wish.is_refused:
             self._desk.info.emit(_in_words(wish))
 
@@ -122,7 +122,7 @@ class OlderCommands(QObject):
             # The link leads to other robots now: requests to the gateway before are dropped.
             self._wishes.clear()
 
-    def _look_at(self, notices: list[str], wish: HistoryRequest) -> None:
+    def _count_new(self, notices: list[str], wish: HistoryRequest) -> None:
         # The cache has stored them by now, and dropped the oldest where it was full.
         kept = [command for command in notices if command in self._desk.state.commands]
         wish.came += sum(command not in wish.known for command in kept)
@@ -259,7 +259,7 @@ class CommandLog(QWidget):
         self._show_what_is_open()
 
     def _show_newest(self) -> None:
-        self._let_go_of_old()
+        self._drop_old()
         self._open(self._model.index(0, 0))
 
     def _listed_anew(self) -> None:
@@ -285,7 +285,7 @@ class CommandLog(QWidget):
         shown = self._model.shown
         self._times.make_room((requested_at(shown[-1]) if shown else None) or None)
 
-    def _let_go_of_old(self) -> None:
+    def _drop_old(self) -> None:
         """Shorten the view while no older commands are viewed: it lays out each row at each new one."""
         current = self.view.currentIndex()
         chosen = current.parent() if current.parent().isValid() else current

@@ -179,7 +179,7 @@ class LogModel(QAbstractItemModel):
     def follow(self, state: FleetState) -> None:
         """List commands from now on as they change in ``state``."""
         self._known = state.commands
-        state.commands_changed.connect(self._take_in)
+        state.commands_changed.connect(self._apply)
 
     # --- Interface to Qt ---
 
@@ -309,7 +309,7 @@ class LogModel(QAbstractItemModel):
             self._rows = {report.command: row for row, report in enumerate(self._shown)}
         return self._rows.get(command)
 
-    def _take_in(self, reports: list[CommandReport]) -> None:
+    def _apply(self, reports: list[CommandReport]) -> None:
         """Add new commands, and update known ones."""
         if len(reports) > MERGED:
             self.show_all(self._known, self._filter)

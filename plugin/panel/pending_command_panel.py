@@ -57,7 +57,7 @@ class PendingCommandPanel(QWidget):
         desk.sending.waiting_changed.connect(self._show)
         desk.hint.connect(self._show_hint)
         desk.orders.kept.connect(self._follow)
-        desk.state.commands_changed.connect(self._take_steps)
+        desk.state.commands_changed.connect(self._apply_steps)
         desk.state.site_changed.connect(lambda: self._show_hint(""))
 
     def _lay_out(self, actions: Actions) -> None:
@@ -97,7 +97,7 @@ class PendingCommandPanel(QWidget):
         # At the beginning: the following text may be longer than the visible lines.
         self._show_remark(f"{stands[0].upper()}{stands[1:]}. {words}.", (command, words))
 
-    def _take_steps(self, reports: Sequence[CommandReport]) -> None:
+    def _apply_steps(self, reports: Sequence[CommandReport]) -> None:
         if self._kept is not None and any(report.command == self._kept[0] for report in reports):
             self._follow(*self._kept)
 
@@ -247,7 +247,7 @@ class PendingCommandActions(QObject):
         actions.reverse.triggered.connect(lambda: self._try(self._reverse))
         actions.enqueue.triggered.connect(lambda: self._try(self._enqueue))
         actions.override.triggered.connect(lambda: self._try(self._override))
-        actions.from_layer.triggered.connect(lambda: self._try(self._take_from_layer))
+        actions.from_layer.triggered.connect(lambda: self._try(self._draft_from_layer))
         actions.coordinates.triggered.connect(self._ask_for_coordinates)
         actions.send_map.triggered.connect(lambda: self._try(self._send_maps))
         desk.drafts.changed.connect(self._enable)
@@ -329,17 +329,17 @@ class PendingCommandActions(QObject):
             return
         self._desk.drafts.renew(replace(draft, override=text))
 
-    def _take_from_layer(self) -> None:
+    def _draft_from_layer(self) -> None:
         self._check_free()
         work = command_from_layer(self._desk.canvas.currentLayer(), self._desk)
         draft = self._reading.begin(work, done=self._read, failed=self._failed)
         if draft is not None:
-            self._taken(draft)
+            self._set_draft(draft)
 
     def _read(self, draft: PendingCommand) -> None:
-        self._try(lambda: self._taken(draft))
+        self._try(lambda: self._set_draft(draft))
 
-    def _taken(self, draft: PendingCommand) -> None:
+    def _set_draft(self, draft: PendingCommand) -> None:
         self._check_free()
         self._desk.target_ways.set_command(draft)
         self._show(draft.points)

@@ -116,8 +116,8 @@ def command_rows(commands: Iterable[CommandReport]) -> list[Row]:
         off = "" if report.deviation is None else tr(", {metres:.2f} m off", metres=report.deviation)
         because = f": {why}" if why else ""
         what = f"{command_in_words(report)}: {state_word(report.op, report.state)}{off}{because}"
-        told = tr("{told}, by {operator}", told=what, operator=report.operator)
-        rows.append((time_of_day(requested_at(report)), told))
+        text = tr("{told}, by {operator}", told=what, operator=report.operator)
+        rows.append((time_of_day(requested_at(report)), text))
     return rows
 
 
@@ -162,22 +162,22 @@ class LastImage(QObject):
         """Show no image."""
         self._drop()
         self._robot, self._key = "", ""
-        self._say("", None)
+        self._set_image("", None)
 
     def _ask(self, request: GetObservations | GetImage, text: str) -> None:
         try:
             self._key = self._requests.inquire(request)
         except FleetError as error:
-            self._say(str(error), self.image)
+            self._set_image(str(error), self.image)
             return
-        self._say(text, self.image)
+        self._set_image(text, self.image)
 
     def _answered(self, answer: RequestResult) -> None:
         if not self._key or answer.order.key != self._key:
             return
         self._key = ""
         if answer.error is not None:
-            self._say(tr("No image: {why}", why=answer.error), None)
+            self._set_image(tr("No image: {why}", why=answer.error), None)
         elif answer.order.method == GetObservations.method:
             self._found(answer.result or {})
         else:
@@ -187,7 +187,7 @@ class LastImage(QObject):
         images = (one for one in result.get("observations", []) if one.get("op") == SendImage.__name__)
         newest = next(images, None)
         if newest is None:
-            self._say(tr("{robot} has sent no image lately", robot=self._robot), None)
+            self._set_image(tr("{robot} has sent no image lately", robot=self._robot), None)
             return
         self._seen = newest
         self._ask(GetImage(newest["observation"]), tr("the image is coming …"))
@@ -204,11 +204,11 @@ class LastImage(QObject):
         placed = isinstance(x, (int, float)) and isinstance(y, (int, float))
         where = tr(" at {x:.1f}, {y:.1f} m", x=x, y=y) if placed else ""
         what = self._seen.get("object") or self._seen.get("label") or ""
-        self._say(f"{what}{where}".strip(), image)
+        self._set_image(f"{what}{where}".strip(), image)
 
     def _failed(self) -> None:
         self._task = None
-        self._say(tr("The image that came cannot be read: it is none of a kind that QGIS knows."), None)
+        self._set_image(tr("The image that came cannot be read: it is none of a kind that QGIS knows."), None)
 
     def _drop(self) -> None:
         if self._task is not None:
@@ -217,7 +217,7 @@ class LastImage(QObject):
             self._task.cancel()
             self._task = None
 
-    def _say(self, text: str, image: QImage | None) -> None:
+    def _set_image(self, text: str, image: QImage | None) -> None:
         self.text, self.image = text, image
         self.changed.emit()
 

@@ -385,7 +385,7 @@ class RobotModel(QAbstractTableModel):
             self._arrangement = picture.arrangement
             self.beginResetModel()
             self._fleet = fleet
-            self._take(self._sorted_rows())
+            self._apply(self._sorted_rows())
             self.endResetModel()
             return
         self._fleet = fleet
@@ -423,14 +423,14 @@ class RobotModel(QAbstractTableModel):
             self._reorder(order)
         else:
             self.beginResetModel()
-            self._take(order)
+            self._apply(order)
             self.endResetModel()
 
     def _reorder(self, order: Rows) -> None:
         self.layoutAboutToBeChanged.emit()
         before = self.persistentIndexList()
         robots = [int(self._order[index.row()]) for index in before]
-        self._take(order)
+        self._apply(order)
         after = [
             self.index(int(self._row_at[robot]), index.column())
             for robot, index in zip(robots, before, strict=True)
@@ -438,7 +438,7 @@ class RobotModel(QAbstractTableModel):
         self.changePersistentIndexList(before, after)
         self.layoutChanged.emit()
 
-    def _take(self, order: Rows) -> None:
+    def _apply(self, order: Rows) -> None:
         self._order = order
         self._row_at = _inverse(order, len(self._fleet))
 

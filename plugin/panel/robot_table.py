@@ -315,8 +315,8 @@ class RobotPanel(QWidget):
         listed, all_ = self.table.robots.rowCount(), self._desk.state.robots.count
         part = tr("{listed} of {all}", listed=listed, all=all_)
         self._count.setText(f"{listed}" if listed == all_ else part)
-        if told := part_in_words(self._desk.state.robots):
-            self._count.setToolTip(f"{told} {tr('The search finds others by name.')}")
+        if note := part_in_words(self._desk.state.robots):
+            self._count.setToolTip(f"{note} {tr('The search finds others by name.')}")
 
     def _fill_menu(self) -> None:
         menu = self._columns.menu()

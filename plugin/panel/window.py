@@ -210,8 +210,8 @@ class FleetWindow(QObject):
         except FleetError as error:
             self.notices.warning(str(error))
 
-    def _keep_gateways(self, told: FleetGateways) -> None:
-        self._gateways.keep(self.desk.state.url, told)
+    def _keep_gateways(self, gateways: FleetGateways) -> None:
+        self._gateways.keep(self.desk.state.url, gateways)
 
     def _show_link(self) -> None:
         link = self.desk.state.link

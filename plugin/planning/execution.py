@@ -82,13 +82,13 @@ class PlanExecution(QObject):
         self._went: tuple[str, Sequence[str]] | None = None
         """The key of the query sent after robots were released, and these robots."""
         self._reports: dict[str, plans.PlanReport] = {}
-        desk.state.plans_changed.connect(self._take_plans)
-        desk.state.queues_changed.connect(self._take_queues)
+        desk.state.plans_changed.connect(self._receive_plans)
+        desk.state.queues_changed.connect(self._receive_queues)
         desk.orders.answered.connect(self._answered)
         desk.state.link_changed.connect(self._link_changed)
         drafts.changed.connect(self._submitted_before)
         if known := [one.plan for one in desk.state.plans.open()]:
-            self._take_plans(known)
+            self._receive_plans(known)
 
     @property
     def known(self) -> KnownPlan | None:
@@ -307,7 +307,7 @@ class PlanExecution(QObject):
     def _answered(self, answer: RequestResult) -> None:
         pending = self._pending.pop(answer.order.key, None)
         if pending is None:
-            self._tell_who_stays(answer.order.key)
+            self._report_who_stays(answer.order.key)
             return
         if answer.error is None:
             pending.done(answer.result or {})
@@ -332,7 +332,7 @@ class PlanExecution(QObject):
         with suppress(NotSentError):
             self._went = (self._desk.orders.inquire(GetQueue()), known.report.robots)
 
-    def _tell_who_stays(self, key: str) -> None:
+    def _report_who_stays(self, key: str) -> None:
         if self._went is not None and key == self._went[0]:
             robots, self._went = self._went[1], None
             for text in after_sending(self._desk, robots):
@@ -348,13 +348,13 @@ class PlanExecution(QObject):
             self._fetched = None
             self._fetch()
 
-    def _take_queues(self, robots: Sequence[str]) -> None:
+    def _receive_queues(self, robots: Sequence[str]) -> None:
         known = self.known
         if known is not None and not set(robots).isdisjoint(known.report.robots):
             # They may have been paused or continued.
             self.changed.emit()
 
-    def _take_plans(self, names: Sequence[str]) -> None:
+    def _receive_plans(self, names: Sequence[str]) -> None:
         for name in names:
             self._notice(name)
         self._submitted_before()

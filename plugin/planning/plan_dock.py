@@ -289,7 +289,7 @@ class PlanDock(ActionDock):
         self._wire()
         self._refresh()
 
-    def _take_out(self) -> None:
+    def _remove_parts(self) -> None:
         """Cancel planning and remove the layers from the project."""
         self.drafts.shut_down()
         self._desk.project.readProject.disconnect(self._read_settings)

@@ -61,7 +61,7 @@ class PlanEditor(QObject):
         """The closures that the task considers."""
         self._then: Callable[[PlanProposal], None] = self._put
         """Receives the plan that the task makes."""
-        self._look, self._look_at_made = ClosureCheck(self), ClosureCheck(self)
+        self._closure_check, self._made_check = ClosureCheck(self), ClosureCheck(self)
         desk.roads.closures_changed.connect(self.look_at_closures)
 
     def plan_with(self, settings: plan_settings.PlanSettings) -> None:
@@ -145,8 +145,8 @@ class PlanEditor(QObject):
 
     def shut_down(self) -> None:
         """Cancel the computation under way; its thread may remain in a layer that hangs."""
-        self._look.stop()
-        self._look_at_made.stop()
+        self._closure_check.stop()
+        self._made_check.stop()
         self.cancel()
 
     def look_at_closures(self) -> None:
@@ -161,7 +161,7 @@ class PlanEditor(QObject):
                 self.draft = drafts[0]
                 self.changed.emit()
 
-        self._look.begin([draft], self._desk.roads.closures, found)
+        self._closure_check.begin([draft], self._desk.roads.closures, found)
 
     def _check_idle(self) -> None:
         if self.task is not None:
@@ -195,8 +195,8 @@ class PlanEditor(QObject):
         self, targets: tuple[ConeTarget, ...], facts: dict[str, ConeFacts], frame: SiteFrame, preview: bool
     ) -> Steps[None]:
         stores = yield from plan_settings.read_stores(self._desk.project, self.settings, frame, self._layers)
-        if not preview and (told := part_in_words(self._desk.state.robots)):
-            self._desk.warning.emit(f"{told} {tr('Others take no part in the plan.')}")
+        if not preview and (part := part_in_words(self._desk.state.robots)):
+            self._desk.warning.emit(f"{part} {tr('Others take no part in the plan.')}")
         try:
             job = AssignmentJob(targets, self._robots(), stores, self.settings.finish)
             objective = Objective(
@@ -250,7 +250,7 @@ class PlanEditor(QObject):
         now = self._desk.roads.closures
         if now != closures:
             # A road was closed or opened meanwhile.
-            self._look_at_made.begin([draft], now, lambda found: self._made(task, found[0], now, then))
+            self._made_check.begin([draft], now, lambda found: self._made(task, found[0], now, then))
             return
         self.task = None
         then(draft)

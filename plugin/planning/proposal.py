@@ -281,7 +281,7 @@ class ClosureCheck(QObject):
 
         A check that is under way is given up.
         """
-        found = self._slices.begin(_looked_at(drafts, closures), done=done)
+        found = self._slices.begin(_checked(drafts, closures), done=done)
         if found is not None:
             done(found)
 
@@ -290,9 +290,7 @@ class ClosureCheck(QObject):
         self._slices.stop()
 
 
-def _looked_at(
-    drafts: Sequence[PlanProposal], closures: Sequence[ClosureReport]
-) -> Steps[list[PlanProposal]]:
+def _checked(drafts: Sequence[PlanProposal], closures: Sequence[ClosureReport]) -> Steps[list[PlanProposal]]:
     found = []
     for draft in drafts:
         found.append((yield from draft.with_closures(closures)))

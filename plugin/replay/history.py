@@ -196,14 +196,14 @@ class CommandSorter(QObject):
         # Otherwise changes that come faster than one pass takes would never be seen.
         self._is_outdated = self._slices.is_busy
         if not self._is_outdated:
-            self._slices.begin_soon(sort_commands(list(self._cache)), self._take)
+            self._slices.begin_soon(sort_commands(list(self._cache)), self._apply)
 
     def forget(self) -> None:
         """Drop all commands."""
         self._slices.stop()
         self.commands = PastCommands()
 
-    def _take(self, commands: PastCommands) -> None:
+    def _apply(self, commands: PastCommands) -> None:
         before, self.commands = self.commands, commands
         if self._is_outdated:
             self.renew()
@@ -429,9 +429,9 @@ class HistoryDownload(QObject):
                 )
             )
         else:
-            self._go_on(str(following))
+            self._fetch_page(str(following))
 
-    def _go_on(self, after: str) -> None:
+    def _fetch_page(self, after: str) -> None:
         query = self._query
         try:
             request = GetTrajectory(query.robots, query.since, query.until, after=after, limit=PAGE)

@@ -55,9 +55,9 @@ class ReplayDock(ActionDock):
         self.speed.setCurrentIndex(SPEEDS.index(1))
         self._lay_out()
         self._wire()
-        self._say(tr("Choose a time and press Load."))
+        self._show_status(tr("Choose a time and press Load."))
 
-    def _take_out(self) -> None:
+    def _remove_parts(self) -> None:
         """Stop the clock, remove the layer from the project, disconnect from the live map."""
         self._showing.stop()
         self._past.forget()
@@ -99,7 +99,7 @@ class ReplayDock(ActionDock):
         self.line.show_time(since, until)
         self.clockwork.show(since, until)
         self.form.show_busy(True)
-        self._say(tr("Loading …"))
+        self._show_status(tr("Loading …"))
 
     def _wire(self) -> None:
         self.form.requested.connect(self.load)
@@ -128,7 +128,7 @@ class ReplayDock(ActionDock):
         self.play.setIcon(QgsApplication.getThemeIcon(PAUSE if on else PLAY))
 
     def _progressed(self) -> None:
-        self._say(
+        self._show_status(
             tr(
                 "Loading … {positions}, up to {moment}",
                 positions=tr_count(len(self.fetching.history), "1 position", "%n positions"),
@@ -142,9 +142,9 @@ class ReplayDock(ActionDock):
         if why:
             self._complain(why)
         if not len(history):
-            self._say(why or tr("No positions are stored of that time."))
+            self._show_status(why or tr("No positions are stored of that time."))
             return
-        self._say(
+        self._show_status(
             tr("positions: {positions}, robots: {robots}", positions=len(history), robots=len(history.names))
             + (tr(" · NOT ALL") if why else "")
         )
@@ -213,13 +213,13 @@ class ReplayDock(ActionDock):
         self.map.show_nothing()
         self.line.show_time(0.0, 0.0)
         self.line.show_marks(NO_MARKS)
-        self._say(tr("Choose a time and press Load."))
+        self._show_status(tr("Choose a time and press Load."))
 
     def _complain(self, text: str, *topics: Topic) -> None:
         """Report an error about the loaded data, until other data is loaded."""
         self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
 
-    def _say(self, text: str) -> None:
+    def _show_status(self, text: str) -> None:
         self._status = text
         self._show_banner(self.clockwork.moment)
 

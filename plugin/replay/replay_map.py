@@ -60,7 +60,7 @@ class ReplayMap(QgsMapCanvas):
         self._soon = QTimer(self)
         self._soon.setSingleShot(True)
         self._soon.setInterval(FRAME_MS)
-        self._soon.timeout.connect(self._go_on)
+        self._soon.timeout.connect(self._continue)
         self.extentsChanged.connect(self._soon.start)
         self._pan = QgsMapToolPan(self)
         self.setMapTool(self._pan)
@@ -153,7 +153,7 @@ class ReplayMap(QgsMapCanvas):
         self._site = self._moment = None
         self.overlay.show_scene(None)
 
-    def _go_on(self) -> None:
+    def _continue(self) -> None:
         """Complete the current moment for the present view: while time is paused no other update follows."""
         self.overlay.prepare()
         if not self.overlay.is_whole:

@@ -48,10 +48,10 @@ class ReplayClock(QObject):
         self.controller.updateTemporalRange.connect(self._updated)
         # PyQt cannot connect the controller's own signal for this in QGIS 3.22.
         self._was_playing = False
-        self._look = QTimer(self)
-        self._look.setInterval(LOOK_MS)
-        self._look.timeout.connect(self._tell_playing)
-        self._look.start()
+        self._poll = QTimer(self)
+        self._poll.setInterval(LOOK_MS)
+        self._poll.timeout.connect(self._announce_playing)
+        self._poll.start()
 
     @property
     def is_set(self) -> bool:
@@ -92,11 +92,11 @@ class ReplayClock(QObject):
             if self.controller.currentFrameNumber() >= self.controller.totalFrameCount() - 1:
                 self.controller.setCurrentFrameNumber(0)
             self.controller.playForward()
-        self._tell_playing()
+        self._announce_playing()
 
     def remove(self) -> None:
         """Restore QGIS's controller."""
-        self._look.stop()
+        self._poll.stop()
         if sip.isdeleted(self.controller):
             return
         self.controller.pause()
@@ -123,7 +123,7 @@ class ReplayClock(QObject):
         self.moment = min(max(moment, self.since), self.until)
         self.moved.emit(self.moment)
 
-    def _tell_playing(self) -> None:
+    def _announce_playing(self) -> None:
         if self.is_playing != self._was_playing:
             self._was_playing = self.is_playing
             self.playing_changed.emit(self._was_playing)

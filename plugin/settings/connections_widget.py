@@ -72,7 +72,7 @@ class ConnectionTest(QObject):
         self._site = None
         self._timer = QTimer(self)
         self._timer.setInterval(LOOK_EVERY_MS)
-        self._timer.timeout.connect(self._look)
+        self._timer.timeout.connect(self._poll)
 
     def begin(self, url: str, operator: str, credentials: OperatorCredentials) -> None:
         """Try to connect; a test under way is given up."""
@@ -89,7 +89,7 @@ class ConnectionTest(QObject):
         self._timer.stop()
         self._connection.shut_down()
 
-    def _look(self) -> None:
+    def _poll(self) -> None:
         news = self._connection.collect_updates()
         self._site = news.site or self._site
         if not self._connection.is_open:

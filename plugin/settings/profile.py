@@ -341,13 +341,13 @@ class KnownGateways:
         usable = usable_addresses([one for one in gateways if isinstance(one, str)])
         return FleetGateways(database, tuple(usable)) if usable else None
 
-    def keep(self, url: str, told: FleetGateways) -> None:
+    def keep(self, url: str, reported: FleetGateways) -> None:
         """Store a report, replacing the former one."""
-        if not told.gateways:
+        if not reported.gateways:
             if QgsSettings().contains(_group(url, GATEWAYS)):
                 QgsSettings().remove(_group(url, GATEWAYS))
-        elif told != self.of(url):  # what is written is written to the disk, in the window's thread
-            content = {"database": told.database, "gateways": list(told.gateways)}
+        elif reported != self.of(url):  # what is written is written to the disk, in the window's thread
+            content = {"database": reported.database, "gateways": list(reported.gateways)}
             QgsSettings().setValue(_group(url, GATEWAYS), json.dumps(content))
 
 

@@ -152,7 +152,7 @@ class Spotlight(QWidget):
         self._target: QWidget | None = None
         self.framed = QRect()
         self._clock = QTimer(self)
-        self._clock.timeout.connect(self._look)
+        self._clock.timeout.connect(self._poll)
 
     def point_at(self, name: str) -> None:
         """Frame the widget of that object name; nothing for an empty name or a missing widget."""
@@ -164,7 +164,7 @@ class Spotlight(QWidget):
         else:
             self._clock.stop()
             self.hide()
-        self._look()
+        self._poll()
 
     def paintEvent(self, event: QPaintEvent) -> None:
         if not self.framed.isNull():
@@ -176,7 +176,7 @@ class Spotlight(QWidget):
     def _forget(self) -> None:
         self._target = None
 
-    def _look(self) -> None:
+    def _poll(self) -> None:
         window = self.parentWidget()
         self.setGeometry(window.rect())
         framed = QRect()
@@ -219,7 +219,7 @@ class TourPanel(QFrame):
         self._count = QLabel()
         self._offer = _button("fleet_tour_offer", "", self._want)
         self._back = _button("fleet_tour_back", tr("&Back"), lambda: self.show_step(self._at - 1))
-        self._next = _button("fleet_tour_next", tr("&Next"), self._go_on)
+        self._next = _button("fleet_tour_next", tr("&Next"), self._continue)
         self._close = _button("fleet_tour_close", tr("C&lose"), self.closed.emit)
         self._lay_out()
         escape = QShortcut(QKeySequence(Qt.Key.Key_Escape), self)
@@ -292,7 +292,7 @@ class TourPanel(QFrame):
     def _want(self) -> None:
         self.requested.emit(self.step.offer)
 
-    def _go_on(self) -> None:
+    def _continue(self) -> None:
         if self._at == len(STEPS) - 1:
             self.closed.emit()
         else:
@@ -344,7 +344,7 @@ class TourAction(QObject):
         self._iface, self._menu, self._window = iface, menu, window
         self.fleet = fleet or PracticeFleet(parent=self)
         self.fleet.ready.connect(self._connect)
-        self.fleet.failed.connect(self._tell)
+        self.fleet.failed.connect(self._show_outcome)
         self.panel: TourPanel | None = None
         self._spotlight: Spotlight | None = None
         self._url_before = ""
@@ -358,7 +358,7 @@ class TourAction(QObject):
 
     def start(self) -> None:
         """Show the tour from its beginning."""
-        self._take_offer_away()
+        self._remove_offer()
         if self.panel is None:
             self._window.dock.setUserVisible(True)
             self._spotlight = Spotlight(self._iface.mainWindow())
@@ -388,7 +388,7 @@ class TourAction(QObject):
         """Remove every part from the window."""
         self._window.desk.state.link_changed.disconnect(self._show_practice)
         self.end()
-        self._take_offer_away()
+        self._remove_offer()
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()
         self.deleteLater()
@@ -409,7 +409,7 @@ class TourAction(QObject):
         self._offer.layout().addWidget(button)
         bar.pushWidget(self._offer, Qgis.MessageLevel.Info)
 
-    def _take_offer_away(self) -> None:
+    def _remove_offer(self) -> None:
         if self._offer is not None and not sip.isdeleted(self._offer):
             self._iface.messageBar().popWidget(self._offer)
         self._offer = None
@@ -418,15 +418,15 @@ class TourAction(QObject):
         if what == FLEET:
             self._start_fleet()
         elif self._iface.addProject(str(PROJECT_FILE)):
-            self._tell(tr("The sample site is open."))
+            self._show_outcome(tr("The sample site is open."))
         else:
-            self._tell(tr("The sample site was not opened: {path}.", path=PROJECT_FILE))
+            self._show_outcome(tr("The sample site was not opened: {path}.", path=PROJECT_FILE))
 
     def _start_fleet(self) -> None:
         if self._practising():
-            self._tell(tr("The practice fleet runs, and the desk is connected to it."))
+            self._show_outcome(tr("The practice fleet runs, and the desk is connected to it."))
         elif self._window.desk.state.link.phase in OPEN:
-            self._tell(
+            self._show_outcome(
                 tr(
                     "The desk is connected to another gateway. Disconnect first: the tour moves no real "
                     "robots."
@@ -444,9 +444,9 @@ class TourAction(QObject):
             # Not by the button: that would store the address for the next session.
             self._window.desk.open_link(url, panel.operator() or "tour", OperatorCredentials())
         except FleetError as error:
-            self._tell(str(error))
+            self._show_outcome(str(error))
             return
-        self._tell(tr("The practice fleet runs, and the desk is connected to it."))
+        self._show_outcome(tr("The practice fleet runs, and the desk is connected to it."))
 
     def _practising(self) -> bool:
         url = self._window.dock.connection_panel.url()
@@ -458,7 +458,7 @@ class TourAction(QObject):
                 self._practising() and self._window.desk.state.link.phase is ConnectionPhase.CONNECTED
             )
 
-    def _tell(self, text: str) -> None:
+    def _show_outcome(self, text: str) -> None:
         if self.panel is not None:
             self.panel.say(text)
 

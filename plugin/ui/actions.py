@@ -283,12 +283,12 @@ class ActionDock(QgsDockWidget):
     def remove(self) -> None:
         """Remove what the panel added elsewhere, before it is removed itself."""
         if self._is_built:
-            self._take_out()
+            self._remove_parts()
 
     def _build(self) -> None:
         raise NotImplementedError
 
-    def _take_out(self) -> None:
+    def _remove_parts(self) -> None:
         raise NotImplementedError
 
 

@@ -85,7 +85,7 @@ class CooperativeTask(QObject):
 
         :raises FleetError: an error in the first slice; ``failed`` is not called then.
         """
-        self._take(work, goes_on, done, failed)
+        self._set_work(work, goes_on, done, failed)
         return self._slice()[1]
 
     def begin_soon(
@@ -98,7 +98,7 @@ class CooperativeTask(QObject):
 
         ``done`` or ``failed`` is called as by :meth:`begin`. Work under way before is given up.
         """
-        self._take(work, _nothing, done, failed)
+        self._set_work(work, _nothing, done, failed)
         self._timer.start()
 
     def finish(self) -> None:
@@ -119,7 +119,7 @@ class CooperativeTask(QObject):
         if work is not None and not work.gi_running:
             work.close()
 
-    def _take(
+    def _set_work(
         self,
         work: Steps[T],
         goes_on: Callable[[], None],

@@ -283,7 +283,7 @@ class RoleDelegate(QStyledItemDelegate):
         for role in _table(index).rows[index.row()].roles:
             editor.addItem(role_name(role), role)
         # One click chooses: without this the list closes and the cell waits for another key.
-        editor.activated.connect(lambda _: self._take(editor))
+        editor.activated.connect(lambda _: self._apply(editor))
         return editor
 
     def setEditorData(self, editor: QComboBox, index: QModelIndex):
@@ -292,7 +292,7 @@ class RoleDelegate(QStyledItemDelegate):
     def setModelData(self, editor: QComboBox, model: QAbstractItemModel, index: QModelIndex):
         model.setData(index, editor.currentData())
 
-    def _take(self, editor: QComboBox) -> None:
+    def _apply(self, editor: QComboBox) -> None:
         self.commitData.emit(editor)
         self.closeEditor.emit(editor)
 

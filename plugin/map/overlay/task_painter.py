@@ -156,7 +156,7 @@ class PathsPainter:
             self._of = None
             return
         if placed.plans is not self._of:
-            self._take(placed)
+            self._apply(placed)
         self._ways.prepare(placed, screen)
         for size in (SMALL, 1.0):
             marks(screen.ratio, size)
@@ -184,7 +184,7 @@ class PathsPainter:
         for k, (x, y) in zip(seen, self.distances, strict=True):
             self._distance(painter, placed.scene.remaining.get(plans[k].command), x, y, screen)
 
-    def _take(self, placed: MapScene) -> None:
+    def _apply(self, placed: MapScene) -> None:
         self._of = placed.plans
         self._ends = np.array([points[-1] for points in placed.plans])
         self._kinds = np.array([CONE_TARGET if plan.cone else TARGET for plan in placed.scene.plans])

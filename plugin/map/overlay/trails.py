@@ -198,7 +198,7 @@ class TrailSheet:
         if self._here is None:
             self._later = here[: len(self._taken)], np.full(len(self._taken), now)
         else:
-            self._go_on(self._here, here[: len(self._here)], now)
+            self._draw_newest(self._here, here[: len(self._here)], now)
         self._here = here
         # Lines drawn in this frame are visible in this frame.
         bands = 1 if self.filled else BANDS
@@ -225,7 +225,7 @@ class TrailSheet:
             if time.perf_counter() > until:
                 return
 
-    def _go_on(self, start: Points, end: Points, now: float) -> None:
+    def _draw_newest(self, start: Points, end: Points, now: float) -> None:
         """Draw the lines from ``start`` to ``end``, (n, 2) device pixels: they are the newest."""
         pixels, _ = _on_lines(start, end, self._times.shape)
         self._times.reshape(-1)[pixels] = now - self._epoch

@@ -307,14 +307,14 @@ class RoutePreview(QObject):
             if not sip.isdeleted(viewport):
                 viewport.removeEventFilter(self)
         self._mouse = self._question = self._begins = None
-        self._take_away()
+        self._remove_band()
 
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.Leave:
             self.hide()
         return False
 
-    def _take_away(self) -> None:
+    def _remove_band(self) -> None:
         if self._band is not None and not sip.isdeleted(self._band):
             self._desk.canvas.scene().removeItem(self._band)
         self._band = None
@@ -334,7 +334,7 @@ class RoutePreview(QObject):
                 self.clear()
 
     def _show(self) -> None:
-        self._take_away()
+        self._remove_band()
         preview = self._desk.preview
         route = preview.route
         if self._mouse is None:

@@ -38,7 +38,7 @@ class RoadRouteTool(RouteTool):
         """Preferences for the legs led from now on."""
         self._clicks: list[Point] = []
         """Clicked goals still to be reached; the first of them is being queried."""
-        desk.preview.answered.connect(self._take)
+        desk.preview.answered.connect(self._receive)
         desk.preview.refused.connect(self._refused)
 
     def lead_so(self, wishes: RoutePreferences) -> None:
@@ -120,7 +120,7 @@ class RoadRouteTool(RouteTool):
             return self.desk.selection.last, None
         return draft.robot, draft.points[-1]
 
-    def _take(self, question: RouteQuestion, route: RouteReport) -> None:
+    def _receive(self, question: RouteQuestion, route: RouteReport) -> None:
         if not self._clicks:
             return
         if (question.robot, question.start) != self._from():
@@ -301,7 +301,7 @@ class SurfaceAction:
         self.action.setCheckable(True)
         self.tool = SurfaceTool(iface.mapCanvas(), store, notices)
         self.tool.setAction(self.action)
-        self.action.triggered.connect(self._take)
+        self.action.triggered.connect(self._activate)
         iface.addPluginToMenu(menu, self.action)
 
     def remove(self) -> None:
@@ -312,6 +312,6 @@ class SurfaceAction:
         self._iface.removePluginMenu(self._menu, self.action)
         self.action.deleteLater()
 
-    def _take(self) -> None:
+    def _activate(self) -> None:
         self._iface.mapCanvas().setMapTool(self.tool)
         self._iface.mapCanvas().setFocus()

@@ -192,7 +192,7 @@ class RouteTool(DrawingTool):
 
     def deactivate(self) -> None:
         self._drag.give_up()
-        self._let_go()
+        self._clear_active()
         self._is_finished = False
         super().deactivate()
 
@@ -206,7 +206,7 @@ class RouteTool(DrawingTool):
             if self._drag.moves or self.is_drag(self._pressed_at, event.pos()):
                 self._drag.move(event)
             return
-        self._take_hold(event)
+        self._update_active(event)
         super().canvasMoveEvent(event)
 
     def canvasReleaseEvent(self, event: QgsMapMouseEvent) -> None:
@@ -306,7 +306,7 @@ class RouteTool(DrawingTool):
         else:
             self.set_command(draft)
 
-    def _take_hold(self, event: QgsMapMouseEvent) -> None:
+    def _update_active(self, event: QgsMapMouseEvent) -> None:
         draft = self.draft
         if draft is not None:
             try:
@@ -314,7 +314,7 @@ class RouteTool(DrawingTool):
                 if vertex != self._vertex:
                     self._hold(draft, vertex)
             except MapTransformError:
-                self._let_go()
+                self._clear_active()
 
     def _hold(self, draft: PendingCommand, vertex: int | None) -> None:
         self._vertex, self._points = vertex, draft.points
@@ -328,11 +328,11 @@ class RouteTool(DrawingTool):
             self._drag.drop()
             self._pressed_at = None
         if draft is None or draft.points is not self._points:
-            self._let_go()
+            self._clear_active()
         if draft is None or len(draft.points) < LEAST_POINTS:
             self._is_finished = False
 
-    def _let_go(self) -> None:
+    def _clear_active(self) -> None:
         self._vertex = None
         self._handles.mark(None, None)
 

@@ -220,9 +220,9 @@ class AlarmBoard:
             events += [self._begin(kind, now, row, at) for row in rises.tolist()]
             events += self._end([(kind, now.names[row], "") for row in falls.tolist()], at)
         events += self._begin_for_doubts(now, moment, at)
-        events += self._look_at_pairs(now, at)
+        events += self._check_pairs(now, at)
         self.log.extend(events)
-        self._let_go()
+        self._drop_oldest()
         if events:
             self._ordered = None
         return events
@@ -293,7 +293,7 @@ class AlarmBoard:
                 self._reported.pop(key, None)
         self._ordered = None
 
-    def _let_go(self) -> None:
+    def _drop_oldest(self) -> None:
         """Remove the oldest alarms that are over, where there are too many; they stay in the log."""
         too_many = len(self._alarms) - MOST_ALARMS
         if too_many > 0:
@@ -310,7 +310,7 @@ class AlarmBoard:
         begun_again = [row for row, alarm in held if alarm is not None and not alarm.unsure]
         return [self._begin(kind, now, row, at) for row in begun_again]
 
-    def _look_at_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
+    def _check_pairs(self, now: AlarmSnapshot, at: float) -> list[AlarmEvent]:
         one, other, apart = rules.too_close(now, self._limits)
         if AlarmKind.TOO_CLOSE not in self._limits.kinds:
             one, other, apart = one[:0], other[:0], apart[:0]

@@ -261,10 +261,10 @@ class AlarmWatch(QObject):
         self._turn = scheduler.turn()
         self._generation = state.robots.generation
         self._reason = ""
-        self._untold: list[AlarmEvent] = []
+        self._unannounced: list[AlarmEvent] = []
         self._unseen: set[Key] = set()
         """Alarms that have begun and have not been shown yet."""
-        self._telling = CooperativeTask(self, ONE_STEP)
+        self._announcing = CooperativeTask(self, ONE_STEP)
         self.board = AlarmBoard(rules.read_thresholds())
         state.updated.connect(self._pulled)
         state.robots_removed.connect(self._drop)
@@ -273,7 +273,7 @@ class AlarmWatch(QObject):
         """Stop watching."""
         self._state.updated.disconnect(self._pulled)
         self._state.robots_removed.disconnect(self._drop)
-        self._telling.stop()
+        self._announcing.stop()
         self._ground.remove()
 
     def why_not(self) -> str:
@@ -296,16 +296,16 @@ class AlarmWatch(QObject):
         if self._state.link.phase is ConnectionPhase.CONNECTED and self._state.site is not None:
             moment = self._state.clock.steady()
             situation = self._situations.at(moment, self.board.limits)
-            self._tell(self.board.evaluate(situation, moment, time.time()))
-            self._take_reported(moment)
-        self._tell_of_watching()
+            self._announce(self.board.evaluate(situation, moment, time.time()))
+            self._apply_reported(moment)
+        self._announce_watching()
 
     def acknowledge(self, keys: Iterable[Key]) -> None:
         """Acknowledge these alarms for the operator."""
         link = self._state.link
         operator = (link.who if link.phase is ConnectionPhase.CONNECTED else "") or tr("this desk")
-        self._tell(self.board.acknowledge(keys, operator, time.time()))
-        self._telling.finish()
+        self._announce(self.board.acknowledge(keys, operator, time.time()))
+        self._announcing.finish()
 
     def acknowledge_all(self) -> None:
         """Acknowledge every alarm that has been shown."""
@@ -317,13 +317,13 @@ class AlarmWatch(QObject):
         self.board.set_limits(limits)
         self.changed.emit()
 
-    def _take_reported(self, moment: float) -> None:
+    def _apply_reported(self, moment: float) -> None:
         reported = fence_alarms(self._state.geofence.alarms)
         if self._state.nearness.alarms:
             reported += nearness_alarms(self._state.nearness.alarms, self._state.robots.doubted())
         reported += passing_alarms(self._state.conflicts, self.board.limits)
         events, renewed = self.board.report(reported, moment, time.time())
-        self._tell(events)
+        self._announce(events)
         if renewed and not events:
             self.changed.emit()
 
@@ -339,23 +339,23 @@ class AlarmWatch(QObject):
         self.board.drop(gone)
         self.changed.emit()
 
-    def _tell(self, events: list[AlarmEvent]) -> None:
+    def _announce(self, events: list[AlarmEvent]) -> None:
         self._messages.write([event.alarm for event in events if event.change is AlarmChange.BEGAN])
         if events:
-            self._untold += events
+            self._unannounced += events
             self._unseen.update(event.alarm.key for event in events if event.change is AlarmChange.BEGAN)
-            self._telling.begin_soon(self._parts())
+            self._announcing.begin_soon(self._parts())
 
     def _parts(self) -> Steps[None]:
         """Signal events in parts: judging and showing hundreds at once would block the window."""
-        events, self._untold = self._untold, []
+        events, self._unannounced = self._unannounced, []
         self.happened.emit(events)
         # The message bar counts them and describes the most urgent ones.
         self._unseen.clear()
         yield 0.5
         self.changed.emit()
 
-    def _tell_of_watching(self) -> None:
+    def _announce_watching(self) -> None:
         reason = self.why_not()
         if reason != self._reason:
             self._reason = reason
@@ -395,7 +395,7 @@ class AlarmBar(QObject):
         self._bar.widgetRemoved.disconnect(self._removed)
         self._watch.happened.disconnect(self._happened)
         self._watch.changed.disconnect(self._changed)
-        self._take_down()
+        self._remove_item()
 
     def _happened(self, events: list) -> None:
         self._show(has_begun=any(event.change is AlarmChange.BEGAN for event in events))
@@ -409,7 +409,7 @@ class AlarmBar(QObject):
     def _show(self, *, has_begun: bool) -> None:
         new = self._new()
         if not new:
-            self._take_down()
+            self._remove_item()
             return
         pressing = any(alarm.kind.is_urgent and alarm.ended is None for alarm in new)
         level = Qgis.MessageLevel.Critical if pressing else Qgis.MessageLevel.Warning
@@ -437,7 +437,7 @@ class AlarmBar(QObject):
         if self._item is None:
             self._hang_up(level)
         elif self._bar.currentItem() is not self._item:
-            self._take_down()
+            self._remove_item()
             self._hang_up(level)
         elif level != self._level:
             self._level = level
@@ -459,7 +459,7 @@ class AlarmBar(QObject):
         self._item = QgsMessageBarItem(body, level, 0)
         self._bar.pushItem(self._item)
 
-    def _take_down(self) -> None:
+    def _remove_item(self) -> None:
         item, self._item, self._label = self._item, None, None
         if item is not None:
             self._bar.popWidget(item)

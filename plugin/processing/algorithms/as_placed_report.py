@@ -126,7 +126,7 @@ class AsPlacedReport(FleetAlgorithm):
             if pages is None:
                 return {}
         self._written = file
-        _tell(figures, tolerance, feedback)
+        _report(figures, tolerance, feedback)
         numbers = (*vars(figures).values(), pages, int(odd > 0))
         return {OUTPUT: str(file), **dict(zip(NUMBERS, numbers, strict=True))}
 
@@ -169,7 +169,7 @@ def _warn_of_odd(odd: int, feedback: QgsProcessingFeedback) -> None:
         )
 
 
-def _tell(figures: ConeDeviations, tolerance: float, feedback: QgsProcessingFeedback) -> None:
+def _report(figures: ConeDeviations, tolerance: float, feedback: QgsProcessingFeedback) -> None:
     feedback.pushInfo(
         tr_count(
             figures.count,

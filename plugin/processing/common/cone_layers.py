@@ -199,7 +199,7 @@ class ConeCheckSource:
         if feedback.isCanceled():
             return None
         findings = find_misplaced_cones(cones, surfaces, obstacles, *self._distances)
-        _say(findings, surfaces is None, feedback)
+        _report(findings, surfaces is None, feedback)
         return findings
 
     def _read_surfaces(
@@ -261,7 +261,7 @@ def _parts(geometry: QgsGeometry, name: str) -> tuple[list[NamedGeometry], list[
     ], notes
 
 
-def _say(findings: Sequence[ConeFinding], unchecked: bool, feedback: QgsProcessingFeedback) -> None:
+def _report(findings: Sequence[ConeFinding], unchecked: bool, feedback: QgsProcessingFeedback) -> None:
     if unchecked:
         feedback.pushInfo(
             tr("No layer of surfaces is given: whether the cones stand on the road is not checked.")

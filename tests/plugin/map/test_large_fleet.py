@@ -71,7 +71,7 @@ def test_a_canvas_that_moves_a_little_asks_for_nothing(desk, gateway, iface, wai
     count = len(views(gateway))
     iface.look_at(41, 30, 61, 50)
     for _ in range(3):
-        desk.desk.view._looked_at = -1.0
+        desk.desk.view._polled_at = -1.0
         desk.desk.view.renew()
     iface.look_at(90, 30, 110, 50)
     asks(gateway, wait, lambda one: one["bounds"][0] > asked["bounds"][0] + 20)

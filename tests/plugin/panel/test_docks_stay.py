@@ -94,7 +94,7 @@ def test_no_button_of_the_replay_moves(opened, at_desk, gateway, wait):
     dock.load()
     wait(lambda: not dock.is_busy, what="the refusal")
     watched.check("it was refused, with a long text")
-    dock._say(LONG)
+    dock._show_status(LONG)
     watched.check("something long is said")
     dock.form.last.setCurrentIndex(dock.form.last.count() - 1)
     watched.check("another time is chosen")

@@ -51,7 +51,7 @@ class Held:
 
     def __init__(self, dock, monkeypatch):
         monkeypatch.setattr(scheduling, "SLICE_SECONDS", 0.0)
-        looks = (dock.drafts._look, dock.drafts._look_at_made)
+        looks = (dock.drafts._closure_check, dock.drafts._made_check)
         self._timers = [look._slices._timer for look in looks]
         for timer in self._timers:
             timer.setInterval(3_600_000)

@@ -354,7 +354,7 @@ def test_alarms_that_nobody_was_told_of_yet_are_not_acknowledged_with_all_others
     wait(lambda: len(alarms(at_alarms)) == 1)
     watch = watch_of(at_alarms)
     with monkeypatch.context() as late:
-        late.setattr(watch._telling, "begin_soon", lambda work: None)
+        late.setattr(watch._announcing, "begin_soon", lambda work: None)
         gateway.show(make_robot("r2", 80, 60, battery=0.1))
         wait(lambda: len(watch.board.alarms()) == 2)
     assert len(alarms(at_alarms)) == 1
