@@ -189,7 +189,7 @@ class OptionsFactory(QgsOptionsWidgetFactory):
         self.setIcon(QIcon(str(ICONS / "fleet.svg")))
         self._iface, self._window, self._alarms = iface, window, alarms
         iface.registerOptionsWidgetFactory(self)
-        self._put_to_work(read_preferences())
+        self._apply_preferences(read_preferences())
 
     def createWidget(self, parent: QWidget | None = None) -> OptionsPage:
         page = OptionsPage(parent)
@@ -202,9 +202,9 @@ class OptionsFactory(QgsOptionsWidgetFactory):
 
     def _kept(self, preferences: Preferences, limits: Thresholds) -> None:
         self._alarms.set_limits(limits)
-        self._put_to_work(preferences)
+        self._apply_preferences(preferences)
 
-    def _put_to_work(self, preferences: Preferences) -> None:
+    def _apply_preferences(self, preferences: Preferences) -> None:
         view = self._window.view
         self._window.desk.connection.set_rate(preferences.positions_rate)
         view.layer_every = max(1, round(preferences.layer_seconds * 1000 / PULL_EVERY_MS))

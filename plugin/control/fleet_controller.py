@@ -119,7 +119,7 @@ class FleetController(QObject):
             self.sender.add_receiver(receiver)
         self.orders.answered.connect(lambda _: self.emergency_changed.emit())
         self._follow_state()
-        self._pass_on_words()
+        self._forward_messages()
 
     def _follow_state(self) -> None:
         """Connect the parts to the state's signals before those on screen are connected."""
@@ -137,7 +137,7 @@ class FleetController(QObject):
         state.merged.connect(self._merged)
         state.updated.connect(self.beat.advance)
 
-    def _pass_on_words(self) -> None:
+    def _forward_messages(self) -> None:
         """Forward messages of the parts as the desk's own."""
         for signal, level in (
             (self.failed, Level.ERROR),

@@ -191,7 +191,7 @@ class GatewayProtocol:
         if not self._outbox.add(order) or not self.ready:
             return []
         # The window may not know yet which gateway has greeted since its last poll.
-        self._hand_back_strange()
+        self._hand_back_foreign()
         return [self._request(order)] if order.key in self._outbox else []
 
     def end_link(self) -> None:
@@ -209,7 +209,7 @@ class GatewayProtocol:
             )
             self._buffer.add_answer(RequestResult(order, error=text))
 
-    def _hand_back_strange(self) -> None:
+    def _hand_back_foreign(self) -> None:
         """Hand back requests made in another context than the gateway's: their places are others here."""
         for order in self._outbox.without_ground(self._ground):
             self._buffer.add_answer(RequestResult(order, error=_other_ground()))
@@ -348,7 +348,7 @@ class GatewayProtocol:
         self._choose_view(result)
         self._set_clock(result)
         self.ready = True
-        self._hand_back_strange()
+        self._hand_back_foreign()
         orders, too_old = self._outbox.renew(self._clock.steady())
         for order in too_old:
             self._buffer.add_answer(

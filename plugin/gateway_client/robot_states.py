@@ -17,8 +17,8 @@ from ...robot_bridge.core.messages.safety import RobotState
 from ...robot_bridge.core.position_frame import split_frame
 
 # Ten thousand robots ten times a second are too many for an object each. A snapshot becomes columns on
-# the thread of the connection; the window works on whole columns and makes a report only of the robot that
-# is selected.
+# the thread of the connection; the window works on whole columns and makes a report only of a robot that
+# is being viewed.
 
 STATES = (RobotState.FRESH, RobotState.STALE, RobotState.LOST, RobotState.OFFLINE)
 STATE_CODES = {state.value: code for code, state in enumerate(STATES)}

@@ -132,7 +132,7 @@ class LiveView(QObject):
                 if self._is_asked_for(robot):
                     self._sought = robot, now + SOUGHT_FOR_S
                 else:
-                    self._complain_of_no_place(robot)
+                    self._warn_of_no_position(robot)
             return
         self._show(np.array([(view.report.x, view.report.y) for view in placed]))
 
@@ -152,9 +152,9 @@ class LiveView(QObject):
             self.zoom_to(robot)
         elif self._desk.clock.steady() > until:
             self._sought = None
-            self._complain_of_no_place(robot)
+            self._warn_of_no_position(robot)
 
-    def _complain_of_no_place(self, robot: str) -> None:
+    def _warn_of_no_position(self, robot: str) -> None:
         self._desk.warning.emit(
             tr("{robot} has not said yet where it is; the map cannot go there.", robot=robot)
         )

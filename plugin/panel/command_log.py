@@ -189,7 +189,7 @@ class CommandLog(QWidget):
         self.view.selectionModel().selectionChanged.connect(self._allow)
         self._model.follow(desk.state)
         self._model.added.connect(self._show_newest)
-        self._model.modelReset.connect(self._listed_anew)
+        self._model.modelReset.connect(self._list_reset)
         desk.state.commands_changed.connect(self._commands_changed)
         desk.state.site_changed.connect(self._site_changed)
         desk.selection.changed.connect(self._selection_changed)
@@ -262,7 +262,7 @@ class CommandLog(QWidget):
         self._drop_old()
         self._open(self._model.index(0, 0))
 
-    def _listed_anew(self) -> None:
+    def _list_reset(self) -> None:
         self._opened = None
         self._open(self._model.index(0, 0))
         self._show_what_is_open()

@@ -86,23 +86,23 @@ class ResolutionQuery(QObject):
             self._key = self._requests.inquire(GetWaysOut(*self._pair))
         except NotSentError as error:
             self._key = None
-            self._know({}, str(error))
+            self._set_ways({}, str(error))
 
     def _answered(self, answer: RequestResult) -> None:
         if self._key is None or answer.order.key != self._key:
             return
         self._key = None
         if answer.error is not None:
-            self._know({}, answer.error)
+            self._set_ways({}, answer.error)
             return
         try:
             found = ways_out_report(answer.result or {}).ways
         except (KeyError, TypeError, ValueError):
-            self._know({}, tr("the gateway's answer cannot be read; it may be older than this plugin"))
+            self._set_ways({}, tr("the gateway's answer cannot be read; it may be older than this plugin"))
             return
-        self._know({(way.robot, way.how): way for way in found}, "")
+        self._set_ways({(way.robot, way.how): way for way in found}, "")
 
-    def _know(self, ways: dict[tuple[str, str], WayOut], why_not: str) -> None:
+    def _set_ways(self, ways: dict[tuple[str, str], WayOut], why_not: str) -> None:
         if (ways, why_not) != (self._ways, self.why_not):
             self._ways, self.why_not = ways, why_not
             self.changed.emit()

@@ -20,13 +20,13 @@ class EmergencyKey(QObject):
     def __init__(self, action: QAction, parent: QObject):
         super().__init__(parent)
         self._action = action
-        QgsApplication.instance().focusWindowChanged.connect(self._lend)
+        QgsApplication.instance().focusWindowChanged.connect(self._add_to_dialog)
 
     def remove(self) -> None:
         """Stop adding the action to dialogs."""
-        QgsApplication.instance().focusWindowChanged.disconnect(self._lend)
+        QgsApplication.instance().focusWindowChanged.disconnect(self._add_to_dialog)
 
-    def _lend(self) -> None:
+    def _add_to_dialog(self) -> None:
         dialog = QApplication.activeModalWidget()
         if dialog is not None and self._action not in dialog.actions():
             dialog.addAction(self._action)

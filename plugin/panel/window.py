@@ -150,7 +150,7 @@ class FleetWindow(QObject):
             action.triggered.connect(lambda _, tool=tool: self._iface.mapCanvas().setMapTool(tool))
             # A click on the button of the active tool keeps it, as QGIS's own do.
             action.triggered.connect(lambda _, tool=tool: tool.action().setChecked(True))
-        actions.panel.triggered.connect(self._give_keyboard)
+        actions.panel.triggered.connect(self._focus_opened)
         actions.connect.triggered.connect(self._connect_or_not)
         actions.send.triggered.connect(desk.sending.send)
         actions.cancel.triggered.connect(lambda: desk.drafts.set_command(None))
@@ -172,7 +172,7 @@ class FleetWindow(QObject):
         desk.state.link_changed.connect(self._show_link)
         desk.state.gateways_changed.connect(self._keep_gateways)
 
-    def _give_keyboard(self, opened: bool) -> None:
+    def _focus_opened(self, opened: bool) -> None:
         """Set the focus in a panel opened by its shortcut: once connected, no access key leads there."""
         if opened:
             self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)

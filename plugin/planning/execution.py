@@ -79,7 +79,7 @@ class PlanExecution(QObject):
         """The plan, and its revision, whose documents were requested on this link."""
         self._submitted_here: PlanProposal | None = None
         """The plan submitted last by this desk: it is shown until the gateway has sent it back."""
-        self._went: tuple[str, Sequence[str]] | None = None
+        self._release_query: tuple[str, Sequence[str]] | None = None
         """The key of the query sent after robots were released, and these robots."""
         self._reports: dict[str, plans.PlanReport] = {}
         desk.state.plans_changed.connect(self._receive_plans)
@@ -208,7 +208,7 @@ class PlanExecution(QObject):
             raise PlanningError(
                 tr("Nothing was overridden: what was refused is no longer being sent. Look at the plan.")
             )
-        done = self._submitted if isinstance(refusal.request, plans.SubmitPlan) else self._went_on
+        done = self._submitted if isinstance(refusal.request, plans.SubmitPlan) else self._continued
         self._ask(replace(refusal.request, override=why), refusal.words, refusal.plan, done)
 
     def pause(self) -> None:
@@ -219,7 +219,7 @@ class PlanExecution(QObject):
         """Continue the plan's robots; raises PlanningError when none is driven."""
         report = self._open().report
         request = plans.ResumePlan(report.plan, report.revision)
-        self._ask(request, tr("Going on with the cone plan"), done=self._went_on)
+        self._ask(request, tr("Going on with the cone plan"), done=self._continued)
 
     def plan_rest(self, *, try_again: bool = False) -> None:
         """Hold the robots and plan the remainder; raises PlanningError when no plan is driven."""
@@ -232,7 +232,7 @@ class PlanExecution(QObject):
         if known.proposal is None or not known.is_whole:
             raise PlanningError(tr("There is no new plan to confirm."))
         request = plans.ConfirmReplan(known.plan, known.report.revision)
-        self._ask(request, tr("The new cone plan"), known.proposal, self._went_on)
+        self._ask(request, tr("The new cone plan"), known.proposal, self._continued)
 
     def discard(self) -> None:
         """Discard the new plan, or cancel its computation; robots that were held continue as before."""
@@ -324,17 +324,17 @@ class PlanExecution(QObject):
     def _submitted(self, result: dict[str, Any]) -> None:
         self.hint.emit(tr("The cone plan is in the robots' queues."))
 
-    def _went_on(self, result: dict[str, Any]) -> None:
+    def _continued(self, result: dict[str, Any]) -> None:
         """Query the queues: their reports may arrive after the answer that continued them."""
         known = self._desk.state.plans.get(result.get("plan"))
         if known is None:
             return
         with suppress(NotSentError):
-            self._went = (self._desk.orders.inquire(GetQueue()), known.report.robots)
+            self._release_query = (self._desk.orders.inquire(GetQueue()), known.report.robots)
 
     def _report_who_stays(self, key: str) -> None:
-        if self._went is not None and key == self._went[0]:
-            robots, self._went = self._went[1], None
+        if self._release_query is not None and key == self._release_query[0]:
+            robots, self._release_query = self._release_query[1], None
             for text in after_sending(self._desk, robots):
                 self._fail(text)
 

@@ -212,7 +212,7 @@ class PlanEditor(QObject):
         except AssignmentError as error:
             raise PlanningError(str(error)) from error
         ways = PlanTravel(self._desk.project, frame, self.settings)
-        ways.cones = self._cones_of_before({one.placement for one in facts.values()})
+        ways.cones = self._standing_cones({one.placement for one in facts.values()})
         ways.standing = self._standing_robots()
         blank = PlanProposal(ConePlan((), (), (), "", "", "", ""), ways, facts, uuid.uuid4().hex)
         ways.closures = self._desk.roads.closures
@@ -287,7 +287,7 @@ class PlanEditor(QObject):
             if used[row]
         )
 
-    def _cones_of_before(self, collected: set[int | None]) -> np.ndarray:
+    def _standing_cones(self, collected: set[int | None]) -> np.ndarray:
         """Return the positions of cones that the plan does not collect, (n, 2)."""
         cones = [
             (one.x, one.y)

@@ -76,15 +76,15 @@ class ReplayDock(ActionDock):
         since, until = self.form.stretch()
         self._desk.messages.end(REPLAY)
         if self._desk.state.site is None:
-            self._complain(tr("There is nothing to replay yet. Connect to a gateway first."))
+            self._warn(tr("There is nothing to replay yet. Connect to a gateway first."))
             return
         if until <= since:
-            self._complain(tr("The replay's time ends before it begins. Correct one of the two."))
+            self._warn(tr("The replay's time ends before it begins. Correct one of the two."))
             return
         robots = list(self._desk.selection.robots) if self.form.selected.isChecked() else []
         if self.form.selected.isChecked() and not robots:
             text = tr("No robot is selected to be replayed. Select one, or replay all.")
-            self._complain(text, SELECTION)
+            self._warn(text, SELECTION)
             return
         try:
             self.fetching.begin(since, until, robots)
@@ -106,7 +106,7 @@ class ReplayDock(ActionDock):
         self.form.stop_requested.connect(self.fetching.stop)
         self.fetching.progressed.connect(self._progressed)
         self.fetching.ended.connect(self._ended)
-        self.layer.failed.connect(self._complain)
+        self.layer.failed.connect(self._warn)
         self.layer.changed.connect(self.map.follow)
         self.line.requested.connect(self.clockwork.seek)
         self.clockwork.moved.connect(self._show)
@@ -140,7 +140,7 @@ class ReplayDock(ActionDock):
         self.form.show_busy(False)
         history = self.fetching.history
         if why:
-            self._complain(why)
+            self._warn(why)
         if not len(history):
             self._show_status(why or tr("No positions are stored of that time."))
             return
@@ -165,7 +165,7 @@ class ReplayDock(ActionDock):
         try:
             self.map.show_all(self.fetching.history)
         except FleetError as error:
-            self._complain(str(error))
+            self._warn(str(error))
 
     def _show_robots(self) -> None:
         self._show(self.clockwork.moment)
@@ -182,7 +182,7 @@ class ReplayDock(ActionDock):
             )
         except FleetError as error:
             self.clockwork.play(False)
-            self._complain(str(error))
+            self._warn(str(error))
 
     def _commands_changed(self, *_: object) -> None:
         if self.clockwork.is_set:
@@ -215,7 +215,7 @@ class ReplayDock(ActionDock):
         self.line.show_marks(NO_MARKS)
         self._show_status(tr("Choose a time and press Load."))
 
-    def _complain(self, text: str, *topics: Topic) -> None:
+    def _warn(self, text: str, *topics: Topic) -> None:
         """Report an error about the loaded data, until other data is loaded."""
         self._desk.messages.post(text, Level.WARNING, REPLAY, *topics)
 

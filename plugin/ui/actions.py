@@ -321,7 +321,7 @@ class DockAction:
         self.action.toggled.connect(self._place)
         dock.setToggleVisibilityAction(self.action)
         self.action.triggered.connect(self._make_room)
-        self.action.triggered.connect(self._give_keyboard)
+        self.action.triggered.connect(self._focus_opened)
         iface.addPluginToMenu(menu, self.action)
 
     def _place(self, opened: bool) -> None:
@@ -348,7 +348,7 @@ class DockAction:
             window: QMainWindow = self._iface.mainWindow()
             window.resizeDocks([self.dock], [self.dock.sizeHint().height()], Qt.Orientation.Vertical)
 
-    def _give_keyboard(self, opened: bool) -> None:
+    def _focus_opened(self, opened: bool) -> None:
         """Set the focus in the panel when it was opened by its shortcut."""
         if opened:
             self.dock.setFocus(Qt.FocusReason.ShortcutFocusReason)

@@ -336,7 +336,7 @@ def load_site(folder: Path, project: QgsProject) -> LoadedSite:
     for part, layer in opened:
         if part.setup.role not in taken:
             roles.keep_setup(layer, part.setup)
-        _dress(layer, part.style)
+        _style(layer, part.style)
         project.addMapLayer(layer, False)
         group.addLayer(layer)
     titles = [part.title for part in PARTS if part.setup.role in taken]
@@ -376,7 +376,7 @@ def _open(folder: Path) -> list[tuple[_Part, QgsVectorLayer]]:
     return opened
 
 
-def _dress(layer: QgsVectorLayer, style: str) -> None:
+def _style(layer: QgsVectorLayer, style: str) -> None:
     if style:
         layer.loadNamedStyle(str(STYLES / style))
     else:

@@ -161,7 +161,7 @@ BANDS = 16
 FILL_SECONDS = 0.003
 """Time limit for filling in one frame."""
 LONGEST_STEP = 4000
-"""Pixels: a longer step between two samples is a robot that was moved by hand; no trail is drawn."""
+"""Pixels: a longer step between two samples is a robot whose position jumped; no trail is drawn."""
 MANY_SEEN = 0.15
 """Fraction of pixels with a trail above which it is faster to colour all than to search for those."""
 NEVER = -1e9

@@ -164,7 +164,7 @@ class SurfaceTool(QgsMapTool):
         super().activate()
         if not self._listens:
             self._listens = True
-            self._store.forgotten.connect(self._read_anew)
+            self._store.forgotten.connect(self._read_again)
             self._store.ended.connect(self._have_read)
         self._try(self._read)
 
@@ -202,7 +202,7 @@ class SurfaceTool(QgsMapTool):
     def _leave(self) -> None:
         if self._listens:
             self._listens = False
-            self._store.forgotten.disconnect(self._read_anew)
+            self._store.forgotten.disconnect(self._read_again)
             self._store.ended.disconnect(self._have_read)
         self._clicked = self._awaited = None
         QToolTip.hideText()
@@ -254,7 +254,7 @@ class SurfaceTool(QgsMapTool):
             tr("{told} at {where}", told=_surface_text(_at(surfaces, place, crs)), where=where)
         )
 
-    def _read_anew(self) -> None:
+    def _read_again(self) -> None:
         # Without layers there is nothing to read; a click reports it.
         if self._store.layers():
             self._try(self._read)

@@ -201,7 +201,7 @@ class AlarmMessages:
         Must be called again and again, also without alarms.
         """
         if self._clock.steady() >= self._until:
-            self._begin_anew()
+            self._restart()
         for alarm in began[: self._left]:
             _write(alarm.text)
         more = max(0, len(began) - self._left)
@@ -211,7 +211,7 @@ class AlarmMessages:
             self._counted += more
         self._left = max(0, self._left - len(began))
 
-    def _begin_anew(self) -> None:
+    def _restart(self) -> None:
         if self._counted:
             _count(self._counted)
         self._until, self._left, self._counted = self._clock.steady() + WITHIN, MOST_LINES, 0
@@ -435,15 +435,15 @@ class AlarmBar(QObject):
         """Show the item with this level, in front; it is replaced only when behind another notice, since
         that takes QGIS as long as a frame of the map."""
         if self._item is None:
-            self._hang_up(level)
+            self._add_item(level)
         elif self._bar.currentItem() is not self._item:
             self._remove_item()
-            self._hang_up(level)
+            self._add_item(level)
         elif level != self._level:
             self._level = level
             self._item.setLevel(level)
 
-    def _hang_up(self, level: Qgis.MessageLevel) -> None:
+    def _add_item(self, level: Qgis.MessageLevel) -> None:
         self._level = level
         self._shown = "", ""
         self._label = MessageLabel("", self._bar)

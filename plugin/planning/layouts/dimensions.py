@@ -126,10 +126,10 @@ class LayoutDimensions(QDialog):
         self.show_heading(heading)
         self._fill(layout)
         if not self.testAttribute(Qt.WidgetAttribute.WA_Moved):
-            self._lie_beside_the_map()
+            self._move_to_corner()
         self.show()
 
-    def _lie_beside_the_map(self) -> None:
+    def _move_to_corner(self) -> None:
         """Move to the lower left corner of the window: Qt would begin in its middle, where the cones go."""
         window = self.parentWidget().window().geometry()
         self.move(window.left(), window.bottom() + 1 - self.height())
