@@ -167,7 +167,7 @@ def _columns(reports: Sequence[CommandReport], marks: list[tuple[float, int, int
 
 
 def _ended_at(report: CommandReport) -> float:
-    """Return the time at which a command left its robot idle: for an abort at once."""
+    """Return the time at which a command ended; an abort is never under way."""
     if report.op == Abort.__name__:
         return -np.inf
     return next((step.at for step in report.steps if not step.state.is_open), np.inf)
