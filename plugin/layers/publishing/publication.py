@@ -222,7 +222,7 @@ def new_publication(folder: Path, earlier: str) -> Iterator[NewPublication]:
 
     ``earlier`` is the text of the ``site.toml`` before it, empty for none.
 
-    Must be called where no other publication is under way, see ``publication_lock``.
+    Must be called where no other publication is under way, see :func:`exclusive_publication`.
 
     :raises PublicationError: when the folder cannot be written.
     """
