@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
-from qgis.gui import QgisInterface, QgsFileWidget, QgsOptionsPageWidget, QgsOptionsWidgetFactory
-from qgis.PyQt.QtCore import pyqtSignal
+from qgis.gui import (
+    QgisInterface,
+    QgsFileWidget,
+    QgsOptionsPageWidget,
+    QgsOptionsWidgetFactory,
+    QgsScrollArea,
+)
+from qgis.PyQt.QtCore import QSize, Qt, pyqtSignal
 from qgis.PyQt.QtGui import QIcon
 from qgis.PyQt.QtWidgets import (
     QComboBox,
     QDoubleSpinBox,
     QFormLayout,
+    QFrame,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -139,7 +146,7 @@ class OptionsPage(QgsOptionsPageWidget):
         tabs.setObjectName("fleet_options_tabs")
         tabs.addTab(_page(self.connections, stretch=False), tr("Connections"))
         tabs.addTab(_page(self.preferences), tr("Map and files"))
-        tabs.addTab(_page(self.alarms), tr("Alarms"))
+        tabs.addTab(_ScrolledPage(_page(self.alarms)), tr("Alarms"))
         self._help = QPushButton(tr("Fleet Supervisor &help"))
         self._help.setObjectName("fleet_options_help")
         self._help.setAutoDefault(False)
@@ -170,6 +177,28 @@ def _page(widget: QWidget, *, stretch: bool = True) -> QWidget:
     if stretch:
         rows.addStretch()
     return page
+
+
+class _ScrolledPage(QgsScrollArea):
+    """Scrolls ``page`` where it is too tall, and is as wide as it needs.
+
+    QGIS's own scroll area keeps the wheel that scrolls from changing the fields that come under the mouse.
+    """
+
+    def __init__(self, page: QWidget):
+        super().__init__()
+        self.setFrameShape(QFrame.Shape.NoFrame)
+        self.setWidgetResizable(True)
+        self.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
+        self.setWidget(page)
+
+    def minimumSizeHint(self) -> QSize:
+        bar = self.verticalScrollBar().sizeHint().width()
+        width = self.widget().minimumSizeHint().width() + bar + 2 * self.frameWidth()
+        return QSize(width, super().minimumSizeHint().height())
+
+    def sizeHint(self) -> QSize:
+        return self.widget().sizeHint()
 
 
 TITLE = "Fleet Supervisor"

@@ -116,3 +116,14 @@ def test_the_layers_style_draws_the_robots_where_the_layer_is_on_the_map(page, a
     page.apply()
     at_desk.view.show_now()
     assert painter.arrows and not read_preferences().drawn_by_layer
+
+
+def test_alarms_are_scrolled_where_the_page_is_too_low_for_them(page, wait):
+    tabs = page.findChild(QTabWidget, "fleet_options_tabs")
+    tabs.setCurrentIndex(2)
+    page.resize(960, 400)
+    wait(lambda: page.height() == 400)
+    last = tabs.currentWidget().findChildren(QDoubleSpinBox)[-1]
+    assert last.visibleRegion().isEmpty()
+    tabs.currentWidget().ensureWidgetVisible(last)
+    wait(lambda: not last.visibleRegion().isEmpty())

@@ -48,7 +48,7 @@ class ThresholdsForm(QWidget):
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 0, 0, 0)
         grid.setColumnStretch(1, 1)
-        # The whole form fits QGIS's options on a small screen with large type.
+        # So far all of it fits QGIS's options on a small screen with large type; else it is scrolled there.
         grid.setVerticalSpacing(2)
         for kind in AlarmKind:
             self._add(grid, kind)
