@@ -93,3 +93,10 @@ def test_one_test_is_found_by_its_name(run):
 def test_a_selection_of_nothing_is_an_error_as_ever(run):
     code, printed = run("-k", "no_such_test", "a")
     assert code == pytest.ExitCode.NO_TESTS_COLLECTED, printed
+
+
+@pytest.mark.parametrize("missing", ["a/test_gone.py", "a/test_gone.py::test_it"])
+def test_a_file_that_is_not_there_is_named(run, missing):
+    code, printed = run("a/test_first.py", missing)
+    assert code == pytest.ExitCode.USAGE_ERROR, printed
+    assert f"file or directory not found: {missing}" in printed

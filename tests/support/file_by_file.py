@@ -23,11 +23,19 @@ def begin(config: pytest.Config, order: Callable[[list[pytest.Item]], None]) -> 
     """
     told = getattr(config, "workerinput", None)
     if told is None:
+        _check_files(config)
         # One test of a file is found by the names in it.
         if config.getoption("dist", "no") == "loadfile" and not any("::" in one for one in config.args):
             config.pluginmanager.register(Dealer())
     elif SIGN in told:
         config.pluginmanager.register(Worker(order))
+
+
+def _check_files(config: pytest.Config) -> None:
+    """Raise UsageError for a file that is not there: workers that end for it only say that no test was run."""
+    for one in config.args:
+        if not (config.invocation_params.dir / one.partition("::")[0]).exists():
+            raise pytest.UsageError(f"file or directory not found: {one}")
 
 
 class Dealer:
