@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import fields
 from types import SimpleNamespace
 
 from sqlalchemy import text
 
+from robot_bridge.core.messages.base import DESK_REQUESTS, Role
 from robot_bridge.core.messages.commands import AbortTask
+from robot_bridge.core.messages.queues import TakeOver
 from robot_bridge.gateway.cluster import request_relay
 from robot_bridge.gateway.cluster.messages import Exchange
 from robot_bridge.gateway.cluster.request_relay import RequestRelay
@@ -52,3 +55,14 @@ async def test_aborts_of_a_large_fleet_wait_for_no_look(fleet_url, monkeypatch):
         await asyncio.gather(running, return_exceptions=True)
         await database.close()
     assert sorted(handlers.asked) == ids
+
+
+def test_what_is_asked_of_one_robot_is_done_by_the_gateway_that_has_it():
+    """A question may be answered by any gateway, and TakeOver is: it writes the queues of several robots."""
+    of_a_robot = {
+        request
+        for request in DESK_REQUESTS.values()
+        if request.least_role is not Role.VIEWER and "robot" in [one.name for one in fields(request)]
+    }
+    missing = of_a_robot - set(request_relay.RELAYED) - {TakeOver}
+    assert not missing, f"{sorted(one.method for one in missing)}: add them to RELAYED of request_relay.py"
