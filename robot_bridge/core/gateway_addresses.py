@@ -1,4 +1,4 @@
-"""The gateways of a fleet as a robot, link or desk knows them: which to connect to, when, and with what."""
+"""Addresses of a fleet's gateways at a robot, link or desk: the next one, reconnect back-off, token, TLS."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .messages.base import is_loopback, usable_addresses
 
 log = logging.getLogger(__name__)
 
-# --- Which gateway is tried next, and when ---
+# --- Which gateway is tried next, and when: the back-off ---
 
 SPREAD = 0.2
 """of a wait by which it is longer or shorter: those whose gateway died do not all come in one moment."""

@@ -1,4 +1,4 @@
-"""A program and whoever started it: what systemd is told (sd_notify(3)), and the end of standard input."""
+"""Parent process of a program: notifications to systemd (sd_notify(3)), and the end of standard input."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Server of operators: sessions over WebSocket, and the order of their requests.
+"""Server of operators: sessions over WebSocket, order of their requests, permission check of each.
 
 What stops robots is begun at once, whatever was asked before. What may take long is answered aside, and
 everything else in turn. A stop overtakes what waits its turn: what of that would set robots in motion is

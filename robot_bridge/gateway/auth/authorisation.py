@@ -1,4 +1,4 @@
-"""Authorisation of connections: who is let in, how many of each kind, and how they are disconnected."""
+"""Authorisation of connections, not of requests: who is let in, how many of each kind, disconnection."""
 
 from __future__ import annotations
 
