@@ -45,7 +45,7 @@ test: $(READY) build/run ## run every test, style and import rules included, hea
 test-release: $(READY) build/run ## run before a release: every test on everything; one that would be skipped fails
 	@$(HEADLESS) $(RUN) -m pytest -q -rfE $(SIDE_BY_SIDE) --release $(ARGS)
 
-test-core: $(READY) ## run within a minute what needs neither QGIS nor database servers nor a display
+test-core: $(READY) ## run in a few minutes what needs neither QGIS nor database servers nor a display
 	@$(RUN) -m pytest -q -rfE -p no:pytest_qgis --core -n 2 --dist loadfile --no-loadscope-reorder $(ARGS)
 
 test-newer: ## run every test on the newer QGIS of Debian forky, in a root folder of its own (as root)

@@ -32,7 +32,7 @@ def begin(config: pytest.Config, order: Callable[[list[pytest.Item]], None]) -> 
 
 
 def _check_files(config: pytest.Config) -> None:
-    """Raise UsageError for a file that is not there: workers that end for it only say that no test was run."""
+    """Raise UsageError for a file that is not there: workers that end for it only say that no test ran."""
     for one in config.args:
         if not (config.invocation_params.dir / one.partition("::")[0]).exists():
             raise pytest.UsageError(f"file or directory not found: {one}")
