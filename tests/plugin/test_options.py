@@ -7,9 +7,20 @@ from fleet_supervisor.plugin.help import OPTIONS, HelpWindow
 from fleet_supervisor.plugin.plugin import FleetPlugin
 from fleet_supervisor.plugin.settings.profile import Preferences, read_preferences, write_preferences
 from qgis.core import QgsSettings
-from qgis.PyQt.QtCore import Qt
+from qgis.PyQt.QtCore import QPoint, QPointF, Qt
+from qgis.PyQt.QtGui import QWheelEvent
 from qgis.PyQt.QtTest import QTest
 from qgis.PyQt.QtWidgets import QApplication, QComboBox, QDoubleSpinBox, QLineEdit, QPushButton, QTabWidget
+
+
+def wheel(at: QPointF, on_screen: QPoint) -> QWheelEvent:
+    """A notch of the wheel towards the operator."""
+    buttons, keys, phase = (
+        Qt.MouseButton.NoButton,
+        Qt.KeyboardModifier.NoModifier,
+        Qt.ScrollPhase.NoScrollPhase,
+    )
+    return QWheelEvent(at, QPointF(on_screen), QPoint(), QPoint(0, -120), buttons, keys, phase, False)
 
 
 @pytest.fixture
@@ -127,3 +138,18 @@ def test_alarms_are_scrolled_where_the_page_is_too_low_for_them(page, wait):
     assert last.visibleRegion().isEmpty()
     tabs.currentWidget().ensureWidgetVisible(last)
     wait(lambda: not last.visibleRegion().isEmpty())
+
+
+def test_the_wheel_that_scrolls_the_alarms_changes_no_number(page, wait):
+    tabs = page.findChild(QTabWidget, "fleet_options_tabs")
+    tabs.setCurrentIndex(2)
+    page.resize(960, 400)
+    wait(lambda: page.height() == 400)
+    area = tabs.currentWidget()
+    numbers = area.findChildren(QDoubleSpinBox)
+    before = [one.value() for one in numbers]
+    for under in (area.viewport(), *numbers):
+        middle = QPointF(under.rect().center())
+        QApplication.sendEvent(under, wheel(middle, under.mapToGlobal(middle.toPoint())))
+    assert area.verticalScrollBar().value() > 0
+    assert [one.value() for one in numbers] == before
