@@ -1,1 +1,1 @@
-"""What plugin, gateway, links and robots share; no more than numpy is needed to import it."""
+"""Code shared by plugin, gateway, links and robots; importing it needs no package but numpy."""

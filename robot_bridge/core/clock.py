@@ -1,4 +1,4 @@
-"""Clocks: as one object that a test or a simulation can move by hand, set while a program runs, in doubt."""
+"""Clocks: replaceable in tests and simulations; detection of standstills, clock steps and wrong clocks."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ neither, and its clock for :func:`time.monotonic` counts sleep."""
 
 
 def steady_time() -> float:
-    """Return seconds of a clock that nobody sets and that counts sleep; only differences mean something."""
+    """Return the seconds of a clock that is never set and counts sleep; only differences are meaningful."""
     return time.monotonic() if _COUNTS_SLEEP is None else time.clock_gettime(_COUNTS_SLEEP)
 
 
@@ -21,7 +21,7 @@ class Clock:
     """The system's clocks, in seconds."""
 
     def time(self) -> float:
-        """Return the seconds since the Unix epoch, UTC; whoever sets the computer's clock makes it jump."""
+        """Return the seconds since the Unix epoch, UTC; it jumps when the computer's clock is set."""
         return time.time()
 
     def steady(self) -> float:
@@ -53,21 +53,21 @@ class ManualClock(Clock):
         self.uptime += seconds
 
 
-# --- Noticing that this program stood still, while what was said to it went on ---
-# Held by a debugger or SIGSTOP, asleep with its computer, or with its virtual machine.
+# --- Detecting that this program stood still while messages to it kept arriving ---
+# Causes: a debugger or SIGSTOP, or a computer or virtual machine that is asleep.
 
 LONGEST_PAUSE_S = 5.0
-"""seconds; a loop that is busy for less has not stood still. A gateway gives a peer up after 10 s."""
+"""seconds; a loop that is busy for less has not stood still. A gateway gives up a peer after 10 s."""
 LOOK_EVERY_S = 0.5
 ABORTS_WITHIN_S = 0.2
-"""seconds in which an Abort is read on a connection on which all else is too old."""
+"""seconds within which an Abort is still read on a connection whose other messages are too old."""
 
 
 class StandstillWatch:
-    """Tells whether this program has stood still since the watch was made.
+    """Detects whether this program has stood still since the watch was made.
 
-    It has, where more than ``longest_s`` have passed between two calls of :meth:`check`: one is needed before
-    anything is done that was received, and :meth:`wait` makes the others.
+    It has if more than ``longest_s`` passed between two calls of :meth:`check`: call it before handling
+    anything received; :meth:`wait` makes the other calls.
     """
 
     def __init__(self, longest_s: float = LONGEST_PAUSE_S, clock: Clock = SYSTEM_CLOCK) -> None:
@@ -75,10 +75,10 @@ class StandstillWatch:
         self._clock = clock
         self._looked_at = clock.steady()
         self.seconds = 0.0
-        """For how long it stood still; 0 where it did not."""
+        """Duration of the standstill; 0 if there was none."""
 
     def check(self) -> bool:
-        """Tell whether it stood still; once that is so it stays so."""
+        """Return whether it stood still; once true it stays true."""
         since, self._looked_at = self._looked_at, self._clock.steady()
         passed = self._looked_at - since
         if passed > self._longest_s:
@@ -91,12 +91,12 @@ class StandstillWatch:
             await asyncio.sleep(LOOK_EVERY_S)
 
 
-# --- Noticing that this computer's clock was set, while the gateway goes by it ---
+# --- Detecting that this computer's clock was set while the gateway uses it ---
 # A small computer without a battery for its clock begins with a wrong time, set right once it has a
 # network.
 
 LEAST_STEP = 1.0
-"""seconds; less is what a clock is corrected by all the time."""
+"""seconds; smaller corrections are normal."""
 
 
 class ClockStep(NamedTuple):
@@ -110,7 +110,7 @@ class ClockStep(NamedTuple):
     now: float
 
     def moved(self, at: float) -> float:
-        """Return a time that was noted before as the clock would have it now."""
+        """Return a time recorded before the step, converted to the clock as it is set now."""
         return at if self.since <= at <= self.now else at + self.by
 
 
@@ -122,7 +122,7 @@ class ClockWatch:
         self._seen = clock.time(), clock.steady()
 
     def measure_step(self) -> ClockStep | None:
-        """Return how the clock was set since the last look, None where it was not."""
+        """Return the step of the clock since the last call, None if it was not set."""
         (then, steady_then), self._seen = self._seen, (self._clock.time(), self._clock.steady())
         now, steady_now = self._seen
         passed = steady_now - steady_then
@@ -130,30 +130,30 @@ class ClockWatch:
         return None if abs(by) < LEAST_STEP else ClockStep(by, now - passed, now)
 
 
-# --- What the times in the database say of this computer's clock when the gateway starts; no I/O ---
-# A clock that is wrong before the gateway runs is not seen to be set: see :class:`ClockWatch` for that.
+# --- Plausibility of this computer's clock at start, from the times in the database; no I/O ---
+# Covers a clock that is wrong before the gateway runs; :class:`ClockWatch` covers one set later.
 
 LEAST_BEHIND = 5.0
-"""seconds; less is what a clock is corrected by."""
+"""seconds; smaller corrections are normal."""
 LONG_IDLE = 7 * 86400.0
-"""seconds without anything stored after which it may be the clock that is ahead."""
+"""seconds without anything stored after which the clock may be ahead."""
 UNKNOWN_AGE = 30 * 86400.0
-"""seconds ago that something counts as being that is yet to come by a clock that is behind: long ago, since
-nobody knows."""
+"""age in seconds assumed for a time that lies in the future by a clock that is behind: long ago, as the true
+age is unknown."""
 RELEASED = 1_767_225_600.0
 """2026-01-01 UTC: no computer with this version has an earlier time."""
 _SET_IT = "set it ('timedatectl' shows it, 'timedatectl set-ntp true' has the network set it)"
 
 
 class ClockDoubt(NamedTuple):
-    """Why the clock may be wrong, with what to do; ``may_be_ahead`` if it may make what is kept too old."""
+    """Why the clock may be wrong, with what to do; ``may_be_ahead`` if stored data may seem too old by it."""
 
     text: str
     may_be_ahead: bool = False
 
 
 def check_clock_at_start(now: float, newest: float | None) -> ClockDoubt | None:
-    """Return why the clock, which says ``now``, may be wrong; None where nothing speaks against it.
+    """Return why the clock, which says ``now``, may be wrong; None if nothing contradicts it.
 
     ``newest`` is the newest time in the database, None in an empty one; both are seconds since 1970.
     """

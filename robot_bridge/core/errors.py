@@ -1,4 +1,4 @@
-"""Exception families: bridge, robot map, roads, cone layouts, assignment, sites; phrases of their texts."""
+"""Exception families: bridge, robot map, roads, cone layouts, assignment, sites; helpers for their texts."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 
 
 class BridgeError(Exception):
-    """Something the bridge cannot do; the text names what was wrong, where, and what to do."""
+    """Something the bridge cannot do; the text names the cause, the place and the remedy."""
 
 
 class StoreError(BridgeError):
@@ -17,19 +17,19 @@ class StoreError(BridgeError):
 
 
 class DataRefusedError(StoreError):
-    """The database is in order and refuses a value: too long, or of a kind that it cannot hold."""
+    """The database works but refuses a value: too long, or of a type that it cannot hold."""
 
 
 class UncertainError(StoreError):
-    """The connection was lost during a commit: what it was to store may be stored or not."""
+    """The connection was lost during a commit, which may or may not have been stored."""
 
 
 class RefusedError(BridgeError):
-    """A request that was understood and is not done: unknown robot, target outside the site, ..."""
+    """A request that was understood but is refused: unknown robot, target outside the site, ..."""
 
 
 class OtherRunError(RefusedError):
-    """What another robot says under the account of the one that was let in."""
+    """A message of another robot under the account of the one that was admitted."""
 
 
 class ForbiddenError(RefusedError):
@@ -37,7 +37,7 @@ class ForbiddenError(RefusedError):
 
 
 class OutdatedError(RefusedError):
-    """A change to something that has changed since it was looked at; ``newer`` is how it is now, as JSON."""
+    """A change to something that has changed since it was read; ``newer`` is its present state, as JSON."""
 
     def __init__(self, text: str, newer: dict[str, Any]) -> None:
         super().__init__(text)
@@ -45,10 +45,10 @@ class OutdatedError(RefusedError):
 
 
 class OverridableError(RefusedError):
-    """A request that is done all the same with an override; ``found`` is all that speaks against it."""
+    """A request that needs an override; ``found`` lists all objections."""
 
     NAMED = 3
-    """So much of what was found stands in the text."""
+    """Number of objections named in the text."""
 
     def __init__(self, found: Iterable[str], otherwise: str) -> None:
         self.found = list(dict.fromkeys(found))
@@ -58,7 +58,7 @@ class OverridableError(RefusedError):
 
 
 class LateError(RefusedError):
-    """A request whose deadline was over before it was begun; ``now`` is the time by the same clock."""
+    """A request whose deadline passed before it was begun; ``now`` is the time by the same clock."""
 
     def __init__(self, text: str, now: float) -> None:
         super().__init__(text)
@@ -66,15 +66,15 @@ class LateError(RefusedError):
 
 
 class BusyError(RefusedError):
-    """A request that is not dealt with because too many others wait."""
+    """A request that is not handled because too many others wait."""
 
 
 class FatalError(BridgeError):
-    """The gateway cannot go on: its process ends with this text, to be started again."""
+    """The gateway cannot continue: its process ends with this text and should be restarted."""
 
 
 class NotReadyError(BridgeError):
-    """A robot speaks that has not said Ready to this database."""
+    """A message of a robot that has not sent Ready to this database."""
 
 
 class AccessError(BridgeError):
@@ -89,7 +89,7 @@ class RobotMapError(Exception):
 
 
 class WindowError(RobotMapError):
-    """A window that encloses nothing, or of which nothing is known."""
+    """A window that encloses nothing, or for which there is no data."""
 
 
 class MapTextError(RobotMapError):
@@ -105,11 +105,11 @@ class MissingCodecError(RobotMapError):
 
 
 class ShapingError(RobotMapError):
-    """Something that cannot be asked of outlines; names it and what to give instead."""
+    """An invalid parameter for outlines; names it and the valid values."""
 
 
 class MapCancelledError(RobotMapError):
-    """Work was ended midway by whoever asked for it."""
+    """Work was cancelled by its caller."""
 
 
 class MissingGeometryError(RobotMapError):
@@ -117,10 +117,10 @@ class MissingGeometryError(RobotMapError):
 
 
 class NavigationMapError(RobotMapError):
-    """A map of Nav2 that cannot be read; the text names the key, its value and what is right."""
+    """A map of Nav2 that cannot be read; the text names the key, its value and the valid values."""
 
 
-# --- What can be wrong with an export; part of the robot map's exception family ---
+# --- Errors of exports; part of the robot map's exception family ---
 
 
 class ExportError(RobotMapError):
@@ -132,7 +132,7 @@ class ExportGridError(ExportError):
 
 
 class MaskAreaError(ExportError):
-    """An area of a mask that is no polygon, or a speed that is none."""
+    """An area of a mask that is no polygon, or an invalid speed."""
 
 
 class GeoreferenceError(ExportError):
@@ -147,31 +147,31 @@ class MissingExportPackageError(ExportError):
 
 
 class RoadsError(Exception):
-    """Something is wrong with roads or with what is asked of them; names what, where, and what to do."""
+    """Something is wrong with roads or with a request about them; names what, where, and what to do."""
 
 
 class RoadInputError(RoadsError):
-    """Centrelines that are no roads: wrong shapes, numbers that are none."""
+    """Centrelines that are no roads: wrong shapes or invalid numbers."""
 
 
 class OffNetworkError(RoadsError):
-    """A place that is too far from every road that may be driven."""
+    """A place too far from every drivable road."""
 
 
 class NoRouteError(RoadsError):
-    """No way leads from one place to the other under the restrictions that were given."""
+    """No route leads from one place to the other under the given restrictions."""
 
 
 class RoadsCancelledError(RoadsError):
-    """Whoever watches long work said to stop."""
+    """Long work was cancelled by its caller."""
 
 
 class MissingEngineError(RoadsError):
-    """An engine was asked for by name whose package this Python does not have."""
+    """An engine was requested by name whose package is not installed."""
 
 
 class RoadExportError(RoadsError):
-    """A road network that another format cannot hold."""
+    """A road network that the target format cannot represent."""
 
 
 # --- The exception family of cone layouts ---
@@ -201,7 +201,7 @@ class AssignmentError(Exception):
 
 
 class JobError(AssignmentError):
-    """Targets, robots or stores that cannot be planned for: numbers that are none, names used twice."""
+    """Targets, robots or stores that cannot be planned for: invalid numbers, names used twice."""
 
 
 class MissingStoreError(JobError):
@@ -217,22 +217,22 @@ class UnservedError(AssignmentError):
 
 
 class MissingSolverError(AssignmentError):
-    """A method was asked for by name whose package this Python does not have."""
+    """A method was requested by name whose package is not installed."""
 
 
 class AssignmentCancelledError(AssignmentError):
-    """Whoever asked for the plan does not want it any more."""
+    """The caller cancelled the plan."""
 
 
 class PlanEditError(AssignmentError):
-    """A change of a plan that cannot be made; the plan is as it was."""
+    """A change of a plan that cannot be made; the plan stays unchanged."""
 
 
 class PlanFileError(AssignmentError):
     """A file that is no plan."""
 
 
-# --- What can be wrong with a site; every message names what, where and what to do ---
+# --- Errors of sites; every message names what, where and what to do ---
 
 
 class SiteError(Exception):
@@ -248,30 +248,30 @@ class LayerError(SiteError):
 
 
 class CrsError(SiteError):
-    """A CRS cannot carry a site: unknown, geographic, not in metres, or EPSG:3857."""
+    """A CRS is unsuitable for a site: unknown, geographic, not in metres, or EPSG:3857."""
 
 
 class CacheError(SiteError):
-    """``site.cache`` is damaged, or belongs to another publication; the site can be read without it."""
+    """``site.cache`` is damaged or belongs to another publication; the site can be read without it."""
 
 
-# --- A number of things in words ---
+# --- Counts in words ---
 
 
 def counted(number: int, thing: str) -> str:
-    """Return ``number`` with what it is a number of: ``1 cone``, ``2 cones``."""
+    """Return ``number`` with its noun: ``1 cone``, ``2 cones``."""
     return f"{number} {thing}" if number == 1 else f"{number} {thing}s"
 
 
-# --- What others say, such as a driver or a server, in a text of ours ---
+# --- Messages of others, such as a driver or a server, within our own texts ---
 
 
 def in_one_line(said: object) -> str:
-    """Return what an error or a program says in one line, with single spaces between the words."""
+    """Return the text of an error or a program in one line, with single spaces between the words."""
     return " ".join(str(said).split())
 
 
-# --- Names in a text, which has no room for thousands ---
+# --- Long lists of names, shortened ---
 
 MOST_NAMES = 10
 
@@ -284,7 +284,7 @@ def listed_names(names: Sequence[str]) -> str:
     return ", ".join(names[:MOST_NAMES]) + (f" and {more} more" if more > 0 else "")
 
 
-# --- How an optional Python package comes onto a computer: the remedy in errors about one that is missing
+# --- How to install an optional Python package: the remedy in errors about a missing one
 
 _DEBIAN = {
     "cbor2": "python3-cbor2",
@@ -292,11 +292,11 @@ _DEBIAN = {
     "zstandard": "python3-zstandard",
 }
 _VERSIONS = {"shapely": "'shapely>=2,<2.1'"}
-"""What pip is asked for where the newest version does not go with Debian 12's other packages."""
+"""Requirements for pip where the newest version does not work with Debian 12's other packages."""
 
 
 def installation(package: str) -> str:
-    """Return how ``package`` is installed, to follow "install it"; Debian's Python refuses a plain pip."""
+    """Return how to install ``package``, to follow "install it"; Debian's Python refuses a plain pip."""
     elsewhere = f"python3 -m pip install {package}, with the Python that runs this"
     if debian := _DEBIAN.get(package):
         return f"(on Debian: apt install {debian}; elsewhere: {elsewhere})"

@@ -1,4 +1,4 @@
-"""Files written whole or not at all, beside their place and into it by one rename; layers of GeoPackages."""
+"""Files replaced atomically, by one rename from beside their place; layers of GeoPackages."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 T = TypeVar("T")
 STAGE = ".writing-"
-"""What the name of a folder begins with in which files are made; a program that was killed leaves it."""
+"""Prefix of the name of a staging folder; a program that was killed leaves it behind."""
 
 
 def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool = True) -> None:
-    """Replace what a program keeps in ``file`` for its next start; ``mode`` are the rights of a new one.
+    """Replace a program's stored state in ``file``; ``mode`` holds the permissions of a new file.
 
-    It is on the disk when this returns, unless ``synced`` is false: for programs that may not wait for a
-    busy disk, such as an adapter that stops vehicles from the same loop. The name beside ``file`` is always
-    the same, so that what a program leaves that is killed on the way is written over by the next: there is
-    one writer at a time.
+    It is on the disk when this returns, unless ``synced`` is false: for programs that may not wait for a busy
+    disk, such as an adapter that stops vehicles from the same loop. The name beside ``file`` is always the
+    same, so that the leftover of a killed program is overwritten by the next: there must be one writer at a
+    time.
 
     :raises OSError: ``file`` is as it was.
     """
@@ -43,11 +43,11 @@ def write_state(file: Path, content: bytes, mode: int = 0o666, *, synced: bool =
 
 
 def write_state_into(room: Path, file: Path, content: bytes) -> None:
-    """Replace ``file`` by ``room``, with ``content`` and spaces behind it: on a full disk.
+    """Replace ``file`` by ``room``, filled with ``content`` and trailing spaces: for a full disk.
 
-    What was ``file`` is the room for the next time, where it is as large.
+    The old ``file`` becomes the room for the next time, if it is as large.
 
-    :raises OSError: where there is no room, or it is too small; ``file`` is as it was.
+    :raises OSError: if there is no room, or it is too small; ``file`` is as it was.
     """
     with room.open("r+b") as stream:
         size = os.fstat(stream.fileno()).st_size
@@ -71,7 +71,7 @@ def write_state_into(room: Path, file: Path, content: bytes) -> None:
 
 @contextmanager
 def replacement(file: Path) -> Iterator[Path]:
-    """Yield where to write what becomes ``file`` when the block ends; after an exception nothing is left.
+    """Yield a path to write to that becomes ``file`` when the block ends; after an exception nothing is left.
 
     It has the name of ``file``, in a folder beside it that only this account may enter. Two programs may
     replace one file at a time: the later one wins.
@@ -87,11 +87,11 @@ def replacement(file: Path) -> Iterator[Path]:
 
 
 class StagedFiles:
-    """Files that are made in ``folder`` and put into ``target``, all or none.
+    """Files that are written in ``folder`` and moved into ``target``, all or none.
 
-    To be used in a ``with`` block. What was not published when it ends is removed, and so is a folder that
-    was made for it; what was published when it ends by an exception is taken back, and what was there before
-    put in its place. Files of other names in ``target`` are left alone.
+    For use in a ``with`` block. Files not published when it ends are removed, and so is a folder made for
+    them. If it ends with an exception, published files are rolled back and the earlier ones restored. Files
+    of other names in ``target`` are left alone.
     """
 
     def __init__(self, target: Path, prefix: str = STAGE) -> None:
@@ -115,7 +115,7 @@ class StagedFiles:
         return self._stage / name
 
     def __enter__(self) -> StagedFiles:
-        """Make the folder, and ``target`` where it is not there; raises OSError."""
+        """Make the folder, and ``target`` if it does not exist; raises OSError."""
         self._made = [path for path in (self.target, *self.target.parents) if not path.exists()]
         try:
             self.target.mkdir(parents=True, exist_ok=True)
@@ -129,15 +129,17 @@ class StagedFiles:
         return self
 
     def enter(self, writer: AbstractContextManager[T]) -> T:
-        """Enter ``writer``, which keeps something in :attr:`folder`; it is left before that is removed."""
+        """Enter ``writer``, which keeps something in :attr:`folder`; it is exited before the folder is
+        removed."""
         return self._open.enter_context(writer)
 
     def publish(self, names: Iterable[str] | None = None, removed: Iterable[str] = ()) -> None:
-        """Take the files ``removed`` away, then put ``names`` into their place, in this order.
+        """Delete the files ``removed``, then move ``names`` into their place, in this order.
 
-        Without ``names`` all that were made, by their names. Each is on the disk before the first is moved.
+        Without ``names``, all files that were made are moved, in order of their names. Each is on the disk
+        before the first is moved.
 
-        :raises OSError: the block is to end by it, so that all is as it was.
+        :raises OSError: let the block end with it, so that everything is rolled back.
         """
         made = sorted(file.name for file in self.folder.iterdir()) if names is None else list(names)
         for name in made:
@@ -153,7 +155,7 @@ class StagedFiles:
     def _keep_earlier(self, name: str) -> None:
         place = self.target / name
         if place.exists():
-            # A second name for it: there is no moment at which a reader finds no file.
+            # A second name (link) for it: a reader finds a file at every moment.
             try:
                 os.link(place, self._earlier / name)
             except OSError:
@@ -191,13 +193,13 @@ class StagedFiles:
 
 
 def _sync(file: Path) -> None:
-    """Have the content of ``file`` on the disk; for writing, as Windows asks for that."""
+    """Flush the content of ``file`` to the disk; opened for writing, as Windows requires that."""
     with file.open("r+b") as stream:
         os.fsync(stream.fileno())
 
 
 def _sync_folder(folder: Path) -> None:
-    """Have the names in ``folder`` on the disk, too; some systems and file systems cannot, and need not."""
+    """Flush the names in ``folder`` to the disk, too; some systems and file systems cannot, and need not."""
     with suppress(OSError):
         descriptor = os.open(folder, os.O_RDONLY)
         try:
@@ -209,7 +211,7 @@ def _sync_folder(folder: Path) -> None:
 # --- A layer of a GeoPackage, written by pyogrio ---
 
 _UTC = 100
-"""How GDAL says that a time is in UTC."""
+"""GDAL's time zone flag for UTC."""
 
 
 def write_geopackage_layer(
@@ -221,13 +223,13 @@ def write_geopackage_layer(
     crs: str | None,
     metadata: Mapping[str, str] | None = None,
 ) -> None:
-    """Write the layer ``name`` into ``file``, a GeoPackage, which is made where it is not there yet.
+    """Write the layer ``name`` into ``file``, a GeoPackage, which is created if it does not exist.
 
     ``kind`` is the type of ``geometry``, (n,) well-known binary; ``columns`` are (n,), times in UTC. It is
-    version 1.3 of the format, which GDAL 3.6 and older read. Whoever wants the file whole or not at all
-    writes into what :func:`replacement` or :class:`StagedFiles` give.
+    version 1.3 of the format, which GDAL 3.6 and older read. To replace the file atomically, write into the
+    path of :func:`replacement` or :class:`StagedFiles`.
 
-    :raises OSError: when it cannot be written. :raises ImportError: where pyogrio is not installed.
+    :raises OSError: when it cannot be written. :raises ImportError: if pyogrio is not installed.
     """
     import numpy as np
     import pyogrio
@@ -235,7 +237,7 @@ def write_geopackage_layer(
 
     times = [column for column, values in columns.items() if values.dtype.kind == "M"]
     try:
-        # Metres of a site whose place nobody knows have no CRS.
+        # A site whose place on the earth is unknown has metres without a CRS.
         with warnings.catch_warnings(action="ignore") if crs is None else nullcontext():
             pyogrio.raw.write(
                 str(file),
@@ -248,7 +250,7 @@ def write_geopackage_layer(
                 crs=crs,
                 append=file.exists(),
                 dataset_options={"VERSION": "1.3"},
-                # Not on the dataset: GDAL writes that into an .aux.xml file beside it on every reading.
+                # Not on the dataset: GDAL would write that into an .aux.xml file beside it at each reading.
                 layer_metadata=None if metadata is None else dict(metadata),
                 gdal_tz_offsets={column: np.full(len(geometry), _UTC) for column in times},
             )

@@ -20,12 +20,14 @@ log = logging.getLogger(__name__)
 # --- Which gateway is tried next, and when: the back-off ---
 
 SPREAD = 0.2
-"""of a wait by which it is longer or shorter: those whose gateway died do not all come in one moment."""
+"""fraction by which a wait is randomly longer or shorter: the peers of a dead gateway do not all come at
+once."""
 
 
 @dataclass(frozen=True)
 class FleetGateways:
-    """The ``gateways`` of a fleet by their addresses, as one of them told; ``database`` tells which fleet."""
+    """Addresses of the ``gateways`` of a fleet, as one of them reported; ``database`` identifies the
+    fleet."""
 
     database: str
     gateways: tuple[str, ...] = ()
@@ -33,15 +35,14 @@ class FleetGateways:
 
 @dataclass(frozen=True)
 class Pace:
-    """How patient who connects is, in seconds.
+    """Timing of connection attempts, in seconds.
 
-    A round, in which each gateway is tried, begins after ``first_wait``, twice as long after each one in
-    which none answered, and ``longest_wait`` at most; within a round the next gateway is tried after
-    ``between``. A gateway has ``alone`` to take a connection where there is no
-    other one to go to, else ``of_several``, twice as long with each round, up to ``alone``. A computer
-    without power closes no connection: it is pinged every ``ping_interval``, and has ``ping_timeout`` to
-    answer. ``given_first``: whether after a connection that was lost the gateway that was given is tried
-    first, and not once more the one that was lost.
+    A round, in which each gateway is tried, begins after ``first_wait``, doubled after each round without an
+    answer, up to ``longest_wait``; within a round the next gateway is tried after ``between``. A gateway has
+    ``alone`` to accept a connection if there is no other one, else ``of_several``, doubled with each round,
+    up to ``alone``. A computer without power closes no connection: it is pinged every ``ping_interval``, and
+    has ``ping_timeout`` to answer. ``given_first``: whether after a lost connection the configured gateway is
+    tried first, instead of the lost one again.
     """
 
     first_wait: float
@@ -55,16 +56,16 @@ class Pace:
 
 
 ROBOT_PACE = Pace(0.5, 0.1, 10.0, 10.0, 5.0, 5.0, 10.0)
-"""To change the gateway for each hole in a radio network would be work for all."""
+"""Changing the gateway at each gap in radio coverage would cost everybody work."""
 DESK_PACE = Pace(0.25, 0.1, 4.0, 5.0, 1.5, 2.0, 2.5, given_first=True)
-"""An operator who wants to stop robots is at a gateway that lives within two seconds; a cable that is pulled
-out shows before the operator wonders."""
+"""An operator who wants to stop robots reaches a live gateway within two seconds; a pulled cable is noticed
+before the operator wonders."""
 
 
 class GatewayAddresses:
-    """The address that was ``given``, and those that gateways told; they are tried in turn.
+    """The ``given`` address, and those that gateways reported; they are tried in turn.
 
-    Who has a token takes it nowhere that is less safe than what was given: see :meth:`learn`.
+    A token is never sent to an address less secure than the given one: see :meth:`learn`.
     """
 
     def __init__(self, given: str, pace: Pace = ROBOT_PACE, *, has_token: bool = False) -> None:
@@ -83,12 +84,12 @@ class GatewayAddresses:
 
     @property
     def given(self) -> str:
-        """The address that a person gave."""
+        """The configured address."""
         return self._given
 
     @property
     def is_given(self) -> bool:
-        """Whether that is the one that a person gave: what is wrong with it is theirs to put right."""
+        """Whether the current address is the configured one: only a person can correct it."""
         return self._current == self._given
 
     @property
@@ -103,14 +104,14 @@ class GatewayAddresses:
 
     @property
     def patience(self) -> float:
-        """Seconds that the gateway there has to take a connection, and to greet."""
+        """Seconds that the current gateway has to accept a connection, and to greet."""
         pace = self._pace
         if len(self._ring) == 1:
             return pace.alone
         return min(pace.of_several * 2.0 ** min(self._round, 10), pace.alone)
 
     def options(self) -> dict[str, Any]:
-        """Return what ``websockets`` is to connect with, beside credentials and sizes."""
+        """Return the connection options for ``websockets``, except credentials and sizes."""
         return {
             "open_timeout": self.patience,
             "ping_interval": self._pace.ping_interval,
@@ -119,38 +120,39 @@ class GatewayAddresses:
         }
 
     def learn(self, told: object) -> None:
-        """Know the addresses that a gateway ``told``, its own first, in place of those told before.
+        """Replace the known addresses by those that a gateway ``told``, its own first.
 
-        Who was given an address with TLS goes nowhere without. A token that is for this computer alone stays
-        here: nobody knows who listens on this computer's addresses. What is no list of addresses
-        is passed over.
+        If the given address has TLS, others without it are ignored. A token for this computer alone stays
+        here: it is unknown who listens on this computer's addresses. Anything but a list of addresses is
+        ignored.
         """
         texts = [one for one in told if isinstance(one, str)] if isinstance(told, list) else []
         usable = usable_addresses([one for one in texts if self._is_as_safe(one)])
         if usable is None:
             return
         stays = [one for one in self._ring if one in usable or one in (self._given, self._current)]
-        # In an order of each one's own: those of a gateway that died are spread over all others.
+        # Each client has an order of its own: the clients of a dead gateway spread over all others.
         new = self._random.sample(others := [one for one in usable if one not in stays], len(others))
-        # The one that it is connected to, perhaps by another name, comes last.
+        # The connected one, perhaps under another name, comes last.
         new.sort(key=lambda one: one == usable[0])
         self._ring = [*stays, *new]
 
     def forget(self) -> None:
-        """Know only the address that was given, and the one that is connected to."""
+        """Forget all addresses but the given one and the connected one."""
         self._ring = [one for one in self._ring if one in (self._given, self._current)]
 
     def answered(self) -> None:
-        """Note that the gateway there listens."""
+        """Record that the current gateway listens."""
         self._failures = self._round = 0
         self._refusing.clear()
 
     def refused(self) -> None:
-        """Note that the gateway there refuses for good: it is passed over until another has answered."""
+        """Record that the current gateway refuses for good: it is skipped until another has answered."""
         self._refusing.add(self._current)
 
     def next_wait(self, *, ends: bool = False) -> float:
-        """Go on to the address to try next; return the seconds until then. ``ends``: the gateway says so."""
+        """Move to the next address to try; return the seconds to wait. ``ends``: the gateway announced its
+        end."""
         lost, pace = self._current, self._pace
         if self._failures or ends or lost in self._refusing:
             self._go_on()
@@ -175,20 +177,20 @@ class GatewayAddresses:
         return not self._has_token or is_loopback(urlsplit(address).hostname or "")
 
 
-# --- What a client brings to a gateway: its token, and the authority that it trusts ---
+# --- Credentials of a client: its token, and the authority that it trusts ---
 
 
 @dataclass(frozen=True)
 class ClientCredentials:
-    """Files with a token and with the certificate of the site's authority (PEM); None where there is none."""
+    """Files with a token and with the certificate of the site's authority (PEM); each may be None."""
 
     token_file: Path | None = None
     ca: Path | None = None
 
     def options(self, url: str) -> dict[str, Any]:
-        """Return what ``websockets`` is to connect to ``url`` with; the files are read again each time.
+        """Return the options for ``websockets`` to connect to ``url``; the files are read again each time.
 
-        :raises AccessError: when a file cannot be used, or the token would travel for everybody to read.
+        :raises AccessError: when a file cannot be used, or the token would travel unencrypted.
         """
         parts = urlsplit(url)
         options: dict[str, Any] = {}
@@ -202,7 +204,7 @@ class ClientCredentials:
 
 
 def client_context(ca: Path | None) -> ssl.SSLContext:
-    """Return the context of who connects: trusts the authority in ``ca`` alone, without it the system's.
+    """Return a client's TLS context: it trusts only the authority in ``ca``, without it the system's.
 
     :raises AccessError: when ``ca`` cannot be read.
     """

@@ -1,4 +1,4 @@
-"""Headings and angles, polylines measured along themselves, and pairs of places that are close."""
+"""Headings and angles, polylines with stations along them, and pairs of nearby places."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ def headings_of(theta: Floats) -> Floats:
     return headings
 
 
-# --- A line through points, measured along itself: what both who drives a path and who judges it need ---
+# --- Polylines with stations: shared by driving a path and by judging it ---
 
 Track = Sequence[tuple[float, float]]
-"""One point is a place, several are a path; metres in the site frame."""
+"""One point is a place, several form a path; metres in the site frame."""
 
 
 class Polyline:
@@ -43,7 +43,7 @@ class Polyline:
     def __init__(self, points: Sequence[tuple[float, float]]) -> None:
         self._points = np.asarray(points, dtype=np.float64)
         self._start, self._step = self._points[:-1], np.diff(self._points, axis=0)
-        # Two equal points in a row make a step of no length, which cannot be divided by.
+        # Two equal points in a row make a step of length 0, by which one cannot divide.
         self._length = np.maximum(np.hypot(*self._step.T), 1e-9)
         self._stations = np.concatenate([[0.0], np.cumsum(np.hypot(*self._step.T))])
 
@@ -76,9 +76,10 @@ class Polyline:
         return self._points[np.searchsorted(self._stations, station, side="right") :]
 
     def turns(self, reach: float) -> NDArray[np.float64]:
-        """Return by how many radians the line turns at each of its n points, 0 at its ends.
+        """Return the turn in radians at each of the n points, 0 at the ends.
 
-        It is the angle between the ways from ``reach`` metres before the point, and to as far behind it.
+        It is the angle between the direction from ``reach`` metres before the point and the one to as far
+        behind it.
         """
         before, after = (np.column_stack(self._along(self._stations + step)) for step in (-reach, reach))
         came, goes = self._points - before, after - self._points
@@ -97,13 +98,13 @@ class Polyline:
         return x, y
 
 
-# --- Pairs of places that are close to each other, of thousands at once ---
+# --- Pairs of nearby places among thousands ---
 
 Ints = npt.NDArray[np.int64]
 _ROW = np.int64(2**32)
-"""From a cell's number to that of the cell above it; the cell beside it is the next."""
+"""Difference between the number of a cell and of the one above it; the cell beside it has the next number."""
 _LARGEST = 2**30
-"""Cells from the origin; no place is reported further away."""
+"""Largest distance from the origin in cells; no place is reported further away."""
 
 
 def close_pairs(xy: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
@@ -114,8 +115,8 @@ def close_pairs(xy: Floats, reach: float) -> tuple[Ints, Ints, Floats]:
     number = _cells(xy, reach)
     order = np.argsort(number, kind="stable")
     ranked = number[order]
-    # Cells beside each other have numbers beside each other. Half of those about a cell are enough: the other
-    # half finds the same pairs from the other side.
+    # Adjacent cells have adjacent numbers. Half of a cell's neighbours are enough: the other half finds the
+    # same pairs from the other side.
     beside = np.arange(1, len(order) + 1), np.searchsorted(ranked, ranked + 1, side="right")
     above = (
         np.searchsorted(ranked, ranked + _ROW - 1, side="left"),
@@ -148,7 +149,7 @@ def pairs_between(ones: Floats, others: Floats, reach: float) -> tuple[Ints, Int
 
 
 def _cells(xy: Floats, reach: float) -> Ints:
-    """Return the number of the cell that each place is in; those beside one another have numbers that are."""
+    """Return the number of the cell that each place is in; adjacent cells have adjacent numbers."""
     cell: Ints = np.clip(np.floor(xy / reach), -_LARGEST, _LARGEST).astype(np.int64)
     number: Ints = cell[:, 1] * _ROW + cell[:, 0]
     return number

@@ -1,4 +1,4 @@
-"""Images: which one bytes are, told by how they begin and not by what is said of them; and PNG."""
+"""Images: media type by the leading bytes, not by the declared one; PNG encoding."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _BEGINNINGS = {
 
 
 def check_size(size: int, largest: int) -> None:
-    """Raise RefusedError for an image of more bytes than the site takes."""
+    """Raise RefusedError for an image of more bytes than the site accepts."""
     if size > largest:
         raise RefusedError(
             f"SendImage: the image has {size} bytes, and this site takes up to {largest} "
@@ -30,7 +30,7 @@ def check_size(size: int, largest: int) -> None:
 def media_type_of(content: bytes, declared: str | None = None) -> str:
     """Return the media type of an image.
 
-    Raises MessageError when it is none that is taken, or another than what was ``declared``.
+    Raises MessageError when the type is not accepted, or differs from the ``declared`` one.
     """
     found = next((name for name, begin in _BEGINNINGS.items() if content.startswith(begin)), None)
     if content[:4] == b"RIFF" and content[8:12] == b"WEBP":

@@ -1,8 +1,8 @@
-"""The one decoder of JSON that comes from outside: from tables, sockets and files; and of TOML from files.
+"""The only decoder of JSON from outside (tables, sockets, files), and of TOML from files.
 
-Whoever wrote the text may mean harm: length, depth, number of values and size of numbers are bounded before
-anything is built, so that decoding takes time and memory in proportion to the text and never recurses deeper
-than :attr:`JsonBounds.depth`. All that can go wrong is a :class:`DecodingError`.
+The text may be malicious: length, depth, number of values and size of numbers are bounded before anything is
+built, so that decoding takes time and memory in proportion to the text and never recurses deeper than
+:attr:`JsonBounds.depth`. Every failure is a :class:`DecodingError`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ except ModuleNotFoundError:  # in QGIS
     DecodeError = ValueError  # type: ignore[assignment, misc]
 
 MOST_DIGITS = 40
-"""Digits of a whole number. No column holds as many; messages name the parameter that is too large."""
+"""Digits of an integer. No column holds as many; messages name the parameter that is too large."""
 REPLACEMENT = "\N{REPLACEMENT CHARACTER}"
 
 
@@ -30,7 +30,7 @@ class DecodingError(ValueError):
 
 @dataclass(frozen=True)
 class JsonBounds:
-    """The most that a text may hold: levels of nesting, characters, and values of any kind."""
+    """Limits of a text: levels of nesting, characters, and number of values."""
 
     depth: int = 32
     length: int = 32 << 20
@@ -42,12 +42,12 @@ MESSAGE = JsonBounds()
 SHORT = JsonBounds(depth=8, length=16 << 10, values=1_000)
 """A row or a file that holds a few names and numbers."""
 DOCUMENT = JsonBounds(length=256 << 20, values=10_000_000)
-"""A file that a person chose to open."""
+"""A file that a user chose to open."""
 
 _BRACKETS = b"[]{}"
 _OTHERS = bytes(set(range(256)) - set(_BRACKETS))
 _NOT_STORED = re.compile("[\0\ud800-\udfff]")
-# What the quick parser takes otherwise than this module promises.
+# Input that the quick parser handles differently from what this module promises.
 _NEEDS_CARE = re.compile(rf"\d{{{MOST_DIGITS + 1}}}")
 _HALF_OF_A_PAIR = re.compile(r"\\u[dD][89a-fA-F]")
 
@@ -55,8 +55,8 @@ _HALF_OF_A_PAIR = re.compile(r"\\u[dD][89a-fA-F]")
 def decode_json(text: str | bytes, bounds: JsonBounds = MESSAGE) -> Any:
     """Return the value in ``text``; raises DecodingError and nothing else.
 
-    NaN and infinite numbers are refused. NUL and halves of surrogate pairs, which no database stores, come
-    as U+FFFD: what else the text says is not lost for their sake.
+    NaN and infinite numbers are refused. NUL and unpaired surrogates, which no database stores, become
+    U+FFFD, so that the rest of the text is not lost.
     """
     if isinstance(text, bytes):
         _check_length(len(text), bounds)
@@ -85,9 +85,9 @@ def check_bounds(text: str, bounds: JsonBounds) -> None:
 
 
 def has_few_brackets(text: str | bytes, bounds: JsonBounds = MESSAGE) -> bool:
-    """Tell whether a text opens so little that no decoder can recurse too deeply into it.
+    """Return whether a text has so few opening brackets that no decoder can recurse too deeply.
 
-    For what is decoded by another decoder since thousands of it come every second.
+    For messages that another decoder handles, as thousands of them arrive each second.
     """
     if isinstance(text, bytes):
         return text.count(b"[") + text.count(b"{") <= bounds.depth
@@ -100,7 +100,7 @@ def _check_length(length: int, bounds: JsonBounds) -> None:
 
 
 def _check_nesting(text: str, bounds: JsonBounds) -> None:
-    """Refuse what is nested too deeply or holds too many values, without decoding it."""
+    """Refuse a text that is nested too deeply or holds too many values, without decoding it."""
     openings = text.count("[") + text.count("{")
     if openings <= bounds.depth and openings + text.count(",") < bounds.values:
         return
@@ -137,7 +137,8 @@ _CAREFUL = json.JSONDecoder(parse_float=_finite, parse_int=_whole, parse_constan
 
 
 def _stored(value: Any) -> Any:
-    """Return ``value`` with the characters replaced that no database stores; no deeper than the bounds."""
+    """Return ``value`` with characters replaced that no database stores; recursion stays within the
+    bounds."""
     if isinstance(value, str):
         return _NOT_STORED.sub(REPLACEMENT, value)
     if isinstance(value, list):
@@ -151,14 +152,14 @@ LARGEST_TOML = 256_000
 """characters; a site's settings and profiles of layers have a few thousand."""
 
 _MOST_PARTS = 32
-# tomllib goes over all parts of a dotted key for each of them: n² steps.
+# tomllib walks all parts of a dotted key for each part: n² steps.
 _LONG_KEY = re.compile(
     rf"""(?:(?<![\w-])(?:[\w-]+|"[^"\n]*"|'[^'\n]*')[ \t]*\.[ \t]*){{{_MOST_PARTS}}}""", re.ASCII
 )
 
 
 def toml_tables(text: str) -> dict[str, Any]:
-    """Return the tables in TOML ``text``, at a cost that goes by its length.
+    """Return the tables in TOML ``text``, in time proportional to its length.
 
     :raises ValueError: naming what is wrong: no TOML, too long, or nested too deeply.
     :raises ImportError: on Python before 3.11, which has no ``tomllib``.

@@ -16,7 +16,7 @@ from typing import Literal, TextIO
 
 from .clock import SYSTEM_CLOCK, Clock
 
-# --- The log on standard error: lines for people or JSON for programs, neither with a secret in it ---
+# --- The log on standard error: lines for people or JSON for programs, without secrets ---
 
 LogFormat = Literal["text", "json"]
 LogLevel = Literal["debug", "info", "warning", "error"]
@@ -32,7 +32,7 @@ _SECRETS = (
 def without_secrets(text: str) -> str:
     """Return ``text`` with what looks like a password or a token replaced by ``***``.
 
-    What the bridge logs holds none; this is for texts that come from elsewhere, such as a driver's error.
+    The bridge's own log texts hold none; this is for foreign texts, such as a driver's error.
     """
     for pattern, instead in _SECRETS:
         text = pattern.sub(instead, text)
@@ -40,10 +40,10 @@ def without_secrets(text: str) -> str:
 
 
 def printable(text: str) -> str:
-    """Return ``text`` with an escape for whatever is no printable character.
+    """Return ``text`` with unprintable characters escaped.
 
-    A name, a status or an error comes from outside: with a line break in it, it would forge lines of the log,
-    and with others it would do to the terminal what it likes.
+    A name, a status or an error comes from outside: a line break in it would forge lines of the log, and
+    other characters could control the terminal.
     """
     if text.isprintable():
         return text
@@ -54,7 +54,7 @@ class PlainLines(logging.Formatter):
     """Lines for people: time, level, text."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line of ``record``, with an indented traceback behind it where there is one."""
+        """Return the line of ``record``, followed by an indented traceback if there is one."""
         text = printable(without_secrets(record.getMessage()))
         lines = [f"{self.formatTime(record)} {record.levelname} {text}"]
         if record.exc_info:
@@ -64,7 +64,7 @@ class PlainLines(logging.Formatter):
 
 
 class JsonLines(logging.Formatter):
-    """One JSON object a line: time (UTC), level, logger, message, and exception where there is one."""
+    """One JSON object a line: time (UTC), level, logger, message, and exception if there is one."""
 
     def format(self, record: logging.LogRecord) -> str:
         """Return ``record`` as one line of JSON."""
@@ -89,16 +89,16 @@ def set_up_log(form: LogFormat = "text", level: LogLevel = "warning", stream: Te
     handler = logging.StreamHandler(stream or sys.stderr)
     handler.setFormatter(JsonLines() if form == "json" else PlainLines())
     logging.basicConfig(level=level.upper(), handlers=[handler], force=True)
-    # Its errors are about peers that hang up; what matters of them the bridge says itself.
+    # Its errors are about peers that hang up; the bridge itself logs those that matter.
     logging.getLogger("websockets").setLevel(logging.CRITICAL)
     logging.getLogger("alembic").setLevel(logging.WARNING)
 
 
-# --- Errors that nobody foresaw: the log is told all of it, and whoever met one a number to ask by ---
+# --- Unforeseen errors: logged in full, and reported to the caller by a number ---
 
 
 def log_unforeseen(log: logging.Logger, who: str) -> str:
-    """Log the exception that is being handled, met by ``who``; return what they are told of it."""
+    """Log the exception being handled, met by ``who``; return the text for them."""
     number = secrets.token_hex(4)
     log.exception("%s: internal error %s", who, number)
     return f"internal error {number}; the gateway's log says more under this number"
@@ -111,10 +111,10 @@ def log_and_continue(
     *arguments: object,
     except_for: type[Exception] | tuple[type[Exception], ...] = (),
 ) -> Iterator[None]:
-    """Log what goes wrong in the block: it must keep nothing after it from being done.
+    """Log an exception of the block, which must not prevent the statements after it.
 
-    ``arguments`` stand for each %s of ``what``, and are written only then. What is raised ``except_for`` that
-    is known and goes on its way.
+    ``arguments`` replace each %s of ``what``, and are formatted only then. Exceptions in ``except_for`` are
+    expected and propagate.
     """
     try:
         yield
@@ -125,19 +125,19 @@ def log_and_continue(
         log.exception("%s failed; what comes after it is done all the same", text)
 
 
-# --- What goes wrong for as long as a disk is full or a database away: at its beginning, and once a minute
+# --- Lasting troubles, such as a full disk: logged at their beginning, then once a minute
 
 SAY_AGAIN_AFTER = 60.0
 
 
 class TroubleNews:
-    """Knows what the log was told of troubles that last: another text is news, the same one once a minute."""
+    """Decides what to log of lasting troubles: a new text at once, the same one once a minute."""
 
     def __init__(self) -> None:
         self._last: dict[str, tuple[str, float]] = {}
 
     def has(self, what: str, text: str) -> bool:
-        """Tell whether the log is to be told that ``what`` fails with ``text``; it counts as told then."""
+        """Return whether to log that ``what`` fails with ``text``; if so it counts as logged."""
         now = time.monotonic()
         last, at = self._last.get(what, ("", 0.0))
         if text == last and now - at <= SAY_AGAIN_AFTER:
@@ -146,16 +146,16 @@ class TroubleNews:
         return True
 
     def is_over(self, what: str) -> None:
-        """Note that ``what`` has gone well: when it fails again, that is news."""
+        """Record that ``what`` succeeded: its next failure is news."""
         self._last.pop(what, None)
 
 
-# --- Lines of the log that one robot or operator causes again and again: the first in full, then counted
+# --- Log lines that one robot or operator causes repeatedly: the first in full, then counted
 
 IN_FULL = 5
-"""lines of one key that are written as they come."""
+"""lines of one key that are written at once."""
 WINDOW = 60.0
-"""seconds after which those that were not written are counted in one line."""
+"""seconds after which the unwritten ones are counted in one line."""
 MOST_KEYS = 10_000
 
 Key = tuple[str, ...]
@@ -185,13 +185,13 @@ class RepeatedLines:
             log.warning("%s", line)
 
     def note_unforeseen(self, log: logging.Logger, key: Key, who: str) -> str:
-        """Log the exception that is being handled, met by ``who``, or count it; return what they are told."""
+        """Log the exception being handled, met by ``who``, or count it; return the text for them."""
         if self._is_to_be_written(log, (*key, "internal error"), f"{who}: internal error"):
             return log_unforeseen(log, who)
         return "internal error, again; the gateway's log says more of the first ones"
 
     def summarise(self) -> None:
-        """Write the counts that are due; to be called every second or so."""
+        """Write the counts that are due; call it about every second."""
         now = self._clock.steady()
         for key, run in list(self._runs.items()):
             if now - run.began < WINDOW:

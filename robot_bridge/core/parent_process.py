@@ -12,11 +12,11 @@ from collections.abc import Callable
 
 
 def notify(*states: str) -> None:
-    """Tell the service manager ``states`` such as ``READY=1``, when it started this process and listens."""
+    """Send the service manager ``states`` such as ``READY=1``, if it started this process and listens."""
     address = os.environ.get("NOTIFY_SOCKET", "")
     if not address.startswith(("/", "@")):
         return
-    # A name that begins with @ stands for one in the abstract namespace, which begins with a zero byte.
+    # A leading @ stands for the zero byte of a name in the abstract namespace.
     path = "\0" + address[1:] if address.startswith("@") else address
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as link, contextlib.suppress(OSError):
         link.settimeout(1)
@@ -24,22 +24,22 @@ def notify(*states: str) -> None:
 
 
 def watchdog_interval() -> float | None:
-    """Return after how many seconds systemd is sent WATCHDOG=1: half its limit; None for never."""
+    """Return the interval in seconds for sending WATCHDOG=1: half of systemd's limit; None for never."""
     limit, process = os.environ.get("WATCHDOG_USEC", ""), os.environ.get("WATCHDOG_PID", "")
     if not limit.isdigit() or process not in ("", str(os.getpid())):
         return None
     return int(limit) / 1e6 / 2
 
 
-# --- Standard input: whoever started the program holds its other side, and is gone when it closes ---
+# --- Standard input: the parent holds its other end, and is gone when that closes ---
 
 _STDIN = 0
 
 
 def call_at_end_of_input(called: Callable[[], object]) -> None:
-    """Have the running event loop call ``called`` once standard input, a pipe, is closed at its other side.
+    """Have the running event loop call ``called`` once standard input, a pipe, is closed at its other end.
 
-    That happens however the program at that side ended, also when it was killed.
+    That happens however the program at that end terminated, also when it was killed.
     """
     loop = asyncio.get_running_loop()
 

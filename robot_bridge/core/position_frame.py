@@ -13,9 +13,9 @@ from .json_decoder import MESSAGE, DecodingError, JsonBounds, decode_json
 from .messages.base import MessageError
 from .messages.robots import SendPos, is_status
 
-# --- The binary frame of positions: a JSON head, and behind it a table of 64-bit floats ---
+# --- The binary frame of positions: a JSON head, followed by a table of 64-bit floats ---
 # Everything is little-endian: the length of the head as an unsigned 32-bit integer; the head, a JSON-RPC
-# notification ``positions``, filled up with spaces so that what follows begins at a multiple of 8 bytes;
+# notification ``positions``, padded with spaces so that the table begins at a multiple of 8 bytes;
 # then each
 # of its ``columns``, one float for each of its ``robots``.
 
@@ -26,7 +26,7 @@ POSITION_VALUE, PLACE_VALUE = "<f8", "<f4"
 
 
 class PositionFrame(NamedTuple):
-    """A frame in its parts: ``table`` is (columns, robots) and read-only, ``params`` are all of the head."""
+    """The parts of a frame: ``table`` is (columns, robots) and read-only, ``params`` is the whole head."""
 
     params: dict[str, Any]
     robots: list[str]
@@ -38,7 +38,7 @@ class PositionFrame(NamedTuple):
 def packed_frame(
     head: bytes, columns: Iterable[npt.NDArray[np.float64]], value: str = POSITION_VALUE
 ) -> bytes:
-    """Return ``head``, a JSON text, and the columns that it names, of type ``value``, as one frame."""
+    """Return one frame of ``head``, a JSON text, and the columns that it names, of type ``value``."""
     length = -(-(POSITION_HEAD + len(head)) // ALIGNMENT) * ALIGNMENT - POSITION_HEAD
     values = (np.ascontiguousarray(column, dtype=value).tobytes() for column in columns)
     return b"".join([length.to_bytes(POSITION_HEAD, "little"), head.ljust(length), *values])
@@ -71,7 +71,7 @@ def _texts(name: str, value: Any) -> list[str]:
     return value
 
 
-# --- Where the robots of a link are, many at once: as the binary frame of a desk, or as JSON ---
+# --- Positions of many robots of a link: in the binary frame of a desk, or as JSON ---
 
 NUMBERS = {
     "x": "x",
@@ -84,27 +84,27 @@ NUMBERS = {
     "accuracy": "accuracy",
     "altitude": "altitude",
 }
-"""Columns of numbers, and the parameters of SendPos that they are."""
+"""Columns of numbers, with the parameters of SendPos that they hold."""
 TEXTS = ("status", "theta_from")
-"""Columns of places in ``words``."""
+"""Columns of indices into ``words``."""
 NEEDED = ("x", "y", "theta", "v")
 WAYS = ("course", "last", "unknown")
-"""What ``theta_from`` may be."""
+"""Values of ``theta_from``."""
 
 _PARAMETERS = {name: name for name in TEXTS} | NUMBERS
 _DIRECTION = (-math.pi, math.pi)
-"""radians; what lies beyond is the same direction as one within."""
+"""radians; angles beyond are equal to one within."""
 
 Batch = list[tuple[str, SendPos | MessageError]]
 Rows = npt.NDArray[np.bool_]
 
 
 def poses_in_frame(frame: bytes) -> Batch:
-    """Return each robot of a binary frame with its pose, or with what is wrong with that one.
+    """Return each robot of a binary frame with its pose, or with the error in its row.
 
-    What is right in every column at once is not looked at row by row: ten thousand rows come every second.
+    Columns are checked as a whole, and rows one by one only on errors: ten thousand rows arrive each second.
 
-    :raises DecodingError: when it is no such frame; MessageError for columns that are not a robot's to tell.
+    :raises DecodingError: when it is no such frame; MessageError for columns that robots may not send.
     """
     batch = split_frame(frame)
     _check_columns(batch)
@@ -145,14 +145,14 @@ def _known(values: npt.NDArray[np.float64], unknown: Rows | None) -> list[float 
 
 
 def _right_numbers(parameter: str, values: npt.NDArray[np.float64], unknown: Rows | None) -> Rows:
-    """Return which values a pose may have as they are; NaN is right where a parameter may be unknown."""
+    """Return a mask of the valid values; NaN is valid for a parameter that may be unknown."""
     low, high = _DIRECTION if parameter == "theta" else SendPos.ranges[parameter]
     right: Rows = (values >= low) & (values <= high)
     return right if unknown is None else right | unknown
 
 
 def _right_words(name: str, words: list[str], values: npt.NDArray[np.float64]) -> Rows:
-    """Return which values are the places of words that a pose may have as they are, or are not known."""
+    """Return a mask of the values that are indices of valid words, or unknown."""
     right = [word in WAYS if name == "theta_from" else is_status(word) for word in words]
     places = np.flatnonzero(right).astype(np.float64)
     found: Rows = np.isin(values, places) | np.isnan(values)
@@ -160,7 +160,7 @@ def _right_words(name: str, words: list[str], values: npt.NDArray[np.float64]) -
 
 
 def _pose(values: dict[str, Any]) -> SendPos | MessageError:
-    """Return the pose of a row that is not right as it is, or what is wrong with it."""
+    """Return the pose of a row that failed the checks of its columns, or its error."""
     status, way = values.get("status"), values.get("theta_from")
     if status is _NO_WORD:
         return MessageError("status is the place of no word")
@@ -176,7 +176,7 @@ _NO_WORD: Any = object()
 
 
 def _words(words: list[str], values: npt.NDArray[np.float64]) -> list[Any]:
-    """Return the word at each of the places ``values``, None for NaN."""
+    """Return the word at each index in ``values``, None for NaN."""
     is_place = (values >= 0) & (values < len(words)) & (values == np.floor(values))
     missing = np.where(np.isnan(values), len(words) + 1, len(words))
     found = [*words, _NO_WORD, None]
