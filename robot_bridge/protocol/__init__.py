@@ -1,1 +1,1 @@
-"""What both ends of a WebSocket share: codec, JSON-RPC frames, schemas."""
+"""Code shared by both ends of a WebSocket: codec, JSON-RPC frames, schemas."""

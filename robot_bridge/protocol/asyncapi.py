@@ -1,4 +1,4 @@
-"""AsyncAPI 3 document of all endpoints of a WebSocket, and the schema files that the gateway serves."""
+"""AsyncAPI 3 document of all WebSocket endpoints, and the schema files that the gateway serves."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from ..core.messages.links import Playback, PlaybackReport
 from ..core.messages.robots import ANSWERS, REQUESTS, OpAck, SendGPS, SendPos, Start
 from .schemas import HEADS, JSON_SCHEMA, NOTIFICATIONS, Schema, definitions, openapi, plain_text, schema_of
 
-# --- The pieces of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
+# --- Parts of an AsyncAPI document: channels, JSON-RPC frames as messages, and operations ---
 
 
 def schema_at(name: str) -> Schema:
@@ -25,7 +25,7 @@ def schema_at(name: str) -> Schema:
 def channel(
     address: str, text: str, messages: Mapping[str, Schema], query: Mapping[str, str] | None = None
 ) -> Schema:
-    """Return an endpoint with its messages, and what may stand in the ``query`` of its URL."""
+    """Return an endpoint with its messages, and the schema of the ``query`` of its URL."""
     described: Schema = {"address": address, "description": text, "messages": dict(messages)}
     if query:
         properties = {name: {"type": "string", "description": text} for name, text in query.items()}
@@ -34,9 +34,9 @@ def channel(
 
 
 def calls(table: Mapping[str, type], suffix: str = "", more: Schema | None = None) -> dict[str, Schema]:
-    """Return the calls of each method in ``table``; params are as the schema of class and ``suffix`` says.
+    """Return the calls of each method in ``table``; class and ``suffix`` name the schema of the params.
 
-    ``more`` are properties of their frames besides those of JSON-RPC.
+    ``more`` are additional properties of their frames.
     """
     described = {name: call(name, cls.__name__ + suffix, more) for name, cls in table.items()}
     return {name: message(name, cls, described[name]) for name, cls in table.items()}
@@ -48,7 +48,7 @@ def news(table: Mapping[str, type]) -> dict[str, Schema]:
 
 
 def in_columns(table: Mapping[str, type]) -> dict[str, Schema]:
-    """Return the binary frames, of which the JSON head is described: a table of numbers follows it."""
+    """Return the binary frames, described by their JSON heads: a table of numbers follows each."""
     return {
         f"{method}InColumns": {
             **message(f"{method}InColumns", cls, call(method, cls.__name__, with_id=False)),
@@ -64,12 +64,12 @@ def results(table: Mapping[str, type]) -> dict[str, Schema]:
 
 
 def message(name: str, cls: type, payload: Schema) -> Schema:
-    """Return a message, told of by the docstring of its class."""
+    """Return a message, described by the docstring of its class."""
     return {"name": name, "title": name, "summary": plain_text(cls.__doc__ or ""), "payload": payload}
 
 
 def call(method: str, params: str, more: Schema | None = None, *, with_id: bool = True) -> Schema:
-    """Return the schema of a frame that calls ``method`` with what the schema ``params`` describes."""
+    """Return the schema of a frame that calls ``method``; ``params`` names the schema of its params."""
     properties: Schema = {"method": {"type": "string", "const": method}, "params": schema_at(params)}
     properties.update(more or {})
     if with_id:
@@ -84,7 +84,7 @@ def result(cls: type) -> Schema:
 
 
 def error() -> Schema:
-    """Return the message that refuses a call."""
+    """Return the message of an error."""
     properties = {"id": {"type": ["integer", "string", "null"]}, "error": schema_at("Error")}
     return {
         "name": "error",
@@ -95,7 +95,7 @@ def error() -> Schema:
 
 
 def operation(action: str, channel: str, messages: Sequence[str], answers: Sequence[str] = ()) -> Schema:
-    """Return what the gateway does with messages: ``send`` or ``receive``, and what answers them."""
+    """Return an operation of the gateway: ``send`` or ``receive`` messages, and their answers."""
     place = f"#/channels/{channel}"
     described: Schema = {
         "action": action,
@@ -113,16 +113,16 @@ def _frame(properties: Schema, *, required: list[str]) -> Schema:
     return {"type": "object", "required": ["jsonrpc", *required], "properties": {**version, **properties}}
 
 
-# --- What goes over ``/link``: the messages of robots, with ``robot`` among the params, and a link's own
+# --- Messages on ``/link``: those of robots, with ``robot`` among the params, and a link's own
 
 CALLS: dict[str, type] = {cls.method: cls for cls in (links.LinkHello, links.LinkStatus, links.GetAreas)}
-"""What a link calls for itself, by method."""
+"""Calls of a link for itself, by method."""
 ROBOT_CALLS: dict[str, type] = {op: cls for op, cls in REQUESTS.items() if op != "OpAck"}
-"""What a link calls for a robot of its own, by method."""
+"""Calls of a link for one of its robots, by method."""
 ROBOT_ANSWERS: dict[str, type] = {op: cls for op, cls in ANSWERS.items() if op not in ("OpAck", "Start")}
-"""What a robot of a link is told, by method."""
+"""Calls to a robot of a link, by method."""
 OF_ROBOT = "OfRobot"
-"""The end of the names of schemas with ``robot``."""
+"""Suffix of the names of schemas with ``robot``."""
 _RESULTS: dict[str, type] = {
     "helloResult": links.LinkWelcome,
     "statusResult": Done,
@@ -140,7 +140,7 @@ _ROBOT: Schema = {
 
 
 def link_documents() -> dict[str, Schema]:
-    """Return the JSON Schemas by path: ``link`` holds what links say, ``link-gateway`` what they are told."""
+    """Return the JSON Schemas by path: ``link`` holds messages of links, ``link-gateway`` those to links."""
     received_documents = {
         f"link/{op}.json": _with_robot(schema_of(cls, closed=True)) for op, cls in ROBOT_CALLS.items()
     }
@@ -205,7 +205,7 @@ def link_channel() -> Schema:
 
 
 def link_operations() -> Schema:
-    """Return what the gateway receives of links and sends them, each with what answers it."""
+    """Return the operations of the gateway towards links, each with its answers."""
     acknowledged = ("OpAck", "error")
     positions = [links.LinkPositions.method, f"{links.LinkPositions.method}InColumns"]
     return {
@@ -224,18 +224,18 @@ def link_operations() -> Schema:
 
 
 def _with_robot(schema: Mapping[str, Any]) -> Schema:
-    """Return the schema of a message of a robot for a connection that many robots share."""
+    """Return the schema of a robot's message on a connection that many robots share."""
     properties = {"robot": _ROBOT, **schema.get("properties", {})}
     return {**schema, "properties": properties, "required": ["robot", *schema.get("required", [])]}
 
 
 def _with_entries(schema: Schema, entries: list[Schema]) -> Schema:
-    """Return the schema of LinkPositions with those of what a position is."""
+    """Return the schema of LinkPositions with the schemas of its entries."""
     inner = [{name: value for name, value in entry.items() if name != JSON_SCHEMA} for entry in entries]
     return {**schema, "properties": {"positions": {"type": "array", "items": {"anyOf": inner}}}}
 
 
-# --- The AsyncAPI 3 document of all endpoints: which frame goes which way, and what answers it ---
+# --- The AsyncAPI 3 document of all endpoints: direction and answers of each frame ---
 
 VERSION = "3.0.0"
 _REFERENCE = "#/components/schemas/{name}"
@@ -294,7 +294,7 @@ def _desk_channel() -> Schema:
 def _schemas() -> dict[str, Schema]:
     results_of = {method: cls.result for method, cls in DESK_REQUESTS.items()}
     tables = (REQUESTS, ANSWERS, DESK_REQUESTS, results_of, NOTIFICATIONS, HEADS)
-    # Some are in two tables, and each is to be described once.
+    # Some are in two tables, but each must be described once.
     classes = {cls: None for table in tables for cls in table.values()}
     requests = [cls for op, cls in REQUESTS.items() if op not in ANSWERS] + list(DESK_REQUESTS.values())
     own = definitions(list(classes), _REFERENCE, requests)
@@ -350,7 +350,7 @@ def _servers() -> Schema:
 
 
 def _robot_operations(requests: Mapping[str, type], answers: Mapping[str, type]) -> Schema:
-    """Return what the gateway receives of a robot and sends it, each with what answers it."""
+    """Return the operations of the gateway towards a robot, each with its answers."""
     return {
         **{f"robot.{op}": operation("receive", "robot", [op], _ACKNOWLEDGED) for op in requests},
         **{f"gateway.{op}": operation("send", "robot", [op], _ACKNOWLEDGED) for op in answers},
@@ -359,7 +359,7 @@ def _robot_operations(requests: Mapping[str, type], answers: Mapping[str, type])
 
 
 def _desk_operations() -> Schema:
-    """Return what the gateway receives of operators, with its result, and what it tells them unasked."""
+    """Return the operations of the gateway towards operators: requests with results, and notifications."""
     requests = {
         f"desk.{method}": operation("receive", "desk", [method], (f"{method}Result", "error"))
         for method in DESK_REQUESTS
@@ -371,17 +371,17 @@ def _desk_operations() -> Schema:
     return {**requests, **notifications}
 
 
-# --- Every schema as a file: what ``robot-bridge schemas`` writes and the gateway serves under ``/schemas/``
+# --- Every schema as a file: written by ``robot-bridge schemas``, served under ``/schemas/``
 
 
 @cache
 def documents() -> dict[str, str]:
     """Return the text of each JSON document by its path, such as ``robot/SendPos.json``.
 
-    ``robot`` holds what robots say, ``gateway`` what they are told, ``link`` what links say, ``link-gateway``
-    what those are told, ``desk`` what operators ask, ``result`` what they are answered with, ``news`` what
-    they are told unasked, and ``head`` what stands in the heads of binary frames; ``index.json`` lists them.
-    ``asyncapi.json`` describes the WebSockets, ``openapi.json`` the questions over HTTP.
+    ``robot`` holds messages of robots, ``gateway`` those to robots, ``link`` messages of links,
+    ``link-gateway`` those to links, ``desk`` requests of operators, ``result`` the results, ``news``
+    notifications to operators, and ``head`` the heads of binary frames; ``index.json`` lists them.
+    ``asyncapi.json`` describes the WebSockets, ``openapi.json`` the queries over HTTP.
     """
     files = {f"robot/{op}.json": schema_of(cls, closed=True) for op, cls in REQUESTS.items()}
     files |= {f"gateway/{op}.json": schema_of(cls) for op, cls in ANSWERS.items()}

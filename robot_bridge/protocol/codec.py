@@ -1,4 +1,4 @@
-"""From JSON to messages: decoding and checking for every wire that the gateway and the robot listen on."""
+"""Codec between JSON and messages: decoding and checks for every wire of gateway and robot."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ log = logging.getLogger(__name__)
 
 _BEGIN = ("hello", "subscribe")
 _DESK_REQUESTS = {name: DESK_REQUESTS[name] for name in (*_BEGIN, *sorted(set(DESK_REQUESTS) - set(_BEGIN)))}
-"""What every connection begins with is named first where a method is not known."""
+"""The first methods of a connection are listed first in the error on an unknown method."""
 
 
 class UnknownOperationError(MessageError):
@@ -49,7 +49,7 @@ class UnknownOperationError(MessageError):
 def decode_request(op: str, params: Any, payload: bytes | None = None) -> Request:
     """Return the robot's request ``op`` with its parameters (a dict of JSON values, or None for none).
 
-    What is binary in it comes as ``payload``, or as base64 text among the parameters.
+    Its binary part comes as ``payload``, or as base64 text among the parameters.
     """
     return cast("Request", _convert(robots.REQUESTS, "operation", op, params, payload))
 
@@ -57,13 +57,13 @@ def decode_request(op: str, params: Any, payload: bytes | None = None) -> Reques
 def decode_answer(op: str, params: Any, payload: bytes | None = None) -> Answer:
     """Return the server's answer ``op``; ``params`` and ``payload`` as in :func:`decode_request`.
 
-    Parameters that are not known are passed over: a newer gateway may give more.
+    Unknown parameters are ignored: a newer gateway may send more.
     """
     return cast("Answer", _convert(robots.ANSWERS, "operation", op, params, payload, strict=False))
 
 
 def decode_command(op: str, params: Any) -> Command:
-    """Return what an operator wants a robot to be told, ``op`` with its parameters."""
+    """Return an operator's command for a robot, ``op`` with its parameters."""
     return cast("Command", _convert(robots.COMMANDS, "operation", op, params))
 
 
@@ -103,7 +103,7 @@ def _convert(
 
 
 def _check_keys(name: str, message: Any, params: dict[str, Any]) -> None:
-    """Refuse parameters that are not known; raises MessageError. What stops a robot is done all the same."""
+    """Refuse unknown parameters, except in requests that stop robots; raises MessageError."""
     cls = type(message)
     if getattr(cls, "stops", False) or (isinstance(message, Send) and message.op == Abort.__name__):
         for key in unknown_keys(cls, params):
@@ -128,7 +128,7 @@ def _with_payload(op: str, params: dict[str, Any], payload: bytes | None) -> dic
 
 
 class _Position(msgspec.Struct, forbid_unknown_fields=True):
-    """A notification of SendPos, as nearly every frame of a robot is."""
+    """A notification of SendPos, by far the most frequent frame of a robot."""
 
     jsonrpc: Literal["2.0"]
     method: Literal["SendPos"]
@@ -136,7 +136,7 @@ class _Position(msgspec.Struct, forbid_unknown_fields=True):
 
 
 _POSITIONS = msgspec.json.Decoder(_Position)
-# A dataclass passes over keys that it does not know, and a struct does not.
+# A dataclass ignores unknown keys, a struct refuses them.
 _KEYS = msgspec.json.Decoder(
     msgspec.defstruct(
         "_PositionKeys",
@@ -157,10 +157,10 @@ _KEYS = msgspec.json.Decoder(
 
 
 def decode_position(frame: str | bytes) -> SendPos | None:
-    """Return the pose in a notification of SendPos; None for any other frame, and for one that is wrong.
+    """Return the pose in a notification of SendPos; None for any other or invalid frame.
 
     In one step, and so several times faster than :func:`.jsonrpc.decode` and :func:`decode_request`, which
-    say what is wrong. What is nested, as no position is, is left to them.
+    report errors. Nested values, which no position has, are left to them.
     """
     if not has_few_brackets(frame):
         return None
@@ -173,7 +173,7 @@ def decode_position(frame: str | bytes) -> SendPos | None:
 
 
 class _Head(msgspec.Struct):
-    """What says which message a frame is; the rest is not looked at."""
+    """The keys that identify the message of a frame; the rest is not decoded."""
 
     id: int | str | None = None
     method: str | None = None
@@ -185,12 +185,12 @@ _HEADS = msgspec.json.Decoder(_Head)
 def check_size(frame: str | bytes, largest: int, exempt: Sequence[str] = (SendImage.__name__,)) -> None:
     """Raise FrameError for a frame of more than ``largest`` bytes, unless its method is ``exempt``.
 
-    It is told without decoding what it holds.
+    The method is found without decoding the content.
     """
     if len(frame) <= largest:
         return
     try:
-        # Into what is nested nobody looks, not even for a name.
+        # Nested values are not searched, not even for a name.
         head = _HEADS.decode(frame) if has_few_brackets(frame) else _Head()
     except (msgspec.DecodeError, UnicodeDecodeError):
         head = _Head()
@@ -202,7 +202,7 @@ def check_size(frame: str | bytes, largest: int, exempt: Sequence[str] = (SendIm
 
 
 def error_code(error: Exception) -> int:
-    """Return the JSON-RPC code under which ``error`` is told to whoever asked."""
+    """Return the JSON-RPC code for ``error`` in the reply."""
     codes = {
         UnknownOperationError: jsonrpc.METHOD_NOT_FOUND,
         MessageError: jsonrpc.INVALID_PARAMS,
@@ -227,7 +227,7 @@ def parse_params(op: str, text: str | bytes | None) -> Any:
 
 
 def payload_of(message: Request | Answer) -> bytes | None:
-    """Return what is binary in ``message``: the payload of its row."""
+    """Return the binary part of ``message``: the payload of its row."""
     name = robots.PAYLOADS.get(type(message).__name__)
     return None if name is None else cast("bytes", getattr(message, name))
 

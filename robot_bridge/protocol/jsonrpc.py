@@ -35,7 +35,7 @@ class FrameError(ValueError):
 class Call:
     """A request, or a notification where ``id`` is None.
 
-    ``deadline`` is as it came: a number where it is the time by which the request has to be begun.
+    ``deadline`` is unchecked: if it is a number, it is the time by which the request must be begun.
     """
 
     method: str
@@ -46,7 +46,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Reply:
-    """The answer to a call: ``error`` is None, or the text that came with ``code``."""
+    """The answer to a call: ``error`` is None, or the text for ``code``."""
 
     id: int | str | None
     result: Any = None
@@ -103,7 +103,7 @@ def result(id: int | str | None, value: Any) -> str:
 
 
 def error(id: int | str | None, code: int, text: str, data: Any = None) -> str:
-    """Return the frame that tells why call ``id`` failed, with ``data`` that its caller needs to know."""
+    """Return the error frame that answers call ``id``, with ``data`` for its caller."""
     more = {} if data is None else {"data": data}
     return _encode({"jsonrpc": "2.0", "id": id, "error": {"code": code, "message": text, **more}})
 

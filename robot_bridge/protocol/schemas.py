@@ -1,4 +1,4 @@
-"""JSON Schemas (draft 2020-12) of all messages, from their classes; OpenAPI of the questions over HTTP."""
+"""JSON Schemas (draft 2020-12) of all messages, from their classes; OpenAPI of the queries over HTTP."""
 
 from __future__ import annotations
 
@@ -31,10 +31,11 @@ JSON_SCHEMA = "$schema"
 
 
 def definitions(classes: Sequence[type], template: str, closed: Sequence[type] = ()) -> dict[str, Schema]:
-    """Return the schemas of ``classes`` and of what they hold, by class name.
+    """Return the schemas of ``classes`` and of the classes nested in them, by class name.
 
-    ``template`` is how they refer to each other, such as ``#/$defs/{name}``. Those in ``closed``, and what
-    they hold, take no properties that they do not name; but for what stops robots, which is never refused.
+    ``template`` is how they refer to each other, such as ``#/$defs/{name}``. Those in ``closed``, and the
+    classes nested in them, allow no further properties, except requests that stop robots, which are never
+    refused.
     """
     _, found = msgspec.json.schema_components(classes, ref_template=template)
     holders = {cls.__name__: cls for cls in classes}
@@ -43,7 +44,7 @@ def definitions(classes: Sequence[type], template: str, closed: Sequence[type] =
 
 
 def schema_of(cls: type, *, closed: bool = False) -> Schema:
-    """Return the schema of one message by itself; a ``closed`` one takes no other properties."""
+    """Return the schema of one message by itself; a ``closed`` one allows no other properties."""
     found = definitions([cls], "#/$defs/{name}", [cls] if closed else [])
     schema = found.pop(cls.__name__)
     inner = {"$defs": found} if found else {}
@@ -51,13 +52,13 @@ def schema_of(cls: type, *, closed: bool = False) -> Schema:
 
 
 def plain_text(text: str) -> str:
-    """Return a docstring as text for people who do not read Python."""
+    """Return a docstring as plain text, without Python's markup."""
     text = re.sub(r":\w+:`[~.]*([^`]*)`", r"`\1`", inspect.cleandoc(text)).replace("``", "`")
     return re.sub(r"(?<!\n)\n(?!\n)", " ", text)
 
 
 def _names_in(classes: Sequence[type]) -> set[str]:
-    """Return the names of ``classes`` and of all that they hold."""
+    """Return the names of ``classes`` and of all classes nested in them."""
     return set(msgspec.json.schema_components(classes)[1]) if classes else set()
 
 
@@ -80,14 +81,14 @@ def _refined(schema: Schema, cls: type | None, closed: Collection[str]) -> Schem
 
 
 def _limit(value: Schema, limits: Schema) -> None:
-    """Write ``limits`` where a property says its type; null stays what it is."""
+    """Write ``limits`` beside the type of a property; null stays unlimited."""
     if "anyOf" not in value:
         value.update(limits)
         return
     value["anyOf"] = [each if each.get("type") == "null" else {**each, **limits} for each in value["anyOf"]]
 
 
-# --- Which class each message of the wires is, for those that no table of the messages names ---
+# --- Classes of the messages that are in no table of the message modules ---
 
 NOTIFICATIONS: dict[str, type] = {
     "positions": Positions,
@@ -108,21 +109,21 @@ NOTIFICATIONS: dict[str, type] = {
     "placement": PlacementReport,
     "plan": PlanReport,
 }
-"""What operators are told without asking, by method."""
+"""Notifications to operators, by method."""
 
 HEADS: dict[str, type] = {"positions": PositionColumns}
 """The params in the JSON heads of binary frames, by method (see :mod:`..core.messages.positions`)."""
 
 
-# --- The OpenAPI document of the questions over HTTP: road surfaces at places, and ways along the roads ---
+# --- The OpenAPI document of the queries over HTTP: road surfaces at places, and routes along roads ---
 
 SURFACES, ROUTE = "/site/surfaces", "/site/route"
 SITE_FRAME = "site"
-"""What stands for ``crs`` where places are metres in the site frame."""
+"""The value of ``crs`` for places in metres in the site frame."""
 DEGREES = "EPSG:4326"
 GEOJSON, PROBLEM = "application/geo+json", "application/problem+json"
 MOST_PLACES = 140
-"""points in an address, which may have 8 kB in all."""
+"""points in a URL, which may have 8 kB in all."""
 MOST_SURFACES = 20
 _NUMBER = r"[-+]?([0-9]+[.]?[0-9]*|[.][0-9]+)([eE][-+]?[0-9]{1,2})?"
 PLACE = {"type": "string", "pattern": f"^{_NUMBER},{_NUMBER}$", "maxLength": 48}
@@ -130,9 +131,9 @@ PLACE = {"type": "string", "pattern": f"^{_NUMBER},{_NUMBER}$", "maxLength": 48}
 
 @dataclass(frozen=True)
 class QueryParameter:
-    """A parameter behind the ``?`` of an address: its JSON Schema, and what it is for.
+    """A query parameter of a URL: its JSON Schema, and its purpose.
 
-    Of one whose schema is an array each value stands by itself: ``point=1,2&point=3,4``.
+    If its schema is an array, each value is a parameter of its own: ``point=1,2&point=3,4``.
     """
 
     name: str
@@ -142,7 +143,7 @@ class QueryParameter:
 
     @property
     def is_repeated(self) -> bool:
-        """Whether it may be there several times."""
+        """Whether it may be repeated."""
         return bool(self.schema["type"] == "array")
 
 
@@ -318,6 +319,6 @@ def _point_properties() -> Schema:
 
 
 def _route_properties(route: Schema) -> Schema:
-    """Return the properties of a way: all of ``route`` but its places, which are the geometry."""
+    """Return the properties of a route: all of ``route`` but its points, which are the geometry."""
     kept = {name: value for name, value in route["properties"].items() if name not in ("points", "tight")}
     return {"type": "object", "properties": kept, "required": ["metres", "seconds"]}

@@ -1,10 +1,10 @@
-"""The messages of the bridge: one definition for every wire, each in the module of its subject.
+"""The messages of the bridge: one definition for every wire, each in a module by subject.
 
-:mod:`.robots` holds the paper's: what robots ask and what the server answers. The other modules hold what
-operators ask and are told; :mod:`.base` says what each request declares. With any of them all
-are loaded, so that the table of requests is whole.
-Positions are metres in the site frame, angles radians counter-clockwise from its x axis, times seconds since
-1970-01-01 UTC. Nothing here is imported but the standard library, so that QGIS can load it.
+:mod:`.robots` holds those of the paper: requests of robots and answers of the server. The other modules hold
+requests of operators and reports to them; :mod:`.base` defines what each request declares. Importing any of
+them loads all, so that the table of requests is complete. Positions are metres in the site frame, angles
+radians counter-clockwise from its x axis, times seconds since 1970-01-01 UTC. Only the standard library is
+imported here, so that QGIS can load it.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _MODULES = [value for value in list(globals().values()) if isinstance(value, Mod
 
 
 def __getattr__(name: str) -> Any:
-    """Return what one of the modules has under ``name``, for programs that import it from here."""
+    """Return the attribute ``name`` of one of the modules, for programs that import it from here."""
     for module in _MODULES:
         if not name.startswith("_") and hasattr(module, name):
             return getattr(module, name)

@@ -10,7 +10,7 @@ from . import base
 from .base import DeskRequest, MessageError, Role, known_fields
 from .safety import EmergencyReport, check_reason
 
-# --- The connection of an operator: what is served here, and who you are ---
+# --- The connection of an operator: the served site and the operator's identity ---
 
 PROTOCOL_VERSION = 1
 
@@ -19,8 +19,8 @@ PROTOCOL_VERSION = 1
 class SiteReport:
     """The site that a gateway serves: its frame (CRS, origin, rotation in radians) and its bounds.
 
-    ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds ways
-    along roads on it. ``problem`` says why this gateway does not serve what was chosen for its fleet.
+    ``bounds`` is x_min, y_min, x_max, y_max in the site frame. ``roads`` says that the gateway finds routes
+    along roads on it. ``problem`` says why this gateway does not serve the site chosen for its fleet.
     """
 
     id: str
@@ -39,12 +39,12 @@ class SiteReport:
 
 @dataclass(frozen=True)
 class HelloResult:
-    """The answer to ``hello``: which protocol is spoken here, the site, and who you are to the gateway.
+    """The answer to ``hello``: the protocol's version, the site, and the operator's identity.
 
-    ``database`` tells the gateway's database from every other: with another one, robots and commands of the
-    same names are others. ``robots`` is how many there are now; a gateway that tells it knows views.
-    ``gateway`` and ``gateways`` are as in :class:`Gateways`, where several gateways serve the fleet.
-    ``now`` is the gateway's time in seconds on a clock that nobody sets, for the deadlines of requests.
+    ``database`` identifies the gateway's database: in another one, robots and commands of the same names are
+    different ones. ``robots`` is their present number; a gateway that sends it supports views. ``gateway``
+    and ``gateways`` are as in :class:`Gateways`, where several gateways serve the fleet. ``now`` is the
+    gateway's time in seconds on a clock that nobody sets, for the deadlines of requests.
     """
 
     protocol: int
@@ -61,10 +61,10 @@ class HelloResult:
 
 @dataclass(frozen=True)
 class Gateways:
-    """Where operators, robots or links reach the gateways of a fleet that several serve.
+    """The addresses of all gateways of a fleet that several serve.
 
-    ``gateway`` is the name of the one that tells it; ``gateways`` are the URLs of all, its own first, of at
-    most 256 characters each: at any of them the other side may connect when this one does not answer.
+    ``gateway`` is the sender's name; ``gateways`` are the URLs of all, its own first, of at most 256
+    characters each: operators, robots and links may connect to any of them when this one does not answer.
     """
 
     gateway: str
@@ -95,14 +95,14 @@ class Hello(DeskRequest[HelloResult]):
             )
 
 
-# --- What supervisors ask about operators' accounts: who has one, with which role, and how its token stands
+# --- Requests of supervisors about operators' accounts, their roles and their tokens
 
 LONGEST_VALIDITY = 3660 * 86400.0
 """seconds."""
 
 
 class TokenState(str, Enum):
-    """How an operator's newest token stands; ``none`` where there never was one."""
+    """The state of an operator's newest token; ``none`` if there never was one."""
 
     VALID = "valid"
     EXPIRED = "expired"
@@ -127,7 +127,7 @@ class GetOperators(DeskRequest[Operators]):
 
 @dataclass(frozen=True)
 class NewToken:
-    """A token that was just made. It is kept nowhere, and told in this answer only."""
+    """A new token. It is stored nowhere, and sent in this answer only."""
 
     operator: str
     role: Role
@@ -137,7 +137,7 @@ class NewToken:
 
 @dataclass(frozen=True)
 class AddOperator(DeskRequest[NewToken]):
-    """Make an account; answered with its token. That expires after ``expires_in`` seconds, if given."""
+    """Create an account; answered with its token, which expires after ``expires_in`` seconds, if given."""
 
     method = "add_operator"
     least_role = Role.SUPERVISOR
@@ -151,7 +151,7 @@ class AddOperator(DeskRequest[NewToken]):
 
 @dataclass(frozen=True)
 class RotateToken(DeskRequest[NewToken]):
-    """Ask for a new token of an operator, in place of every one before, whose connections end."""
+    """Ask for a new token of an operator. It replaces all earlier ones, whose connections end."""
 
     method = "rotate_token"
     least_role = Role.SUPERVISOR
@@ -164,7 +164,7 @@ class RotateToken(DeskRequest[NewToken]):
 
 @dataclass(frozen=True)
 class OperatorReport:
-    """An account and how its newest token stands; times are seconds since 1970."""
+    """An account and the state of its newest token; times are seconds since 1970."""
 
     operator: str
     role: Role
@@ -177,7 +177,7 @@ class OperatorReport:
 
 @dataclass(frozen=True)
 class RevokeToken(DeskRequest[OperatorReport]):
-    """Take an operator's token away; connections that it opened end. The account stays."""
+    """Revoke an operator's token; connections opened with it end. The account stays."""
 
     method = "revoke_token"
     least_role = Role.SUPERVISOR
@@ -186,7 +186,7 @@ class RevokeToken(DeskRequest[OperatorReport]):
 
 @dataclass(frozen=True)
 class SetRole(DeskRequest[OperatorReport]):
-    """Give an operator another role, which holds for open connections too."""
+    """Change an operator's role, for open connections too."""
 
     method = "set_role"
     least_role = Role.SUPERVISOR
@@ -194,7 +194,7 @@ class SetRole(DeskRequest[OperatorReport]):
     role: Role
 
 
-# --- What supervisors ask about the other operators: who is connected, and who did what ---
+# --- Requests of supervisors about other operators: sessions and audit ---
 
 LONGEST_REASON = 200
 MOST_ENTRIES = 10_000
@@ -209,7 +209,7 @@ class Sessions:
 
 @dataclass(frozen=True)
 class GetSessions(DeskRequest[Sessions]):
-    """Ask for the operators' open connections, newest first; with ``ended`` also for those that were."""
+    """Ask for the operators' open connections, newest first; with ``ended`` also for closed ones."""
 
     method = "get_sessions"
     least_role = Role.SUPERVISOR
@@ -222,7 +222,7 @@ class GetSessions(DeskRequest[Sessions]):
 
 @dataclass(frozen=True)
 class SessionReport:
-    """One connection of an operator; ``address`` is where it comes from, times are seconds since 1970."""
+    """One connection of an operator; ``address`` is its origin, times are seconds since 1970."""
 
     session: str
     operator: str
@@ -235,7 +235,7 @@ class SessionReport:
 
 @dataclass(frozen=True)
 class EndSession(DeskRequest[SessionReport]):
-    """End an operator's connection, by its id or how that begins; the operator is told ``reason``."""
+    """End an operator's connection, by its id or a prefix of it; ``reason`` is sent to the operator."""
 
     method = "end_session"
     least_role = Role.SUPERVISOR
@@ -274,7 +274,7 @@ class GetAudit(DeskRequest[Audit]):
 
 @dataclass(frozen=True)
 class AuditReport:
-    """One thing that somebody did, or was refused (``done`` is false)."""
+    """One action that was done, or refused (``done`` is false)."""
 
     id: int
     at: float
@@ -292,7 +292,7 @@ def _check_limit(limit: int) -> None:
         raise MessageError(f"limit is {limit}; give a number from 1 to {MOST_ENTRIES}")
 
 
-# --- What supervisors ask about the sites that a gateway may serve ---
+# --- Requests of supervisors about the sites that a gateway may serve ---
 
 
 @dataclass(frozen=True)
@@ -304,7 +304,7 @@ class Sites:
 
 @dataclass(frozen=True)
 class GetSites(DeskRequest[Sites]):
-    """Ask for the published sites that lie beside the one that is served, and that one."""
+    """Ask for the served site and the published sites beside it."""
 
     method = "get_sites"
     least_role = Role.SUPERVISOR
@@ -312,7 +312,7 @@ class GetSites(DeskRequest[Sites]):
 
 @dataclass(frozen=True)
 class ChooseSite(DeskRequest[SiteReport]):
-    """Have another site served from now on: ``site`` is the name of its folder, as in ``get_sites``."""
+    """Switch to another site: ``site`` is the name of its folder, as in ``get_sites``."""
 
     method = "choose_site"
     least_role = Role.SUPERVISOR
@@ -321,9 +321,9 @@ class ChooseSite(DeskRequest[SiteReport]):
 
 @dataclass(frozen=True)
 class SiteOffer:
-    """A folder with a published site. ``refusal`` says why it cannot be chosen, where it cannot.
+    """A folder with a published site. ``refusal`` says why it cannot be chosen, if so.
 
-    ``id``, ``name`` and ``version`` are the publication's own; None where that cannot be read.
+    ``id``, ``name`` and ``version`` are the publication's own; None if that cannot be read.
     """
 
     site: str
@@ -334,7 +334,7 @@ class SiteOffer:
     refusal: str | None = None
 
 
-# --- What supervisors ask of robots that are gone ---
+# --- Requests of supervisors about robots that are gone ---
 
 MOST_REMOVED = 10_000
 """Robots of one request."""
@@ -352,7 +352,7 @@ class RobotsRemoved:
 class RemoveRobots(DeskRequest[RobotsRemoved]):
     """Remove ``robots`` that are lost or offline, with their queues and open commands.
 
-    Their history stays. One that comes back is told to abort, and is a new robot.
+    Their history stays. One that comes back is sent Abort, and counts as a new robot.
     """
 
     method = "remove_robots"
@@ -376,21 +376,22 @@ class KeptRobot:
     reason: str
 
 
-# --- What clients are told about the gateway itself, and about its links ---
+# --- Notifications to clients about the gateway itself and its links ---
 
 
 @dataclass(frozen=True)
 class Stopping:
-    """The gateway ends in good order, and closes its connections with code 1012. ``reason`` is for people."""
+    """The gateway shuts down in good order and closes its connections with code 1012. ``reason`` is for
+    people."""
 
     reason: str
 
 
 @dataclass(frozen=True)
 class Suspension:
-    """A robot's account of the database that is locked because it kept the others waiting.
+    """A robot's database account that is locked because it kept the others waiting.
 
-    ``until`` is in seconds since 1970; without it the account could not be locked, and goes on.
+    ``until`` is in seconds since 1970; without it the account could not be locked, and continues.
     """
 
     robot: str
@@ -405,7 +406,7 @@ class Suspensions:
     robots: list[Suspension] = field(default_factory=list)
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def site_report(values: dict[str, Any]) -> SiteReport:
@@ -415,7 +416,7 @@ def site_report(values: dict[str, Any]) -> SiteReport:
 
 
 def operators_report(values: dict[str, Any]) -> Operators:
-    """Return every account that a gateway sent as JSON."""
+    """Return all accounts that a gateway sent as JSON."""
     return Operators([_operator_report(one) for one in values["operators"]])
 
 
@@ -425,7 +426,7 @@ def _operator_report(values: dict[str, Any]) -> OperatorReport:
 
 
 def new_token(values: dict[str, Any]) -> NewToken:
-    """Return the token that was just made, as a gateway sent it as JSON."""
+    """Return the new token that a gateway sent as JSON."""
     return NewToken(**{**known_fields(NewToken, values), "role": Role(values["role"])})
 
 

@@ -1,4 +1,4 @@
-"""What messages are made of: bounds and checks of their values, and what each operator's request declares.
+"""Base of all messages: bounds and checks of their values, and the declarations of operators' requests.
 
 A request is one class, a dataclass and :class:`DeskRequest`, with its fields and their checks in the
 module of its subject. Decoder, scheduler, permission check, JSON Schemas and AsyncAPI read what it declares.
@@ -21,31 +21,30 @@ from types import GenericAlias
 from typing import Any, ClassVar, Generic, TypeVar, get_args
 from urllib.parse import urlsplit
 
-# --- How large what a robot says may be: every bound of its messages, in one place ---
-# The guide for integrators and the JSON Schemas say the same. What a site may set stands in table
-# ``[limits]``
-# of its ``site.toml`` (:mod:`...sites.limit_settings`).
+# --- Size limits and ranges of robots' messages, in one place ---
+# The guide for integrators and the JSON Schemas say the same. Limits that a site may set are in the table
+# ``[limits]`` of its ``site.toml`` (:mod:`...sites.limit_settings`).
 
 LARGEST_MESSAGE = 65_536
 """bytes of a message on WebSocket, characters of ``params`` on SQL; an image may be larger."""
 LONGEST_STATUS = 256
-"""characters of a status; a longer one is cut, so that its robot is not lost for it."""
+"""characters of a status; a longer one is cut, so that its robot is not lost because of it."""
 LONGEST_REFUSAL = 500
 """characters of the reason in a robot's OpAck; a longer one is cut."""
 LONGEST_OPERATOR = 128
 """characters of an operator's name."""
 LONGEST_LABEL = 128
-"""characters; of an object's id, its label and a robot's own number of an observation."""
+"""characters; of an object's id, its label and a robot's own number for an observation."""
 COORDINATE = (-1e8, 1e8)
 """metres in the site frame, whose origin may be that of a CRS with its zone before the easting."""
 SPEED = (-100.0, 100.0)
 """m/s; backwards is below 0."""
 THETA = (-1e6, 1e6)
-"""radians; taken for the same direction in [-π, π]."""
+"""radians; converted to the same direction in [-π, π]."""
 ALTITUDE = (-12_000.0, 100_000.0)
 """metres."""
 CLOCK = (-1e12, 1e12)
-"""seconds of a robot's own clock, whenever it counts from."""
+"""seconds of a robot's own clock, whatever its epoch."""
 ACCURACY = (0.0, 1e6)
 """metres."""
 AREA = (0.0, 1e14)
@@ -55,13 +54,13 @@ CUT = "…"
 LONGEST_ADDRESS = 256
 """characters of the address of a gateway."""
 MOST_GATEWAYS = 16
-"""gateways whose addresses a robot is told."""
+"""gateways whose addresses are sent to a robot."""
 
 
 def one_line(text: str, longest: int) -> str:
-    """Return ``text`` as one line of at most ``longest`` characters, cut with a mark where it is longer.
+    """Return ``text`` as one line of at most ``longest`` characters, cut with a mark if it is longer.
 
-    What is no printable character becomes a space.
+    Unprintable characters become spaces.
     """
     line = text if len(text) <= longest else text[: longest - len(CUT)] + CUT
     return line if line.isprintable() else "".join(c if c.isprintable() else " " for c in line)
@@ -72,7 +71,7 @@ def direction(theta: float) -> float:
     return theta if -math.pi <= theta <= math.pi else math.remainder(theta, math.tau)
 
 
-# --- What a value in a message may be, whatever the message ---
+# --- Checks of values, common to all messages ---
 
 Ranges = Mapping[str, tuple[float, float]]
 """The smallest and the largest value of numbers, by the name of the parameter."""
@@ -83,11 +82,12 @@ GATEWAY_ADDRESS = re.compile(r"wss?://[A-Za-z0-9_.~\[\]:-]+(/[A-Za-z0-9_.~/-]*)?
 CRS_CODE = re.compile(r"EPSG:[0-9]{4,6}")
 ROBOT_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,62}")
 LARGEST_NUMBER = 2**63 - 1
-"""What an integer column of a database holds."""
+"""The largest value of an integer column of a database."""
 
 
 class MessageError(ValueError):
-    """A message that cannot be understood; the text names the operation, the parameter and what is right."""
+    """A message that cannot be understood; the text names the operation, the parameter and the valid
+    values."""
 
 
 def check_finite(**numbers: float | None) -> None:
@@ -113,7 +113,8 @@ def check_ranges(message: Any) -> None:
 
 
 def check_texts(message: Any) -> None:
-    """Refuse what is empty, too long or has a line break among the ``texts`` of its message; MessageError."""
+    """Refuse one of the ``texts`` of a message if empty, too long or with a line break; raises
+    MessageError."""
     for name, longest in message.texts.items():
         value = getattr(message, name)
         if value is not None and not (0 < len(value) <= longest and value.isprintable()):
@@ -147,7 +148,8 @@ def is_gateway_address(address: str) -> bool:
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether a host name or address is this computer's own, which others cannot reach by it."""
+    """Return whether a host name or address is a loopback one, by which other computers cannot reach this
+    one."""
     try:
         return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
     except ValueError:
@@ -155,50 +157,50 @@ def is_loopback(host: str) -> bool:
 
 
 def usable_addresses(addresses: Sequence[str] | None) -> list[str] | None:
-    """Return the first :data:`MOST_GATEWAYS` of ``addresses`` that can be used, None where there is none.
+    """Return the first :data:`MOST_GATEWAYS` usable ones of ``addresses``, None if there is none.
 
-    For others nobody is refused: where a robot may connect when its gateway dies is no reason to lose it now.
+    Unusable ones raise no error: an address for later failover is no reason to lose a robot now.
     """
     usable = filter(is_gateway_address, dict.fromkeys(addresses or ()))
     return list(islice(usable, MOST_GATEWAYS)) or None
 
 
 def check_crs(crs: str | None) -> None:
-    """Refuse what is no code of a CRS; raises MessageError. None is the site frame."""
+    """Refuse a text that is no code of a CRS; raises MessageError. None is the site frame."""
     if crs is not None and CRS_CODE.fullmatch(crs) is None:
         raise MessageError(f"crs is {crs[:40]!r}; give a code such as 'EPSG:4326', or none: the site frame")
 
 
 def check_command_id(command: str) -> None:
-    """Refuse an id that cannot tell one command from every other; raises MessageError."""
+    """Refuse an id that cannot identify a command; raises MessageError."""
     if not (8 <= len(command) <= 64 and command.isprintable()):
         raise MessageError(f"command is {command!r}; give an id of 8 to 64 characters, say a UUID")
 
 
 def check_expires_in(seconds: float | None, longest: float) -> None:
-    """Refuse what is no time until something expires; None is never. Raises MessageError."""
+    """Refuse an invalid time until expiry; None means never. Raises MessageError."""
     if seconds is not None and not 0 < seconds <= longest:
         raise MessageError(
             f"expires_in is {seconds}; give seconds, above 0 and up to {longest:g}, or leave it out"
         )
 
 
-# --- Which keys of a JSON object a message has fields for, and which it has not ---
+# --- Known and unknown keys of a JSON object, by the fields of its message ---
 
 _SHOWN = 40
-"""characters of a key that is refused."""
+"""characters shown of a refused key."""
 
 
 def known_fields(kind: type, values: dict[str, Any]) -> dict[str, Any]:
-    """Return those of ``values`` that ``kind`` has fields for: a newer gateway may tell more."""
+    """Return those of ``values`` that ``kind`` has fields for: a newer gateway may send more."""
     names = _names(kind)
     return {name: value for name, value in values.items() if name in names}
 
 
 def unknown_keys(kind: type, values: dict[str, Any]) -> Iterator[str]:
-    """Yield what the dataclass ``kind``, and those that it holds, have no fields for, as ``tasks[2].colour``.
+    """Yield keys for which the dataclass ``kind``, or one nested in it, has no field, as ``tasks[2].colour``.
 
-    Values of a wrong type are passed over.
+    Values of a wrong type are skipped.
     """
     for path, _holder in _unknown(kind, values, ""):
         yield path
@@ -207,7 +209,7 @@ def unknown_keys(kind: type, values: dict[str, Any]) -> Iterator[str]:
 def refuse_unknown_keys(kind: type, values: dict[str, Any]) -> None:
     """Raise MessageError for the first key in ``values`` that ``kind`` has no field for.
 
-    What is passed over may have been what mattered most, such as the CRS of a place.
+    An ignored key could have been essential, such as the CRS of a place.
     """
     for path, holder in _unknown(kind, values, ""):
         names = ", ".join(field.name for field in dataclasses.fields(holder)) or "none"
@@ -261,7 +263,7 @@ def _inner(kind: type) -> dict[str, tuple[type, bool]]:
 
 
 def to_json(message: Any) -> dict[str, Any]:
-    """Return a message as JSON values; what is None is left out, a bytes field is left to the payload."""
+    """Return a message as JSON values; None values are left out, and bytes fields go into the payload."""
     return {
         name: value if type(value) in _PLAIN_ALREADY else _plain(value)
         for name in _in_order(message.__class__)
@@ -278,7 +280,7 @@ def _in_order(kind: type) -> tuple[str, ...]:
 
 
 def _plain(value: Any) -> Any:
-    # Whether it is a dataclass comes last: to ask that of an Enum takes longer than all the rest.
+    # The check for a dataclass comes last: on an Enum it takes longer than all the rest.
     if isinstance(value, Enum):
         return value.value
     if isinstance(value, (list, tuple)):
@@ -288,33 +290,33 @@ def _plain(value: Any) -> Any:
     return value
 
 
-# --- What every operator's request declares: its method, least role, priority and type of result ---
+# --- Declarations of every operator's request: its method, least role, priority and type of result ---
 
 
 class Role(str, Enum):
-    """What an operator's account may do; each role may do what the one before it may."""
+    """The rights of an operator's account; each role includes those of the one before it."""
 
     VIEWER = "viewer"
     OPERATOR = "operator"
     SUPERVISOR = "supervisor"
 
     def includes(self, other: Role) -> bool:
-        """Tell whether this role may do what ``other`` may."""
+        """Return whether this role includes the rights of ``other``."""
         order = list(Role)
         return order.index(self) >= order.index(other)
 
 
 class Priority(Enum):
-    """How a request is dealt with beside others of the same connection."""
+    """How a request is scheduled among others of the same connection."""
 
     STOP = "stop"
-    """at once, whatever was asked before; what waits and would move its robot is refused then."""
+    """at once, before earlier requests; waiting ones that would move its robot are then refused."""
     MOVE = "move"
-    """in turn; it sets its ``robot`` in motion, every robot where it names none."""
+    """in turn; it sets its ``robot`` in motion, or every robot if it names none."""
     MOVE_SEVERAL = "move several"
     """in turn; it sets other robots than its ``robot`` in motion, too."""
     SLOW = "slow"
-    """beside the others: it changes nothing, and takes long or brings much."""
+    """concurrently with the others: it changes nothing, and takes long or returns much."""
     FIFO = "fifo"
     """in turn; it sets no robot in motion."""
 
@@ -326,27 +328,28 @@ DESK_REQUESTS: dict[str, type[DeskRequest[Any]]] = {}
 
 
 class DeskRequest(Generic[Result]):
-    """A request of an operator, answered with a ``Result``; each subclass is known by being defined.
+    """A request of an operator, answered with a ``Result``; defining a subclass registers it.
 
-    :raises TypeError: when a class does not say its method, least role or result, or its method is taken.
+    :raises TypeError: when a class lacks its method, least role or result, or its method is already
+        registered.
     """
 
     method: ClassVar[str]
     least_role: ClassVar[Role]
     priority: ClassVar[Priority] = Priority.FIFO
     stops: ClassVar[bool] = False
-    """Parameters that are not known are passed over: what stops or holds robots is never refused for them."""
+    """Unknown parameters are ignored: requests that stop or hold robots are never refused for them."""
     result: ClassVar[type]
 
     def __class_getitem__(cls, result: Any) -> GenericAlias:
-        """Return what a subclass names as its base.
+        """Return the alias that a subclass names as its base.
 
-        Not of typing, which keeps what was made: after a reload of the plugin no older class may live.
+        Not by typing, whose cache would keep older classes alive after a reload of the plugin.
         """
         return GenericAlias(cls, result)
 
     def __init_subclass__(cls) -> None:
-        """Check what the class declares, and make it known under its method."""
+        """Check the declarations of the class, and register it under its method."""
         super().__init_subclass__()
         for name in ("method", "least_role"):
             if not hasattr(cls, name):
@@ -360,4 +363,4 @@ class DeskRequest(Generic[Result]):
 
 @dataclass(frozen=True)
 class Done:
-    """The answer to what has nothing to tell."""
+    """The answer to a request that returns no data."""

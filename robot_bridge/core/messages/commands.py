@@ -13,7 +13,7 @@ from .safety import check_override, check_reason
 
 
 class CommandState(str, Enum):
-    """Where a command is in its life (see :mod:`.command_life`)."""
+    """The state of a command (see :mod:`.command_life`)."""
 
     QUEUED = "queued"
     DELIVERED = "delivered"
@@ -32,7 +32,7 @@ class CommandState(str, Enum):
 
 @dataclass(frozen=True)
 class CommandStep:
-    """One step in the life of a command: what it became, when, by whom, and why."""
+    """One step in the life of a command: the new state, when, by whom, and why."""
 
     state: CommandState
     at: float
@@ -60,7 +60,7 @@ class CommandReport:
 
 @dataclass(frozen=True)
 class RefusedRobot:
-    """A robot that was sent nothing, and why."""
+    """A robot to which nothing was sent, and why."""
 
     robot: str
     reason: str
@@ -68,9 +68,9 @@ class RefusedRobot:
 
 @dataclass(frozen=True)
 class Commands:
-    """Commands with every step of their lives.
+    """Commands with all their steps.
 
-    Of ``set_positions`` for robots of several gateways, ``refused`` are those that were sent no target.
+    After ``set_positions`` for robots of several gateways, ``refused`` lists those that got no target.
     """
 
     commands: list[CommandReport]
@@ -85,7 +85,7 @@ LONGEST_EXPIRY = 366 * 86400.0
 class TargetPosition:
     """One robot's target in SetPositions: metres in the site frame, or coordinates in the CRS ``crs``.
 
-    ``cone``: place one there; not unless it is asked for, as with SetPosEnd.
+    ``cone``: place one there; only if requested, as with SetPosEnd.
 
     In a CRS such as ``EPSG:4326`` x (longitude, easting) comes before y whatever the CRS; ``theta`` is
     counted from the x axis of the site frame all the same.
@@ -107,7 +107,7 @@ class TargetPosition:
 class SetPositions(DeskRequest[Commands]):
     """Send target positions (the second paper's ``set_positions``): all of them are accepted, or none.
 
-    Robots of several gateways are the exception: all of one gateway's are, or none of those.
+    Robots of several gateways are the exception: then it holds for each gateway by itself.
     """
 
     method = "set_positions"
@@ -126,14 +126,14 @@ class SetPositions(DeskRequest[Commands]):
 
 @dataclass(frozen=True)
 class Send(DeskRequest[CommandReport]):
-    """Ask for one command. ``command`` is an id that the operator's side invents: sent twice, done once.
+    """Ask for one command. ``command`` is an id that the client chooses: sent twice, done once.
 
     ``params`` are those of ``op``, with places in metres in the site frame, or with ``crs`` among them in
     that CRS, such as ``EPSG:4326``: x (longitude, easting) before y. ``theta`` is the site frame's always.
 
     It is given up when the robot has not fetched it within ``expires_in`` seconds, if that is given, else
-    within the time that the site's settings say. ``override`` says what speaks against it, and why it is
-    asked for all the same: it stands in the command's log, and takes the role that the site's settings say.
+    within the time that the site's settings say. ``override`` states the objections and the reason to
+    proceed: it is stored in the command's log, and requires the role that the site's settings say.
     """
 
     method = "send"
@@ -156,7 +156,7 @@ class Send(DeskRequest[CommandReport]):
 
 @dataclass(frozen=True)
 class SendMap(DeskRequest[Done]):
-    """Have a robot sent the map of the whole site now, as it is sent one when it connects."""
+    """Send a robot the map of the whole site now, as when it connects."""
 
     method = "send_map"
     least_role = Role.OPERATOR
@@ -168,9 +168,9 @@ class SendMap(DeskRequest[Done]):
 
 @dataclass(frozen=True)
 class AbortAll(DeskRequest[Commands]):
-    """Ask every robot to abort its task; answered with the commands that do it.
+    """Ask every robot to abort its task; answered with the commands for that.
 
-    ``command`` is an id that the operator's side invents: sent twice, done once.
+    ``command`` is an id that the client chooses: sent twice, done once.
     """
 
     method = "abort_all"
@@ -202,10 +202,10 @@ class GetCommands(DeskRequest[Commands]):
 
 @dataclass(frozen=True)
 class AbortTask(DeskRequest[CommandReport]):
-    """Ask for the end of one command, named by ``aborts``, or of whatever ``robot`` is doing.
+    """Ask to abort one command, named by ``aborts``, or the present task of ``robot``.
 
-    ``command`` is an id that the operator's side invents: sent twice, done once. A command that was
-    superseded or has ended in the meantime is not aborted, nor what came after it: that is refused.
+    ``command`` is an id that the client chooses: sent twice, done once. If that command was superseded or has
+    ended in the meantime, the request is refused, and its successor is not aborted either.
     """
 
     method = "abort"

@@ -1,4 +1,4 @@
-"""Links: what one and the gateway tell each other (at ``/link``), and what operators are told of them."""
+"""Links: messages between a link and the gateway (at ``/link``), and reports on links to operators."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ LONGEST_NAME = 32
 
 @dataclass(frozen=True)
 class LinkHello:
-    """The first that a link says: the ``protocol`` that it speaks, and its ``kind``, such as ``vda5050``."""
+    """A link's first message: the ``protocol`` that it speaks, and its ``kind``, such as ``vda5050``."""
 
     protocol: int
     kind: str
@@ -35,7 +35,7 @@ class LinkHello:
 
 @dataclass(frozen=True)
 class LinkWelcome:
-    """The answer to it: the link's name, the patterns of the ``robots`` that it may speak for, and the site.
+    """The answer to LinkHello: the link's name, patterns of the ``robots`` that it may speak for, the site.
 
     CRS, origin and rotation of the ``site`` are the frame of all positions. An image may have
     ``largest_image_bytes``.
@@ -70,7 +70,7 @@ class SiteArea:
 
 @dataclass(frozen=True)
 class SiteRoad:
-    """The middle of a road on the ground, its ``width`` in metres and the ``speed`` on it in m/s."""
+    """The centreline of a road on the ground, its ``width`` in metres and the ``speed`` on it in m/s."""
 
     points: list[tuple[float, float]]
     width: float
@@ -79,7 +79,7 @@ class SiteRoad:
 
 @dataclass(frozen=True)
 class SiteAreas:
-    """The answer to it, of the site's ``version``."""
+    """The answer to GetAreas, of the site's ``version``."""
 
     version: int
     keepouts: list[SiteArea]
@@ -88,9 +88,9 @@ class SiteAreas:
 
 @dataclass(frozen=True)
 class LinkStatus:
-    """How a link is: whether its own side is in order, a line about that, and what it has counted.
+    """The state of a link: whether its own side is in order, a line about that, and its counters.
 
-    ``reached``: what is not in order concerns some of its robots, and all can be reached.
+    ``reached``: the trouble concerns some of its robots only, and all can be reached.
     """
 
     ok: bool
@@ -120,8 +120,8 @@ class LinkPositions:
 class LinkColumns:
     """Where robots of the link are, as the table that follows: in each column a 64-bit float for each robot.
 
-    ``columns`` are x, y, theta, v, and what is known of device_time, fix_time, battery, accuracy, altitude,
-    status and theta_from; NaN is what is not known. In the last two a number is a place in ``words``.
+    ``columns`` are x, y, theta, v, and the known ones of device_time, fix_time, battery, accuracy, altitude,
+    status and theta_from; NaN is an unknown value. In the last two a number is an index into ``words``.
     """
 
     robots: list[str]
@@ -131,7 +131,7 @@ class LinkColumns:
 
 @dataclass(frozen=True)
 class AbortOfAll:
-    """All robots of the link must stop, those as well that have not said Ready by it.
+    """All robots of the link must stop, even those that have not sent Ready through it.
 
     Each robot answers by a reply of its own, whose id is its name, ``/`` and ``call``.
     """
@@ -143,7 +143,7 @@ class AbortOfAll:
 
 @dataclass(frozen=True)
 class Released:
-    """The link speaks for ``robot`` no more, until it says Ready for it again: ``reason`` says why."""
+    """The link no longer speaks for ``robot``, until it sends Ready for it again: ``reason`` says why."""
 
     robot: str
     reason: str
@@ -154,7 +154,7 @@ def _check_name(what: str, name: str) -> None:
         raise MessageError(f"{what} is {name[:40]!r}; give 1 to {LONGEST_NAME} letters, digits or '_'")
 
 
-# --- What operators are told of links, and ask of one that plays a recording ---
+# --- Reports on links to operators, and requests to one that plays a recording ---
 
 
 @dataclass(frozen=True)
@@ -162,7 +162,7 @@ class LinkReport:
     """A link, which speaks for many robots; ``up``: it is connected, and its robots can be reached.
 
     Otherwise ``text`` says what is wrong, and ``robots`` are those that it spoke for: fifty names at most, of
-    ``count`` in all. Where it is up ``text`` says what is the matter with some of its robots, if anything is.
+    ``count`` in all. If it is up, ``text`` names troubles of some of its robots, if any.
     """
 
     link: str
@@ -175,21 +175,21 @@ class LinkReport:
 
 @dataclass(frozen=True)
 class Links:
-    """All links that a site names, and those that have been connected since the gateway's start."""
+    """All links named by the site, and those that have been connected since the gateway's start."""
 
     links: list[LinkReport] = field(default_factory=list)
 
 
 def links_report(values: dict[str, Any]) -> Links:
-    """Return how each link is, as a gateway sent it as JSON."""
+    """Return the state of each link that a gateway sent as JSON."""
     return Links([LinkReport(**known_fields(LinkReport, one)) for one in values["links"]])
 
 
 @dataclass(frozen=True)
 class Playback:
-    """How a link is to play its recording on; what is left out stays as it is.
+    """How a link should continue its recording; fields left out stay unchanged.
 
-    ``speed`` is in seconds of the recording for each second, ``place_s`` in seconds after its begin.
+    ``speed`` is seconds of the recording per second, ``place_s`` seconds from its beginning.
     """
 
     speed: float | None = None
@@ -204,7 +204,7 @@ class Playback:
 
 @dataclass(frozen=True)
 class PlaybackReport:
-    """How a recording is played: the name of its file, and where in its ``length_s`` seconds it is."""
+    """The state of a playback: the name of its file, and the position within its ``length_s`` seconds."""
 
     file: str
     speed: float
@@ -216,7 +216,7 @@ class PlaybackReport:
 
 @dataclass(frozen=True)
 class SetPlayback(DeskRequest[PlaybackReport]):
-    """Play the recording of ``link`` on otherwise, as :class:`Playback`; with nothing else, only ask how."""
+    """Change the playback of ``link``, as :class:`Playback`; with ``link`` alone, only query it."""
 
     method = "set_playback"
     least_role = Role.OPERATOR
@@ -231,5 +231,5 @@ class SetPlayback(DeskRequest[PlaybackReport]):
 
     @property
     def change(self) -> Playback:
-        """What the link is told."""
+        """The change to send to the link."""
         return Playback(self.speed, self.paused, self.loop, self.place_s)

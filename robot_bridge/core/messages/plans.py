@@ -1,7 +1,7 @@
-"""Cone plans that the gateway drives: submitted, followed, paused, planned again for what is left, cleared.
+"""Cone plans that the gateway executes: submitted, followed, paused, replanned, cleared.
 
-A plan has a ``revision`` that changes with everything but plain progress. Who changes it says which revision
-they saw; another one is refused.
+A plan has a ``revision`` that changes with everything but plain progress. A change names the revision that it
+is based on; an outdated one is refused.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from .queues import LONGEST_QUEUE, TaskState
 from .safety import check_override, check_reason
 
 MOST_CONES = 5000
-"""cones of a plan, and cones that stand around it."""
+"""cones of a plan, and standing cones around it."""
 LONGEST_PLANNING = 10.0
 """seconds."""
 FARTHEST = 10_000.0
@@ -32,10 +32,10 @@ FARTHEST = 10_000.0
 
 
 class PlanState(str, Enum):
-    """How a plan stands.
+    """The state of a plan.
 
-    While it is ``replanning`` its robots are held; a ``proposed`` plan of what is left waits to be confirmed
-    or discarded. The last two are ends.
+    While it is ``replanning`` its robots are held; a ``proposed`` plan for the remaining cones waits to be
+    confirmed or discarded. The last two are final.
     """
 
     DRIVEN = "driven"
@@ -48,10 +48,10 @@ class PlanState(str, Enum):
 
 @dataclass(frozen=True)
 class PlanCone:
-    """What is written down of the cone ``id`` of a plan: the operator's name of it and its layout.
+    """Stored facts on the cone ``id`` of a plan: the operator's name of it and its layout.
 
-    ``placement`` is the number of the placed cone that is collected, with the heading ``theta`` that it was
-    placed in.
+    ``placement`` is the number of the placed cone that is collected, with the heading ``theta`` in which it
+    was placed.
     """
 
     id: str
@@ -71,11 +71,11 @@ class PlanCone:
 
 @dataclass(frozen=True)
 class PlanReport:
-    """A plan as it stands: ``done`` of its ``cones`` are placed or collected, ``left_out`` are given up.
+    """The state of a plan: ``done`` of its ``cones`` are placed or collected, ``left_out`` are given up.
 
-    ``reason``, ``by`` and ``at`` say why, by whom and when it came into its state. ``document``, and of the
-    plan of what is left ``proposal``, come when asked for; ``meetings`` counts where robots come too near to
-    one another by that, ``closed`` its ways along closed roads.
+    ``reason``, ``by`` and ``at`` say why, by whom and when it came into its state. ``document``, and
+    ``proposal``, the plan for the remaining cones, come on request; ``meetings`` counts where robots come too
+    near to one another in the proposal, ``closed`` its paths along closed roads.
     """
 
     plan: str
@@ -102,14 +102,14 @@ class PlanReport:
 
 @dataclass(frozen=True)
 class SubmitPlan(DeskRequest[PlanReport]):
-    """Give the robots of a plan their tasks, all in one step, and let the gateway follow it from then on.
+    """Give the robots of a plan their tasks, all in one step, and have the gateway follow it from then on.
 
-    ``plan`` is a name that the operator's side invents; given twice, done once. ``document`` is the plan as
+    ``plan`` is a name that the client chooses; given twice, done once. ``document`` is the plan as
     ``fleet-supervisor-assignment``, ``cones`` name what it places and collects. ``revisions`` are those of
     the robots' queues that the operator saw; what waits in these is replaced. What is left is planned again
     along roads (``on_roads``) for ways longer than ``direct_m``, keeping ``clearance_m`` from cones, also
     from those that ``stand``, and ``apart_m`` between robots, within ``seconds``; unasked if ``by_itself``.
-    ``override`` says what speaks against it, and why it is asked for all the same, as with ``send``.
+    ``override`` states the objections and the reason to proceed, as with ``send``.
     """
 
     method = "submit_plan"
@@ -149,14 +149,14 @@ class SubmitPlan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class Plans:
-    """Plans, those that are driven first."""
+    """Plans, active ones first."""
 
     plans: list[PlanReport]
 
 
 @dataclass(frozen=True)
 class GetPlans(DeskRequest[Plans]):
-    """Ask for one plan, or for all that are driven and the newest ``ended`` ones; whole if ``documents``."""
+    """Ask for one plan, or for all active and the newest ``ended`` ones; with documents if ``documents``."""
 
     method = "get_plans"
     least_role = Role.VIEWER
@@ -173,9 +173,9 @@ class GetPlans(DeskRequest[Plans]):
 
 @dataclass(frozen=True)
 class PausePlan(DeskRequest[PlanReport]):
-    """Send the plan's robots no further task; what they are doing they finish (``abort`` stops them).
+    """Send the plan's robots no further task; they finish their present ones (``abort`` stops them).
 
-    Needs no revision: to hold is never refused.
+    Needs no revision: holding is never refused.
     """
 
     method = "pause_plan"
@@ -191,8 +191,8 @@ class PausePlan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class ResumePlan(DeskRequest[PlanReport]):
-    """Let those of the plan's robots go on whose queues are paused; not one whose cone failed, nor a lost
-    one: that takes a plan of what is left."""
+    """Let those of the plan's robots continue whose queues are paused; not one whose cone failed, nor a lost
+    one: those need a replan."""
 
     method = "resume_plan"
     least_role = Role.OPERATOR
@@ -206,9 +206,9 @@ class ResumePlan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class Replan(DeskRequest[PlanReport]):
-    """Hold the plan's robots and plan what is left, without those that are lost or offline.
+    """Hold the plan's robots and plan the remaining cones without lost or offline robots.
 
-    With ``try_again`` cones that failed are tried by somebody again; else they are left out.
+    With ``try_again`` failed cones are tried again by some robot; else they are left out.
     """
 
     method = "replan"
@@ -223,9 +223,9 @@ class Replan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class ConfirmReplan(DeskRequest[PlanReport]):
-    """Give the robots the proposed plan of what is left, in one step, and let them go on.
+    """Give the robots the proposed plan for the remaining cones, in one step, and let them continue.
 
-    ``override`` says what speaks against it, and why it is asked for all the same, as with ``send``.
+    ``override`` states the objections and the reason to proceed, as with ``send``.
     """
 
     method = "confirm_replan"
@@ -242,7 +242,7 @@ class ConfirmReplan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class DiscardReplan(DeskRequest[PlanReport]):
-    """Give up planning what is left, or the plan of that; robots that were held for it go on as before."""
+    """Give up a replan or its proposal; robots that were held for it continue as before."""
 
     method = "discard_replan"
     least_role = Role.OPERATOR
@@ -256,7 +256,7 @@ class DiscardReplan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class ClearPlan(DeskRequest[PlanReport]):
-    """Follow a plan no more; robots go on with what is in their queues. Asked again it changes nothing."""
+    """Stop following a plan; robots continue with their queues. Repeating it changes nothing."""
 
     method = "clear_plan"
     least_role = Role.OPERATOR
@@ -268,8 +268,8 @@ class ClearPlan(DeskRequest[PlanReport]):
 
 @dataclass(frozen=True)
 class PlanStopReport:
-    """A stop of a plan: who makes it as which task, and what became of that; ``id`` is the cone's, the
-    store's, or at ``home`` the robot's. ``placement`` numbers the placed cone that is collected there."""
+    """A stop of a plan: its robot, its task, and the outcome; ``id`` is the cone's, the store's, or at
+    ``home`` the robot's. ``placement`` numbers the placed cone that is collected there."""
 
     task: str
     robot: str
@@ -283,7 +283,8 @@ class PlanStopReport:
 
 
 class PlanProblemKind(str, Enum):
-    """What keeps a plan from going on: a robot lost or offline, a cone that failed, a road that is closed."""
+    """What keeps a plan from continuing: a robot lost or offline, a cone that failed, a road that is
+    closed."""
 
     AWAY = "away"
     FAILED = "failed"
@@ -292,7 +293,7 @@ class PlanProblemKind(str, Enum):
 
 @dataclass(frozen=True)
 class PlanProblemReport:
-    """What keeps a plan from going on as it is: of robot ``robot``, or of the cone or stop ``stop``."""
+    """A problem that keeps a plan from continuing: of robot ``robot``, or of the cone or stop ``stop``."""
 
     kind: PlanProblemKind
     robot: str | None = None
@@ -301,7 +302,7 @@ class PlanProblemReport:
 
 
 def check_label(name: str, text: str) -> None:
-    """Refuse a text that no column takes, or that nobody can read; raises MessageError."""
+    """Refuse a text that no column can store, or that is unreadable; raises MessageError."""
     if not (0 < len(text) <= LONGEST_LABEL and text.isprintable()):
         raise MessageError(f"{name} is {text[:80]!r}; give 1 to {LONGEST_LABEL} printable characters")
 
@@ -311,7 +312,7 @@ def _check_edit(plan: str, revision: int) -> None:
     check_stored_number(revision=revision)
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def plan_report(values: dict[str, Any]) -> PlanReport:

@@ -1,4 +1,4 @@
-"""Positions of robots as operators are told them: reports, and a table of numbers for thousands."""
+"""Positions of robots for operators: reports, and a table of numbers for thousands."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from .base import (
 )
 from .safety import PathDeclaration, RobotState
 
-# --- Positions as a table of numbers: what a desk asks for that shows thousands of robots ---
+# --- Positions as a table of numbers, for desks that show thousands of robots ---
 # A binary frame (:mod:`..core.position_frame`): a JSON-RPC notification ``positions`` whose params are
-# :class:`PositionColumns`, and behind it each of its columns, one 64-bit float for each robot. What is not
-# known of a robot is NaN. A column of :data:`POSITION_TEXTS` holds places in ``words``. A link tells the
-# gateway of its robots in the same form.
+# :class:`PositionColumns`, and behind it each of its columns, one 64-bit float for each robot. Unknown values
+# are NaN. A column of :data:`POSITION_TEXTS` holds indices into ``words``. A link reports its robots to the
+# gateway in the same form.
 
 POSITION_NUMBERS = (
     "age", "x", "y", "theta", "v", "device_time", "fix_time", "pose_age",
@@ -36,11 +36,11 @@ POSITION_FLAGS = ("stopped",)
 POSITION_TEXTS = ("state", "link", "status", "command", "theta_from", "paths", "abilities", "doubt")
 PLACE_COLUMNS = ("state", "x", "y", "theta", "doubt")
 POSITION_ALWAYS = ("age", "stopped", "state", "link")
-"""What is known of every robot."""
+"""Columns known of every robot."""
 
 
 ELSEWHERE = "gateway "
-"""Begins the link of a robot that another gateway of the fleet has; its name follows."""
+"""Prefix of the link of a robot that another gateway of the fleet has; the gateway's name follows."""
 
 
 def link_elsewhere(gateway: str) -> str:
@@ -49,12 +49,12 @@ def link_elsewhere(gateway: str) -> str:
 
 
 def gateway_of_link(link: str) -> str | None:
-    """Return the name of the gateway that has the robot of this link, None for the one that tells of it."""
+    """Return the name of the gateway that has the robot of this link, None for the reporting one."""
     return link[len(ELSEWHERE) :] if link.startswith(ELSEWHERE) else None
 
 
 class PositionForm(str, Enum):
-    """How positions are told: a JSON object for each robot, or a table of numbers behind a JSON head.
+    """The form of positions: a JSON object for each robot, or a table of numbers behind a JSON head.
 
     ``places`` is the table of :data:`PLACE_COLUMNS` alone, as 32-bit floats: a quarter as long, for phones.
     """
@@ -64,28 +64,28 @@ class PositionForm(str, Enum):
     PLACES = "places"
 
 
-# --- What a desk is told of a fleet too large for it: robots in its view, and how many are where ---
+# --- Updates on a fleet too large for a desk: robots in its view, and densities ---
 
 MOST_IN_VIEW = 5000
-"""robots in a view that a desk is told of one by one."""
+"""robots in a view that are sent to a desk individually."""
 MOST_ALWAYS = 500
-"""robots that a desk is told of wherever they are."""
+"""robots that are sent to a desk wherever they are."""
 MOST_ALARMED = 1000
-"""robots with an alarm that a desk is told of outside its view, or in one that is told as a density."""
+"""robots with an alarm that are sent to a desk outside its view, or within one sent as a density."""
 MOST_CELLS = 64
 """cells of a density along an axis."""
 LARGEST_LIMIT = 1e6
 """metres."""
 MOST_FOUND, LONGEST_SEARCH = 500, 63
-"""robots in the answer to a search, and characters of what is searched for."""
+"""robots in the answer to a search, and characters of the searched text."""
 
 
 @dataclass(frozen=True)
 class AlarmLimits:
-    """When a robot has an alarm besides being lost, or at a place that is not believed.
+    """Limits of alarms, besides those of lost robots and doubted positions.
 
-    ``low_battery`` is the part of a full one below which, ``unsure`` the accuracy in metres from which, and
-    ``outside`` the metres off the site's bounds beyond which it has; None is never.
+    A robot has one with less than ``low_battery`` (share of a full one), an accuracy of ``unsure`` metres or
+    worse, or more than ``outside`` metres off the site's bounds; None is never.
     """
 
     low_battery: float | None = None
@@ -101,11 +101,11 @@ class AlarmLimits:
 
 @dataclass(frozen=True)
 class View:
-    """What a desk shows of the fleet: ``bounds`` is x_min, y_min, x_max, y_max in the site frame.
+    """The part of the fleet that a desk shows: ``bounds`` is x_min, y_min, x_max, y_max in the site frame.
 
-    It is told of robots within them one by one, but of none of them where they are more than ``most``: then
-    of how many there are in each cell of a grid. Of those in ``always``, and of those with an alarm by
-    ``alarms``, it is told wherever they are.
+    Robots within them are sent individually, but if they are more than ``most``, only their number in each
+    cell of a grid is sent. Those in ``always``, and those with an alarm by ``alarms``, are sent wherever they
+    are.
     """
 
     bounds: tuple[float, float, float, float]
@@ -131,10 +131,10 @@ class View:
 
 @dataclass(frozen=True)
 class Density:
-    """How many robots are in each ``cell`` x ``cell`` metres of a grid of ``columns`` by ``rows``.
+    """The number of robots in each ``cell`` x ``cell`` metres of a grid of ``columns`` by ``rows``.
 
     Its first corner is ``x``, ``y`` in the site frame, multiples of ``cell``, which is a power of two.
-    ``cells`` are the places of those that hold robots, counted from 0 along x and then along y;
+    ``cells`` are the indices of those that hold robots, counted from 0 along x and then along y;
     ``fresh``, ``silent`` (stale or lost) and ``offline`` have a count for each of them.
     """
 
@@ -151,10 +151,10 @@ class Density:
 
 @dataclass(frozen=True)
 class FleetView:
-    """The fleet as a desk sees it that asked for a view: how many ``robots`` there are, and in which state.
+    """The fleet for a desk that asked for a view: how many ``robots`` there are, and in which state.
 
-    ``inside`` are in the bounds of its view, ``alarmed`` have an alarm, of which it is told of the first
-    1000. With ``density`` those inside are too many to be told of one by one.
+    ``inside`` are in the bounds of its view, ``alarmed`` have an alarm; the first 1000 of these are sent.
+    With ``density`` those inside are too many to be sent individually.
     """
 
     robots: int
@@ -169,13 +169,13 @@ class FleetView:
 
 @dataclass(frozen=True)
 class PositionColumns:
-    """What the table behind it holds, at the gateway's time ``t``.
+    """The contents of the table that follows, at the gateway's time ``t``.
 
     ``columns`` are names of RobotReport's fields, in the order in which they follow, 64-bit little-endian
-    floats (32-bit in the form ``places``), one for each of ``robots``; NaN is what is not known, and what is
-    known of no robot is left out. In columns ``state``, ``link``, ``status``, ``command``, ``theta_from``,
-    ``paths``, ``abilities`` and ``doubt`` a number is a place in ``words``, counted from 0. ``removed``,
-    ``everything``, ``untracked`` and ``view`` are as in :class:`Positions`.
+    floats (32-bit in the form ``places``), one for each of ``robots``; NaN is an unknown value, and columns
+    without any known value are left out. In columns ``state``, ``link``, ``status``, ``command``,
+    ``theta_from``, ``paths``, ``abilities`` and ``doubt`` a number is an index into ``words``, counted from
+    0. ``removed``, ``everything``, ``untracked`` and ``view`` are as in :class:`Positions`.
     """
 
     t: float
@@ -192,13 +192,13 @@ class PositionColumns:
 class RobotReport:
     """One robot as the gateway knows it. ``age`` is seconds since its last message, when this was sent.
 
-    A robot that has said Ready and not yet where it is has no pose: x, y, theta, v are None. ``device_time``
-    and ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since it had its pose, by the
-    gateway's. ``latency`` is the seconds that the robot's link took there and back when last measured.
-    ``paths`` is what the robot declared in Ready about its paths, None of one that declared nothing: it
-    drives straight to a target, and places no cone at the end of a path. ``abilities`` are what it can do,
-    with spaces between them: empty of one that is only seen, None of one that can do everything. ``doubt`` is
-    why it may not be where it is shown, None of one that is believed.
+    A robot that has sent Ready but no position yet has no pose: x, y, theta, v are None. ``device_time`` and
+    ``fix_time`` are the robot's own clocks, ``pose_age`` is seconds since it had its pose, by the gateway's.
+    ``latency`` is the last measured round-trip time of the robot's link in seconds. ``paths`` is what the
+    robot declared in Ready about its paths, None of one that declared nothing: it drives straight to a
+    target, and places no cone at the end of a path. ``abilities`` are separated by spaces: empty for one that
+    is only observed, None for one that can do everything. ``doubt`` is why its position may be wrong, None if
+    it is trusted.
     """
 
     robot: str
@@ -229,9 +229,9 @@ class RobotReport:
 class Positions:
     """Where robots are, at the gateway's time ``t``.
 
-    With ``everything`` they are all robots that there are; otherwise ``removed`` are gone for good. To who
-    asked for a view, ``everything`` are all that are told of one by one, and ``untracked`` are told of no
-    more: they are there, and out of view. ``view`` comes with each change of it.
+    With ``everything`` they are all existing robots; otherwise ``removed`` are gone for good. To a desk that
+    asked for a view, ``everything`` are all that are sent individually, and ``untracked`` are sent no longer:
+    they exist, but are out of view. ``view`` comes with each change of it.
     """
 
     t: float
@@ -244,10 +244,10 @@ class Positions:
 
 @dataclass(frozen=True)
 class Subscribe(DeskRequest[Done]):
-    """Ask for ``positions`` up to ``rate`` times a second, what changed only; everything at first.
+    """Ask for ``positions`` up to ``rate`` times a second: everything at first, then changes only.
 
     ``form`` says whether they come as an object for each robot or as a table of numbers. With ``view`` they
-    are those of the robots in it; asked again with another view, what follows is what that changes.
+    are those of the robots in it; asked again with another view, only the differences follow.
     """
 
     method = "subscribe"
@@ -284,7 +284,7 @@ class FoundRobots:
 class FindRobots(DeskRequest[FoundRobots]):
     """Ask for robots with ``text`` in their names, in any case; every robot where it is empty.
 
-    At most ``limit`` are told, by name; the next ones are those ``after`` the last name of these. With
+    At most ``limit`` are returned, by name; the next ones are those ``after`` the last name of these. With
     ``whole`` they are those whose whole name is ``text``, in any case.
     """
 
@@ -307,18 +307,18 @@ class FindRobots(DeskRequest[FoundRobots]):
             raise MessageError(f"limit is {self.limit}; give 1 to {MOST_FOUND} robots")
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def robot_report(values: dict[str, Any]) -> RobotReport:
-    """Return the report that a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    """Return the report that a gateway sent as JSON; unknown fields of newer gateways are ignored."""
     return RobotReport(**{**known_fields(RobotReport, values), "state": RobotState(values["state"])})
 
 
 def fleet_view(values: dict[str, Any]) -> FleetView:
     """Return the fleet as a desk sees it by its view, as a gateway sent it as JSON.
 
-    :raises ValueError: when a count is none, or the cells of a density lie outside its grid.
+    :raises ValueError: when a count is invalid, or the cells of a density lie outside its grid.
     """
     view = FleetView(**{**known_fields(FleetView, values), "density": None})
     _check_counts("view", *(getattr(view, f.name) for f in dataclasses.fields(view) if f.name != "density"))

@@ -1,7 +1,7 @@
-"""Queues: what each robot is to do one after the other, as operators ask for it and are told.
+"""Queues: the tasks of each robot in order, as requested by and reported to operators.
 
-A queue has a ``revision`` that changes with everything but plain progress. Who changes it says which revision
-they saw; another one is refused, together with the newer state.
+A queue has a ``revision`` that changes with everything but plain progress. A change names the revision that
+it is based on; an outdated one is refused, together with the newer state.
 """
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ LONGEST_QUEUE = 1000
 LONGEST_PATH = 50_000
 """points."""
 _SAME_PLACE = 0.01
-"""metres between a path's end and its task's target that are none."""
+"""metres between a path's end and its task's target that count as none."""
 
 
 class TaskKind(str, Enum):
-    """What a robot does where its task ends: nothing, put a cone down, or pick one up."""
+    """The action of a robot where its task ends: nothing, put a cone down, or pick one up."""
 
     DRIVE = "drive"
     PLACE = "place"
@@ -32,9 +32,9 @@ class TaskKind(str, Enum):
 
 
 class TaskState(str, Enum):
-    """What has become of a task. One that failed waits at the head of its queue, which is paused.
+    """The state of a task. One that failed waits at the head of its queue, which is paused.
 
-    The last three are ends: a ``skipped`` one failed and was passed over, by the site's settings.
+    The last three are final: a ``skipped`` one failed and was passed over, by the site's settings.
     """
 
     WAITING = "waiting"
@@ -54,15 +54,15 @@ class QueueState(str, Enum):
 
 @dataclass(frozen=True)
 class QueueTask:
-    """One task of a queue: a place to be reached, with what is done there.
+    """One task of a queue: a place to reach, with the action there.
 
-    ``x``, ``y`` (metres, site frame) are where the cone is to stand, or where a robot that only drives ends;
+    ``x``, ``y`` (metres, site frame) are the place for the cone, or the end for a robot that only drives;
     ``theta`` is its heading there. ``path``, if given, is driven to get there and ends there. ``task`` is an
-    id that the operator's side invents: given twice, done once. ``placement`` says which placed cone is
-    collected. ``cone``, ``label``, ``layout`` and ``plan`` are the operator's own names, kept with what is
-    measured. ``after`` names tasks, of any robot's queue, that must be done before this one is sent: its
-    queue waits until they are, with those too that are only given later. In the CRS ``crs``, if given, are
-    ``x``, ``y`` and ``path``, x (longitude, easting) before y; the gateway keeps metres in the site frame.
+    id that the client chooses: given twice, done once. ``placement`` says which placed cone is collected.
+    ``cone``, ``label``, ``layout`` and ``plan`` are the operator's own names, stored with the measurements.
+    ``after`` names tasks, of any robot's queue, that must be done before this one is sent: its queue waits
+    until they are, even for tasks that are only given later. In the CRS ``crs``, if given, are ``x``, ``y``
+    and ``path``, x (longitude, easting) before y; the gateway keeps metres in the site frame.
     """
 
     task: str
@@ -98,7 +98,7 @@ class QueueTask:
 
 @dataclass(frozen=True)
 class TaskReport:
-    """A task as it stands. ``path_points`` counts its path's points; ``path`` comes when asked for.
+    """The state of a task. ``path_points`` counts its path's points; ``path`` comes on request.
 
     ``command`` is the command that drives it, or drove it last, after ``attempts``; ``reason`` is why it
     failed, was given back or is not sent yet, in the robot's or the gateway's words. ``deviation`` is metres
@@ -134,7 +134,7 @@ class QueueReport:
     """A robot's queue: its open tasks in order, and the newest that ended, newest first.
 
     ``reason``, ``by`` and ``at`` say why, by whom and when it was paused or resumed last. ``robot_state`` is
-    how far the robot can be heard of: one that is lost or offline is sent nothing.
+    the state of the robot's contact: nothing is sent to one that is lost or offline.
     """
 
     robot: str
@@ -150,11 +150,10 @@ class QueueReport:
 
 @dataclass(frozen=True)
 class SetQueue(DeskRequest[QueueReport]):
-    """Replace what is not yet begun by ``tasks``; what the robot is doing goes on.
+    """Replace the tasks not yet begun by ``tasks``; the present task continues.
 
-    Tasks of this queue that are being done, or were done meanwhile, are passed over. A robot without a queue
-    has revision 0. ``override`` says what speaks against them, and why they are asked for all the same, as
-    with ``send``.
+    Tasks of this queue that are being done, or were done meanwhile, are skipped. A robot without a queue has
+    revision 0. ``override`` states the objections and the reason to proceed, as with ``send``.
     """
 
     method = "set_queue"
@@ -175,7 +174,7 @@ class SetQueue(DeskRequest[QueueReport]):
 class AddTasks(DeskRequest[QueueReport]):
     """Put tasks into a queue, in front of task ``before``, or at its end.
 
-    ``override`` says what speaks against them, and why they are asked for all the same, as with ``send``.
+    ``override`` states the objections and the reason to proceed, as with ``send``.
     """
 
     method = "add_tasks"
@@ -210,7 +209,7 @@ class MoveTask(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class RemoveTask(DeskRequest[QueueReport]):
-    """Take a task that is not being done out of its queue."""
+    """Remove a task that is not being done from its queue."""
 
     method = "remove_task"
     least_role = Role.OPERATOR
@@ -226,7 +225,7 @@ class RemoveTask(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class MakeCurrent(DeskRequest[QueueReport]):
-    """Let a robot do this task first: at once, in place of what it is doing, which then comes next.
+    """Let a robot do this task first: at once, in place of its present one, which then comes next.
 
     In a queue that is paused the task is put first, and nothing is sent.
     """
@@ -244,7 +243,7 @@ class MakeCurrent(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class PauseQueue(DeskRequest[QueueReport]):
-    """Send the robot no further task; what it is doing it finishes (``abort`` stops it).
+    """Send the robot no further task; it finishes its present one (``abort`` stops it).
 
     Needs no revision: to hold is never refused.
     """
@@ -262,10 +261,10 @@ class PauseQueue(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class PauseRobot(DeskRequest[QueueReport]):
-    """Let a robot stand, whatever it is doing, until its queue is resumed; then it goes on from where it is.
+    """Let a robot stand until its queue is resumed; then it continues from where it is.
 
-    It is sent Abort. What it was doing waits at the head of its queue, which is paused: a task of that, or
-    else a task made of the SetPosEnd or SetPath that it was sent. Needs no revision; asked again it changes
+    It is sent Abort. Its present task waits at the head of its queue, which is paused: a task of the queue,
+    or else one made of the SetPosEnd or SetPath that it was sent. Needs no revision; repeating it changes
     nothing.
     """
 
@@ -283,7 +282,7 @@ class PauseRobot(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class ResumeQueue(DeskRequest[QueueReport]):
-    """Let a queue that is paused go on, with the task at its head."""
+    """Resume a paused queue, with the task at its head."""
 
     method = "resume_queue"
     least_role = Role.OPERATOR
@@ -297,7 +296,7 @@ class ResumeQueue(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class Queues:
-    """What robots are to do one after the other, by robot."""
+    """The queues of robots, by robot."""
 
     queues: list[QueueReport]
 
@@ -324,10 +323,10 @@ class GetQueue(DeskRequest[Queues]):
 
 @dataclass(frozen=True)
 class SharedTask:
-    """A task in the order that it is to be done in, with its new ``path``.
+    """A task at its place in the new order, with its new ``path``.
 
-    Without one, a task keeps its path in its own robot's queue. In another's it loses it, since that began
-    elsewhere; one that only drives keeps it, since the path is the task.
+    Without one, a task keeps its path in its own robot's queue. In another's it loses it, since the path
+    began elsewhere; a task that only drives keeps it, since the path is the task.
     """
 
     task: str
@@ -336,7 +335,7 @@ class SharedTask:
 
 @dataclass(frozen=True)
 class Share:
-    """What a robot is to do after a task in progress: every task that is to wait in its queue, in order."""
+    """The tasks of a robot after one in progress: every task that should wait in its queue, in order."""
 
     robot: str
     revision: int
@@ -348,12 +347,12 @@ class Share:
 
 @dataclass(frozen=True)
 class TakeOver(DeskRequest[Queues]):
-    """Let other robots do what waits in the queue of ``robot``, in one step.
+    """Let other robots take over the waiting tasks of ``robot``, in one step.
 
-    ``shares`` say for each of them what then waits in its queue: its own tasks and those it takes over. All
-    tasks of these queues that are not being done must be in them once. The task that ``robot`` is doing may
-    be among them: then that robot is told to abort it. Its queue is paused. ``override`` says what speaks
-    against a new path, and why it is asked for all the same, as with ``send``.
+    ``shares`` hold for each of them its new queue: its own tasks and those it takes over. All tasks of these
+    queues that are not being done must be in them once. The task that ``robot`` is doing may be among them:
+    then that robot is sent Abort. Its queue is paused. ``override`` states the objections to a new path and
+    the reason to proceed, as with ``send``.
     """
 
     method = "take_over"
@@ -378,16 +377,16 @@ class TakeOver(DeskRequest[Queues]):
 
 
 def check_task_id(task: str) -> None:
-    """Refuse an id that cannot tell one task from every other; raises MessageError."""
+    """Refuse an id that cannot identify a task; raises MessageError."""
     if not (8 <= len(task) <= 64 and task.isprintable()):
         raise base.MessageError(f"task is {task[:80]!r}; give an id of 8 to 64 characters, say a UUID")
 
 
 def check_path(task: str, path: list[tuple[float, float]], end: tuple[float, float]) -> None:
-    """Refuse what is no path to ``end``; raises MessageError naming the task."""
+    """Refuse points that are no path to ``end``; raises MessageError naming the task."""
     if not 2 <= len(path) <= LONGEST_PATH:
         raise base.MessageError(f"task {task}: path holds {len(path)} points; give 2 to {LONGEST_PATH}")
-    # There may be tens of thousands: which one is wrong is looked for when one is.
+    # There may be tens of thousands: the wrong one is searched only after the check of all failed.
     if not all(math.isfinite(x) and math.isfinite(y) for x, y in path):
         for number, (x, y) in enumerate(path):
             base.check_finite(**{f"task {task}: path[{number}].x": x, f"task {task}: path[{number}].y": y})
@@ -420,7 +419,7 @@ def _check_tasks(tasks: list[QueueTask]) -> None:
         raise base.MessageError(f"tasks: {twice} is there more than once; give each task an id of its own")
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def queue_report(values: dict[str, Any]) -> QueueReport:

@@ -11,14 +11,14 @@ from . import base
 from .base import DeskRequest, Priority, Role, known_fields
 from .queues import QueueTask
 
-# --- What robots saw, as operators are told it, and what operators make of it ---
+# --- Observations of robots, and their review by operators ---
 
 LONGEST_REASON = 1000
 """characters."""
 
 
 class ObservationState(str, Enum):
-    """Whether an operator has looked at an observation, and what came of it."""
+    """Whether an operator has reviewed an observation, and the outcome."""
 
     PENDING = "pending"
     ACCEPTED = "accepted"
@@ -27,11 +27,11 @@ class ObservationState(str, Enum):
 
 @dataclass(frozen=True)
 class ObservationReport:
-    """One observation: what the robot told by ``op`` (SetObject or SendImage), and its review.
+    """One observation: the robot's report by ``op`` (SetObject or SendImage), and its review.
 
-    ``height`` and ``radius`` (metres) are the robot's until an operator gives others; ``label`` is the
+    ``height`` and ``radius`` (metres) are the robot's until an operator changes them; ``label`` is the
     robot's word for the object and ``semantics`` the map's. ``seen_at`` is by the robot's clock. With
-    ``doubts`` it is no new object: the robot looks through what the map has under that ``src``.
+    ``doubts`` it is no new object: the robot's sensors see through the map's obstacle with that ``src``.
     """
 
     observation: int
@@ -66,7 +66,7 @@ class Observations:
 class GetObservations(DeskRequest[Observations]):
     """Ask for observations, newest first: at most ``limit`` with an id below ``before``.
 
-    Those in one ``state`` or in all, of one robot or of all, of one object (its images too) or of all.
+    Filtered by ``state``, robot and object (its images too), or all.
     """
 
     method = "get_observations"
@@ -106,10 +106,10 @@ class GetImage(DeskRequest[Image]):
 
 @dataclass(frozen=True)
 class ReviewObservation(DeskRequest[ObservationReport]):
-    """Accept an observation, so that its object is on the next maps, or reject it.
+    """Accept an observation, so that its object is on later maps, or reject it.
 
     ``semantics`` is the object's word on the map, ``height`` and ``radius`` are in metres; what is left out
-    is as the robot told. ``revise`` changes a review that was given before.
+    stays as the robot reported. ``revise`` changes an earlier review.
     """
 
     method = "review_observation"
@@ -134,7 +134,7 @@ class ReviewObservation(DeskRequest[ObservationReport]):
             )
 
 
-# --- Where cones were put down: planned and as placed, and how they are collected again ---
+# --- Placed cones: planned and actual places, and their collection ---
 
 MOST_PLACEMENTS = 5000
 
@@ -143,8 +143,8 @@ MOST_PLACEMENTS = 5000
 class PlacementReport:
     """A cone that a robot put down; metres and radians in the site frame.
 
-    ``planned_x``, ``planned_y`` is where it was to stand, ``x``, ``y`` where it does: the robot's pose when
-    it had reached its target, and from there the site's cone offset. ``theta`` is the robot's heading.
+    ``planned_x``, ``planned_y`` is its planned place, ``x``, ``y`` its actual one: the robot's pose when it
+    had reached its target, plus the site's cone offset. ``theta`` is the robot's heading.
     """
 
     placement: int
@@ -178,7 +178,7 @@ class GetPlacements(DeskRequest[Placements]):
     """Ask for cones that were put down, newest first: at most ``limit`` with an id below ``before``.
 
     Of one layout, plan, cone, robot or of all; put down from ``since`` up to ``until`` (seconds since 1970);
-    with ``collected`` only those that were collected again, or (false) that were not.
+    with ``collected`` only those that were (true) or were not (false) collected.
     """
 
     method = "get_placements"
@@ -206,9 +206,9 @@ class GetPlacements(DeskRequest[Placements]):
 
 @dataclass(frozen=True)
 class CollectingTasks:
-    """The answer to ``collect_layout``: a task for each cone that stands and is in no queue yet.
+    """The answer to ``collect_layout``: a task for each standing cone that is in no queue yet.
 
-    ``in_queues`` counts those that a task of some queue collects already.
+    ``in_queues`` counts those that a queued task collects already.
     """
 
     tasks: list[QueueTask] = field(default_factory=list)
@@ -217,10 +217,10 @@ class CollectingTasks:
 
 @dataclass(frozen=True)
 class CollectLayout(DeskRequest[CollectingTasks]):
-    """Ask for the tasks that collect what stands of a layout; nothing is sent to any robot.
+    """Ask for the tasks that collect the standing cones of a layout; nothing is sent to any robot.
 
-    Without ``layout``, of every cone that was put down and not collected. Which robot takes which is the
-    operator's: the tasks go into queues by ``set_queue`` or ``add_tasks``.
+    Without ``layout``, of every placed cone that is not collected. The operator decides which robot takes
+    which: the tasks go into queues by ``set_queue`` or ``add_tasks``.
     """
 
     method = "collect_layout"
@@ -232,14 +232,14 @@ class CollectLayout(DeskRequest[CollectingTasks]):
         base.check_texts(self)
 
 
-# --- What operators ask about where robots have been ---
+# --- Requests of operators for trajectories ---
 
 MOST_PLACES = 5000
 _MARK = re.compile(r"(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?):(\d{1,18})")
 
 
 class TrajectoryPlace(NamedTuple):
-    """Where a robot was at the gateway's time ``received_at``; the other two times are by its own clock."""
+    """Where a robot was at the gateway's time ``received_at``; ``t`` and ``fix_t`` are by its own clock."""
 
     robot: str
     received_at: float
@@ -291,7 +291,7 @@ class GetTrajectory(DeskRequest[Trajectory]):
             raise base.MessageError(f"after is {self.after[:80]!r}; give 'next' of the page before")
 
     def mark(self) -> tuple[float, int] | None:
-        """Return the time and id that ``after`` stands for."""
+        """Return the time and id encoded in ``after``."""
         found = _MARK.fullmatch(self.after or "")
         return (float(found[1]), int(found[2])) if found else None
 
@@ -301,7 +301,7 @@ def mark_text(received_at: float, id: int) -> str:
     return f"{received_at!r}:{id}"
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def observation_report(values: dict[str, Any]) -> ObservationReport:

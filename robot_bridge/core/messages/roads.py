@@ -11,7 +11,7 @@ from . import base
 from .base import DeskRequest, MessageError, Priority, Role, Texts, known_fields
 from .safety import check_reason
 
-# --- What operators ask about roads: a route to look at, a road to be closed, robots in each other's way
+# --- Requests of operators about roads: routes, closures, and conflicts of robots
 
 LONGEST_ID = 64
 LONGEST_CLOSURE = 10 * 366 * 86400.0
@@ -20,13 +20,12 @@ LONGEST_CLOSURE = 10 * 366 * 86400.0
 
 @dataclass(frozen=True)
 class RouteReport:
-    """A way that a robot can be sent by SetPath: ``points`` are those that it drives.
+    """A route that can be sent to a robot by SetPath: ``points`` are those that it drives.
 
-    ``seconds`` are those of the robot: at ``speed_ms`` of the site's settings or the speed that it shows,
-    whichever is more, and nowhere faster than the road. ``tight`` holds the corners that are tighter than the
-    turning radius of the site's settings; ``note`` says what is not as one would expect, such as that the way
-    is no road but a straight line. ``engine`` is what found it, ``off_goal`` metres from the goal to its
-    road.
+    ``seconds`` is the robot's driving time: at ``speed_ms`` of the site's settings or its observed speed,
+    whichever is more, and nowhere faster than the road allows. ``tight`` holds the corners that are tighter
+    than the turning radius of the site's settings; ``note`` says what is unusual, such as a straight line
+    instead of a road. ``engine`` names the routing engine, ``off_goal`` is metres from the goal to its road.
     """
 
     points: list[tuple[float, float]]
@@ -41,10 +40,10 @@ class RouteReport:
 
 @dataclass(frozen=True)
 class GetRoute(DeskRequest[RouteReport]):
-    """Ask for the way along the roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
+    """Ask for the route along roads from where ``robot`` is, or from ``start``, to (``x``, ``y``).
 
     ``surfaces`` names those that may be used (None: all), ``least_width`` metres that a road must have at
-    least. With ``avoid_reserved`` roads on which other robots' tasks lead are left out. Places are metres in
+    least. With ``avoid_reserved`` roads used by other robots' tasks are left out. Places are metres in
     the site frame, or in the CRS ``crs``, such as ``EPSG:4326``: x (longitude, easting) before y.
     """
 
@@ -82,7 +81,7 @@ class SurfaceMetres:
 
 @dataclass(frozen=True)
 class RoadClosed:
-    """What closing a road led to."""
+    """The outcome of closing a road."""
 
     closure: ClosureReport
     robots: list[ReplannedRobot] = field(default_factory=list)
@@ -90,10 +89,10 @@ class RoadClosed:
 
 @dataclass(frozen=True)
 class CloseRoad(DeskRequest[RoadClosed]):
-    """Close the road nearest to (``x``, ``y``), from its one junction to the next, for every robot.
+    """Close the road nearest to (``x``, ``y``), from one junction to the next, for every robot.
 
-    ``closure`` is an id that the operator's side invents: sent twice, done once. The road is open again after
-    ``seconds``, if that is given. It must be within ``reach`` metres.
+    ``closure`` is an id that the client chooses: sent twice, done once. The road is open again after
+    ``seconds``, if that is given. The road must be within ``reach`` metres.
     """
 
     method = "close_road"
@@ -117,7 +116,7 @@ class CloseRoad(DeskRequest[RoadClosed]):
 
 @dataclass(frozen=True)
 class ClosureReport:
-    """A road that is closed, or was: ``line`` is the stretch, metres in the site frame.
+    """A road that is or was closed: ``line`` is the stretch, metres in the site frame.
 
     ``edges`` counts the edges of the network that it closes; 0 means that the site, as it is published now,
     has no such road. It opens by itself at ``until``. Times are seconds since 1970.
@@ -137,7 +136,7 @@ class ClosureReport:
 
 @dataclass(frozen=True)
 class OpenRoad(DeskRequest[ClosureReport]):
-    """Open a road again that was closed under the id ``closure``."""
+    """Reopen the road that was closed under the id ``closure``."""
 
     method = "open_road"
     least_role = Role.OPERATOR
@@ -166,11 +165,11 @@ class GetClosures(DeskRequest[Closures]):
 
 @dataclass(frozen=True)
 class ReplannedRobot:
-    """A robot whose way led along a road that was closed, and what became of it.
+    """A robot whose path led along a road that was closed, and the outcome.
 
     ``became`` is ``another way``, ``stopped``, ``told only`` (the site's settings ask for no more), ``later``
-    (as soon as it says where it is now, or the database can be written) or ``failed``: look after that robot
-    yourself. ``command`` is the one that does it, if one does.
+    (as soon as it says where it is now, or the database can be written) or ``failed``: an operator must take
+    care of that robot. ``command`` is the one that carries it out, if any.
     """
 
     robot: str
@@ -181,7 +180,7 @@ class ReplannedRobot:
 
 @dataclass(frozen=True)
 class Conflicts:
-    """The conflicts of all robots, soonest first, reckoned at the gateway's time ``t``.
+    """The conflicts of all robots, soonest first, computed at the gateway's time ``t``.
 
     ``waiting`` names the robots that are held until another has passed.
     """
@@ -193,7 +192,7 @@ class Conflicts:
 
 @dataclass(frozen=True)
 class GetConflicts(DeskRequest[Conflicts]):
-    """Ask where the ways of robots come too near to one another, if they are driven as they are now."""
+    """Ask where robots will come too near to one another on their present paths."""
 
     method = "get_conflicts"
     least_role = Role.VIEWER
@@ -204,10 +203,10 @@ class GetConflicts(DeskRequest[Conflicts]):
 class ConflictReport:
     """Two robots that will be nearer to one another than their widths and the margin allow.
 
-    ``kind`` is ``head-on``, ``crossing``, ``following`` or ``standing``: ``other`` does not move then. From
+    ``kind`` is ``head-on``, ``crossing``, ``following`` or ``standing`` (``other`` does not move then). From
     ``begins`` to ``ends`` (None: for good), seconds since 1970; nearest at ``nearest_at``, with ``metres``
-    between their middles, at (``x``, ``y``). ``clearance`` is the least metres that should be between their
-    middles; None from an older gateway.
+    between their middles, at (``x``, ``y``). ``clearance`` is the required distance of their middles in
+    metres; None from an older gateway.
     """
 
     robot: str
@@ -224,7 +223,7 @@ class ConflictReport:
 
 @dataclass(frozen=True)
 class HoldReport:
-    """A robot that waits at (``x``, ``y``) for another to pass; it is sent on at ``until`` or later."""
+    """A robot that waits at (``x``, ``y``) for another to pass; it continues at ``until`` or later."""
 
     robot: str
     other: str
@@ -237,7 +236,7 @@ class HoldReport:
 
 @dataclass(frozen=True)
 class WaysOut:
-    """What ``robot`` and ``other`` can do, reckoned at the gateway's time ``t``."""
+    """The options of ``robot`` and ``other``, computed at the gateway's time ``t``."""
 
     t: float
     robot: str
@@ -247,7 +246,7 @@ class WaysOut:
 
 @dataclass(frozen=True)
 class GetWaysOut(DeskRequest[WaysOut]):
-    """Ask what two robots in each other's way can do about it; nothing is done."""
+    """Ask for the options of two robots in conflict; nothing is changed."""
 
     method = "get_ways_out"
     least_role = Role.VIEWER
@@ -264,10 +263,10 @@ class GetWaysOut(DeskRequest[WaysOut]):
 
 @dataclass(frozen=True)
 class WayOut:
-    """What ``robot`` can do, and whether that works now: ``text`` says what would happen, or why not.
+    """An option of ``robot``, and whether it works now: ``text`` says what would happen, or why not.
 
-    It gives way (resolve_conflict), or goes ``aside``: then ``points`` are the way to the nearest free place,
-    metres in the site frame, to be sent as any route.
+    It gives way (resolve_conflict), or goes ``aside``: then ``points`` are the path to the nearest free
+    place, metres in the site frame, to send like any route.
     """
 
     robot: str
@@ -279,7 +278,7 @@ class WayOut:
 
 @dataclass(frozen=True)
 class ConflictResolved:
-    """What the robot was told: ``became`` is ``waits`` or ``another way``; ``command`` is what tells it."""
+    """The outcome: ``became`` is ``waits`` or ``another way``; ``command`` is the one sent to the robot."""
 
     robot: str
     became: Literal["waits", "another way"]
@@ -290,9 +289,9 @@ class ConflictResolved:
 
 @dataclass(frozen=True)
 class ResolveConflict(DeskRequest[ConflictResolved]):
-    """Ask for a conflict to be resolved by what ``robot`` does; ``other`` goes on as it is.
+    """Resolve a conflict by an action of ``robot``; ``other`` continues unchanged.
 
-    It waits, takes another way (``route``), or whichever gets it to its end sooner (``either``).
+    It waits, takes another route (``route``), or whichever gets it to its end sooner (``either``).
     """
 
     method = "resolve_conflict"
@@ -310,17 +309,17 @@ class ResolveConflict(DeskRequest[ConflictResolved]):
 
 
 def check_closure_id(closure: str) -> None:
-    """Refuse an id that cannot tell one closure from every other; raises MessageError."""
+    """Refuse an id that cannot identify a closure; raises MessageError."""
     if not (8 <= len(closure) <= LONGEST_ID and closure.isprintable()):
         raise MessageError(f"closure is {closure!r}; give an id of 8 to {LONGEST_ID} characters, say a UUID")
 
 
-# --- Which road surface is at a place: what robots and operators ask, and what they are answered with ---
+# --- Road surface at a place: requests of robots and operators, and their answers ---
 # The paper's tables have no such operation: GetSurface and SetSurface are this project's own.
 
 MOST_OF_A_ROBOT = 1000
 MOST_OF_A_DESK = 10_000
-"""Places in one question."""
+"""Places in one request."""
 LONGEST_SOURCE = 128
 """characters."""
 
@@ -330,7 +329,7 @@ class GetSurface:
     """The robot asks which road surface is at each of ``points``; an operation beside the paper's tables.
 
     They are metres in the site frame, or in the CRS ``crs``, such as ``EPSG:4326``, x (longitude, easting)
-    before y whatever the CRS. ``source`` is a number or name of the robot's own; SetSurface has it, too.
+    before y whatever the CRS. ``source`` is a number or name chosen by the robot; SetSurface repeats it.
     """
 
     points: list[tuple[float, float]]
@@ -349,7 +348,7 @@ class GetSurface:
 class SetSurface:
     """The answer to GetSurface: the class of the surface at each point in turn, such as ``asphalt``.
 
-    None where there is no road surface, empty where its class is not known. ``source`` is the question's.
+    None where there is no road surface, empty where its class is not known. ``source`` is the request's.
     """
 
     surfaces: list[str | None]
@@ -397,7 +396,7 @@ def _check(points: Sequence[tuple[float, float]], crs: str | None, most: int) ->
     base.check_crs(crs)
 
 
-# --- Read from plain JSON values; unknown fields of newer gateways are passed over ---
+# --- Read from plain JSON values; unknown fields of newer gateways are ignored ---
 
 T = TypeVar("T")
 
@@ -413,7 +412,7 @@ def closure_report(values: dict[str, Any]) -> ClosureReport:
 
 
 def conflicts_report(values: dict[str, Any]) -> Conflicts:
-    """Return where robots are in each other's way."""
+    """Return the conflicts of robots."""
     return Conflicts(
         float(values["t"]),
         [_made(ConflictReport, one) for one in values.get("conflicts", [])],
@@ -422,18 +421,18 @@ def conflicts_report(values: dict[str, Any]) -> Conflicts:
 
 
 def ways_out_report(values: dict[str, Any]) -> WaysOut:
-    """Return what two robots in each other's way can do."""
+    """Return the options of two robots in conflict."""
     ways = [_made(WayOut, {**one, "points": _points(one.get("points", []))}) for one in values["ways"]]
     return WaysOut(float(values["t"]), str(values["robot"]), str(values["other"]), ways)
 
 
 def replanned_robot(values: dict[str, Any]) -> ReplannedRobot:
-    """Return what became of a robot whose road was closed."""
+    """Return the outcome for a robot whose road was closed."""
     return _made(ReplannedRobot, values)
 
 
 def route_report(values: dict[str, Any]) -> RouteReport:
-    """Return the way that was asked for."""
+    """Return the requested route."""
     surfaces = [_made(SurfaceMetres, one) for one in values.get("surfaces", [])]
     points, tight = _points(values["points"]), _points(values.get("tight", []))
     return _made(RouteReport, {**values, "points": points, "tight": tight, "surfaces": surfaces})

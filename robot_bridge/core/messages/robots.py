@@ -1,9 +1,9 @@
-"""What robots ask (paper 1, table II) and what the server answers (table III).
+"""Requests of robots (paper 1, table II) and answers of the server (table III).
 
 Each message stands under its own operation code, which is the class's name. On SQL it is a row (``op``,
 ``params`` as JSON, ``payload``); on WebSocket it is JSON-RPC 2.0 with the operation code as the method. A
-robot on SQL may say the ``magic`` number of its Ready with all that it says, so that what another one says
-under its account is told apart.
+robot on SQL may add the ``magic`` number of its Ready to every message, which distinguishes it from another
+robot under its account.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .safety import Ability, PathDeclaration
 
 _SURELY_NEAR = 10_000.0
 _SPEED_FOR_PLACE = _SURELY_NEAR / base.SPEED[1]
-"""A place, altitude and speed whose sum is below are within every bound, as those of most robots are."""
+"""A place, altitude and speed whose sum is below this are within all bounds, as with most robots."""
 
 
 def is_status(text: str) -> bool:
-    """Tell whether ``text`` is a status as it is, neither too long nor of more than one line."""
+    """Return whether ``text`` is a valid status: not too long, and on one line."""
     return len(text) <= base.LONGEST_STATUS and text.isprintable()
 
 
@@ -31,11 +31,11 @@ def is_status(text: str) -> bool:
 class Ready:
     """The robot is ready to start tasks and listens for answers; ``magic`` comes back in the OpAck.
 
-    ``asks_path`` (an addition of ours) declares that it asks for its path (GetPath) after every SetPosEnd and
-    does not drive before it has the answer; ``path_cones`` that it understands ``cone`` and ``collect`` of
-    SetPath. A robot that leaves them out is taken to do neither: it drives straight to a target.
-    ``abilities`` (ours too) are all that it can do, none for one that is only seen; a robot that leaves them
-    out can do everything.
+    ``asks_path`` (our addition) declares that it requests its path (GetPath) after every SetPosEnd and does
+    not drive before the answer; ``path_cones`` that it understands ``cone`` and ``collect`` of SetPath. A
+    robot that leaves them out is taken to do neither: it drives straight to a target. ``abilities`` (ours
+    too) are all that it can do, none for one that is only observed; a robot that leaves them out can do
+    everything.
     """
 
     magic: int
@@ -49,14 +49,14 @@ class Ready:
 
     @property
     def paths(self) -> PathDeclaration | None:
-        """What is declared about paths, None where nothing is."""
+        """The declaration about paths, None without one."""
         if self.path_cones:
             return "asks and cones" if self.asks_path else "cones"
         return "asks" if self.asks_path else None
 
     @property
     def can(self) -> str | None:
-        """Its abilities with spaces between them, None for one that can do everything."""
+        """Its abilities separated by spaces, None for one that can do everything."""
         return None if self.abilities is None else " ".join(sorted(set(self.abilities)))
 
 
@@ -80,9 +80,9 @@ class Alive:
 class OpAck:
     """The other side received message ``id``; with ``ok`` false it will not do it, and ``reason`` says why.
 
-    The answer to Ready carries the robot's ``magic`` number back, the name it is known by, and the
-    ``database`` that the ids of the server's messages belong to. ``gateways`` are as in :class:`Start`, in
-    the answer to Ready and in the next one after they have changed.
+    The answer to Ready returns the robot's ``magic`` number, the name it is known by, and the ``database``
+    that the ids of the server's messages belong to. ``gateways`` are as in :class:`Start`, in the answer to
+    Ready and in the next one after they have changed.
     """
 
     id: int | None = None
@@ -136,7 +136,8 @@ class SendPos:
     }
 
     def __post_init__(self) -> None:
-        # Ten thousand of them come every second: what is wrong is looked for when something is.
+        # Ten thousand arrive every second: the wrong parameter is searched only after a quick check of all
+        # failed.
         place = abs(self.x) + abs(self.y) + abs(self.altitude or 0.0) + abs(self.v) * _SPEED_FOR_PLACE
         clocks = abs(self.t or 0.0) + abs(self.fix_t or 0.0)
         if not (place <= _SURELY_NEAR and clocks <= base.CLOCK[1] and -math.pi <= self.theta <= math.pi):
@@ -149,9 +150,9 @@ class SendPos:
 
     @classmethod
     def of_checked(cls, names: Sequence[str], values: Sequence[Any]) -> SendPos:
-        """Return a pose of parameters that are known to be right, ``values`` by ``names``.
+        """Return a pose of parameters that are known to be valid, ``values`` by ``names``.
 
-        A quarter of what the checks and the frozen fields of the constructor take; the others are None.
+        Takes a quarter of the constructor's time, which checks and freezes fields; the others are None.
         """
         pose = object.__new__(cls)
         pose.__dict__.update(zip(names, values, strict=True))
@@ -198,13 +199,13 @@ class SendGPS:
 
     @property
     def has_fix(self) -> bool:
-        """Tell whether it says a place: receivers without a fix say 0, 0, far out at sea."""
+        """Return whether it has a position: receivers without a fix send 0, 0, far out at sea."""
         return self.lat != 0 or self.lon != 0
 
 
 @dataclass(frozen=True)
 class GetMap:
-    """The robot asks for the map of a square of ``area`` square metres centred on (x, y)."""
+    """The robot requests the map of a square of ``area`` square metres centred on (x, y)."""
 
     x: float
     y: float
@@ -225,7 +226,7 @@ class GetMap:
 
 @dataclass(frozen=True)
 class GetPath:
-    """The robot asks for the path from where it is to the end of its task."""
+    """The robot requests the path from where it is to the end of its task."""
 
     magic: int | None = None
     acknowledged: ClassVar[bool] = True
@@ -233,7 +234,7 @@ class GetPath:
 
 @dataclass(frozen=True)
 class GetPosIni:
-    """The robot asks for the beginning of its track."""
+    """The robot requests the beginning of its track."""
 
     magic: int | None = None
     acknowledged: ClassVar[bool] = True
@@ -241,7 +242,7 @@ class GetPosIni:
 
 @dataclass(frozen=True)
 class GetPosEnd:
-    """The robot asks for the end of its track."""
+    """The robot requests the end of its track."""
 
     magic: int | None = None
     acknowledged: ClassVar[bool] = True
@@ -252,9 +253,9 @@ class SetObject:
     """The robot saw ``object`` at (x, y), metres in the site frame, and it belongs on the map.
 
     ``label`` says what it is, ``height`` and ``radius`` are in metres, ``t`` is when it was seen by the
-    robot's clock. ``source`` is a number or name that the robot gives to what it tells: told again under the
-    same one, it is stored once. With ``doubts`` it is the other way round: the obstacle of the map whose
-    ``src`` that is, is around (x, y), and the robot looks through it again and again.
+    robot's clock. ``source`` is a number or name that the robot gives to its report: repeated under the same
+    one, it is stored once. With ``doubts`` it is the reverse: ``source`` is the ``src`` of an obstacle of the
+    map around (x, y), through which the robot's sensors see again and again.
     """
 
     x: float
@@ -291,7 +292,8 @@ class SetObject:
 class SendImage:
     """An image (JPEG, PNG or WebP) that the robot took at (x, y) of ``object``; the bytes are the payload.
 
-    ``media_type`` may be left out: the bytes tell. ``t`` and ``source`` are as in :class:`SetObject`.
+    ``media_type`` may be left out: it is derived from the bytes. ``t`` and ``source`` are as in
+    :class:`SetObject`.
     """
 
     image: bytes
@@ -321,7 +323,7 @@ class SendImage:
 
 @dataclass(frozen=True)
 class Start:
-    """The server listens to requests from now on, with ``database`` behind it.
+    """The server accepts requests from now on; ``database`` identifies its database.
 
     ``gateways`` are the URLs of all gateways that serve the fleet, this one's first, where several do: at any
     of them the robot may connect, under its name, when its own does not answer.
@@ -354,7 +356,7 @@ class SetMap:
 class SetPath:
     """A path to drive to its end: at least two points, metres; ``theta`` the heading to stand in there.
 
-    ``cone`` and ``collect`` (additions of ours): place a cone at the end, or pick up the one that stands
+    ``cone`` and ``collect`` (our additions): place a cone at the end, or pick up the one that stands
     there. They are sent only to robots that declare ``path_cones`` in Ready.
     """
 
@@ -376,7 +378,7 @@ class SetPath:
 class SetPosEnd:
     """The end of the track: a target, the heading to stand in if it matters; ``cone``: place one there.
 
-    ``collect`` (an addition of ours): pick up the cone that stands there.
+    ``collect`` (our addition): pick up the cone that stands there.
     """
 
     x: float
@@ -446,6 +448,6 @@ ANSWERS: dict[str, type[Answer]] = {
     cls.__name__: cls for cls in (Start, OpAck, Abort, SetMap, SetPath, SetPosIni, SetPosEnd, SetSurface)
 }
 COMMANDS: dict[str, type[Command]] = {cls.__name__: cls for cls in (SetPosEnd, SetPath, SetPosIni, Abort)}
-"""The answers that an operator can ask for as a command."""
+"""The answers that an operator can send as commands."""
 PAYLOADS: dict[str, str] = {"SetMap": "map", "SendImage": "image"}
-"""The parameter that is bytes: the payload on SQL, base64 text inside the JSON on WebSocket."""
+"""The binary parameter of a message: the payload on SQL, base64 text inside the JSON on WebSocket."""

@@ -28,7 +28,7 @@ class RobotState(str, Enum):
     OFFLINE = "offline"
 
 
-# --- How operators stop robots: one task, one robot, and all of them in an emergency ---
+# --- Stops by operators: one task, one robot, and all robots in an emergency ---
 
 LONGEST_REASON = 500
 """characters."""
@@ -37,7 +37,7 @@ LONGEST_OVERRIDE = 1000
 
 
 def check_reason(reason: str | None) -> None:
-    """Refuse a reason that is no line of the log; raises MessageError."""
+    """Refuse a reason that does not fit a line of the log; raises MessageError."""
     if reason is not None and not (len(reason) <= LONGEST_REASON and reason.isprintable()):
         raise MessageError(
             f"reason has {len(reason)} characters; give one line of at most {LONGEST_REASON} printable ones"
@@ -45,7 +45,7 @@ def check_reason(reason: str | None) -> None:
 
 
 def check_override(override: str | None) -> None:
-    """Refuse an override that does not say in one line of the log what is overridden; raises MessageError."""
+    """Refuse an override that is not one line for the log, saying what is overridden; raises MessageError."""
     if override is None:
         return
     if not (override.strip() and len(override) <= LONGEST_OVERRIDE and override.isprintable()):
@@ -60,7 +60,7 @@ class StoppedGateways:
     """Where several gateways serve the fleet: an emergency stop is in force at ``reached`` ``of`` them.
 
     ``missing`` names the others: they have not answered yet, or cannot be reached. They learn of the stop
-    from the database within a second of reaching that.
+    within a second of reaching the database.
     """
 
     reached: int
@@ -74,9 +74,9 @@ class EmergencyReport:
 
     Of ``robots`` known robots ``acknowledged`` have said that they stop and ``standing`` were seen to stand
     since; ``waiting`` names those that have not answered, ``refused`` those that answered that they will not
-    (some fifty at most of either). Those of ``standing`` are heard now, and their positions say that they
-    stand: ``moving`` names robots that move now, whatever they answered, and ``unheard`` those that
-    acknowledged and are not heard now, so that nobody knows whether they stand; ``moving_more`` and
+    (some fifty at most of either). Those of ``standing`` are in contact now, and their positions show that
+    they stand: ``moving`` names robots that move now, whatever they answered, and ``unheard`` those that
+    acknowledged but are silent now, so that it is unknown whether they stand; ``moving_more`` and
     ``unheard_more`` count others. ``gateways`` is None where one gateway serves the fleet. ``stored`` is
     false while the database could not be written: the stop holds, and the next gateway on this computer
     learns of it from a file.
@@ -105,10 +105,10 @@ class EmergencyReport:
 
 @dataclass(frozen=True)
 class EmergencyStop(DeskRequest[EmergencyReport]):
-    """Stop every robot now and let none be sent anywhere until a supervisor clears it.
+    """Stop every robot now and refuse motion commands until a supervisor clears it.
 
-    ``command`` is an id that the operator's side invents: sent twice, done once. A reason that is no line of
-    the log is made one, since a stop is not refused for what is said about it.
+    ``command`` is an id that the client chooses: sent twice, done once. A reason that does not fit a line of
+    the log is adapted, since a stop is never refused for its reason.
     """
 
     method = "emergency_stop"
@@ -123,9 +123,9 @@ class EmergencyStop(DeskRequest[EmergencyReport]):
 
     @classmethod
     def understood(cls, params: object) -> dict[str, object]:
-        """Return parameters of which a stop can be made, whatever somebody sent: to stop is never refused.
+        """Return valid parameters of a stop, whatever was sent: a stop is never refused.
 
-        In place of an id that is none comes one that is the same for the same, so that it is done once.
+        An invalid id is replaced by one derived from it, the same each time, so that the stop is done once.
         """
         given = dict(params) if isinstance(params, dict) else {}
         sent = given.get("command")
@@ -146,9 +146,9 @@ class EmergencyStop(DeskRequest[EmergencyReport]):
 
 @dataclass(frozen=True)
 class ClearEmergencyStop(DeskRequest[EmergencyReport]):
-    """Let robots be sent again. ``stop`` is the stop that the supervisor means, as last told.
+    """Allow motion commands again. ``stop`` is the stop that the supervisor means, as last reported.
 
-    With ``stop`` a newer one, which that supervisor has not seen yet, is not cleared by accident.
+    ``stop`` prevents clearing by accident a newer one that the supervisor has not seen yet.
     """
 
     method = "clear_emergency_stop"
@@ -161,7 +161,7 @@ class ClearEmergencyStop(DeskRequest[EmergencyReport]):
         check_reason(self.reason)
 
 
-# --- What operators are told of robots in keepouts and at obstacles ---
+# --- Reports to operators on robots in keepouts and at obstacles ---
 
 FenceKind = Literal["keepout", "obstacle"]
 StopAction = Literal["none", "pause", "abort"]
@@ -173,10 +173,10 @@ class FenceAlarm:
     """A robot that is in a keepout, or too near to an obstacle, since the time ``since``.
 
     ``name`` is the keepout's or the obstacle's; the robot came in at (``x``, ``y``), metres, site frame.
-    ``action`` is what the site's settings have the gateway do, and ``outcome`` what came of it: ``asked``
-    until it is stored, ``stopped`` where an emergency stop held the robot already, ``failed`` with a
-    ``reason`` as long as it could not be done; it is tried again. ``current`` is false where the robot is not
-    heard now: it was there when it was heard last.
+    ``action`` is the gateway's action by the site's settings, and ``outcome`` its result: ``asked`` until it
+    is stored, ``stopped`` if an emergency stop held the robot already, ``failed`` with a ``reason`` as long
+    as it could not be done; it is tried again. ``current`` is false if the robot is silent now: it was there
+    at its last message.
     """
 
     robot: str
@@ -196,9 +196,9 @@ class Geofence:
     """All robots in keepouts and at obstacles at the gateway's time ``t``, those that came in last first.
 
     ``more`` counts alarms that are not listed. ``keepouts`` and ``obstacles`` count what the published site
-    has, with the objects that operators accepted: where there are none, nothing can be told of them.
-    ``unjudged`` names robots, at most 20, that may be anywhere: they have not said where they are since they
-    connected, or are not heard; ``unjudged_more`` counts others. ``fault`` says why nothing is watched.
+    has, with the objects that operators accepted: if there are none, nothing can be reported on them.
+    ``unjudged`` names robots, at most 20, that may be anywhere: they have sent no position since they
+    connected, or are silent; ``unjudged_more`` counts others. ``fault`` says why nothing is monitored.
     """
 
     t: float
@@ -212,13 +212,13 @@ class Geofence:
 
 
 def geofence_report(values: dict[str, Any]) -> Geofence:
-    """Return what a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    """Return what a gateway sent as JSON; unknown fields of newer gateways are ignored."""
     alarms = [FenceAlarm(**known_fields(FenceAlarm, one)) for one in values.get("alarms", [])]
     names = [str(name) for name in values.get("unjudged", [])]
     return Geofence(**{**known_fields(Geofence, values), "alarms": alarms, "unjudged": names})
 
 
-# --- What operators are told of people and vehicles, that are only seen, near robots ---
+# --- Reports to operators on people and vehicles, which are only observed, near robots ---
 
 
 @dataclass(frozen=True)
@@ -243,7 +243,7 @@ class Nearness:
     """All that are near robots, or will be, at the gateway's time ``t``, the soonest first.
 
     ``more`` counts alarms that are not listed; ``metres`` and ``within_s`` are the site's limits. ``fault``
-    says why nothing is watched.
+    says why nothing is monitored.
     """
 
     t: float
@@ -255,16 +255,16 @@ class Nearness:
 
 
 def nearness_report(values: dict[str, Any]) -> Nearness:
-    """Return what a gateway sent as JSON; unknown fields of newer gateways are passed over."""
+    """Return what a gateway sent as JSON; unknown fields of newer gateways are ignored."""
     alarms = [NearnessAlarm(**known_fields(NearnessAlarm, one)) for one in values.get("alarms", [])]
     return Nearness(**{**known_fields(Nearness, values), "alarms": alarms})
 
 
-# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are passed over ---
+# --- Read from plain JSON values, as a gateway sent them; unknown fields of newer ones are ignored ---
 
 
 def emergency_report(values: dict[str, Any]) -> EmergencyReport:
-    """Return how an emergency stop stands, as a gateway sent it as JSON."""
+    """Return the state of an emergency stop that a gateway sent as JSON."""
     report = EmergencyReport(**known_fields(EmergencyReport, values))
     if not isinstance(report.gateways, dict):
         return report
