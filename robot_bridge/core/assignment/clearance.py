@@ -1,4 +1,4 @@
-"""Clearance of a plan: ways round what stands in the open, and where robots come too near to one another."""
+"""Clearance of a plan: ways round standing obstacles, and places where robots come too near."""
 
 from __future__ import annotations
 
@@ -13,21 +13,20 @@ import numpy.typing as npt
 from .job import Travel
 from .plan import ConePlan, RobotPlan
 
-# --- Ways that keep clear of what stands in the open ---
+# --- Ways that keep clear of standing obstacles ---
 
 Floats = npt.NDArray[np.float64]
 _ROUND = 8
 """Points of a whole circle round an obstacle."""
 _MOST_DETOURS = 50
-"""Obstacles that one way is led round; a way with more in it is no way."""
+"""Obstacles that one way is led round at most."""
 
 
 class ClearTravel:
-    """The ways of ``inner``, led round ``obstacles``, (n, 2) in the site frame, each by its metres of
-    ``clearances``, (n,).
+    """The ways of ``inner`` led round ``obstacles``, (n, 2), site frame, by ``clearances``, (n,) metres.
 
     ``places`` (m, 2) are those that ``inner`` numbers. Distances stay those of ``inner``: a detour round a
-    cone is shorter than what a distance is known by.
+    cone is within the uncertainty of distances.
     """
 
     def __init__(self, inner: Travel, places: Floats, obstacles: Floats, clearances: Floats) -> None:
@@ -44,8 +43,8 @@ class ClearTravel:
 def detour(points: Floats, obstacles: Floats, clearances: Floats) -> Floats:
     """Return the way ``points``, (n, 2), led round all ``obstacles``, (m, 2), by ``clearances``, (m,) metres.
 
-    Obstacles that the way begins or ends at are passed over: the robot stands there, or is to. Where others
-    leave no room the way is returned as far as it could be led.
+    Obstacles at the ends of the way are ignored: the robot stands there, or will. If others leave no room,
+    the way is returned with the detours found so far.
     """
     if len(points) < 2 or len(obstacles) == 0:
         return points
@@ -146,13 +145,13 @@ class NearOrByRoad:
         return (self._straight if self._near[start][goal] else self._roads).path(start, goal)
 
 
-# --- Where robots come too near to one another if all goes by the plan ---
+# --- Places where robots come too near to one another by the plan ---
 
 STEP_S = 0.5
 _RUN = 64
-"""Points of a way that are in one box."""
+"""Points of a way per bounding box."""
 _SAMPLED = 0.05
-"""Metres by which a way that is led round something may seem nearer, looked at every step."""
+"""Metres by which a detour may seem nearer, as ways are sampled step by step."""
 
 
 @dataclass(frozen=True)
@@ -173,10 +172,10 @@ def meetings(
     standing: Mapping[str, tuple[float, float]] | None = None,
     off_standing: float = 0.0,
 ) -> list[NearMeeting]:
-    """Return for each two robots when they come nearer than ``least`` metres first, soonest first.
+    """Return, for each pair of robots, when they first come nearer than ``least`` metres; soonest first.
 
-    ``standing`` are the places of robots that do not drive by the plan, a lost one among them: who drives
-    comes nearer than ``off_standing`` metres to one of them where that stands at his cone.
+    ``standing`` are the places of robots that do not drive by the plan, such as a lost one: driving robots
+    come nearer than ``off_standing`` metres to it only where it stands at one of their cones.
     """
     driving = [one for one in plan.robots if not one.lost]
     if not driving:
@@ -222,7 +221,7 @@ def _with_standing(
 def _beside(way: Floats, places: Floats, reach: float) -> list[int]:
     """Return which of (m, 2) ``places`` may be within ``reach`` of the (n, 2) points of a way.
 
-    Most of a thousand robots stand far from it; to measure from every point to each would take seconds.
+    Most of a thousand robots stand far from it; measuring from every point to each would take seconds.
     """
     begins = np.arange(0, len(way), _RUN)
     low, high = (reduce.reduceat(way, begins, axis=0) for reduce in (np.minimum, np.maximum))
@@ -238,7 +237,7 @@ def _first(
     near = np.flatnonzero(apart < least)
     if len(near) == 0:
         return
-    # The nearest point of the first time that they meet says more than the moment it begins.
+    # The nearest point of the first meeting is more informative than its beginning.
     breaks = np.flatnonzero(np.diff(near) > 1)
     run = near[: breaks[0] + 1] if len(breaks) else near
     k = int(run[apart[run].argmin()])

@@ -16,7 +16,7 @@ from ..roads.cost_matrix import road_matrix
 from ..roads.path_smoothing import Driving, dense_path
 from ..roads.routes import REACH, Restrictions, Router
 
-# --- The work to do: targets, the robots that may do it, and the stores where cones are kept ---
+# --- The job: targets, available robots, and the stores where cones are kept ---
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +56,7 @@ class Store:
 
 @dataclass(frozen=True)
 class PlanRobot:
-    """A robot as it is when the plan begins.
+    """A robot at the beginning of the plan.
 
     It has room for ``capacity``, drives ``speed`` m/s, and has battery for ``range_m`` metres more. It
     carries ``aboard`` cones to place and ``collected`` ones to unload, and may start at ``ready_s`` seconds.
@@ -79,7 +79,7 @@ class AssignmentJob:
 
     Its places are numbered: robots' starts first, then stores, then targets.
 
-    :raises JobError: naming what cannot be planned for.
+    :raises JobError: naming the invalid input.
     """
 
     targets: tuple[ConeTarget, ...]
@@ -121,7 +121,7 @@ class AssignmentJob:
         return self.targets[place - self.first_target]
 
     def name(self, place: int) -> str:
-        """Return what ``place`` is, as people are told."""
+        """Return the name of ``place`` for messages."""
         if place < self.first_store:
             return f"the start of robot {self.robots[place].id}"
         if place < self.first_target:
@@ -206,7 +206,7 @@ def _listed(names: Iterable[str]) -> str:
     return ", ".join(names)
 
 
-# --- How far it is from place to place, and the path that a robot drives ---
+# --- Distances between places, and the paths that robots drive ---
 
 STRAIGHT = "straight lines"
 
@@ -215,7 +215,7 @@ class Travel(Protocol):
     """Ways between the places of a job."""
 
     name: str
-    """What the ways follow, as people are told."""
+    """What the ways follow, for messages."""
     metres: Floats
     """(n, n) from row to column; infinity where no way leads."""
 
@@ -240,7 +240,7 @@ class StraightTravel:
 
 
 class CancellableTravel:
-    """The ways of ``inner``; its paths raise CancelledError once ``go_on()`` says no."""
+    """The ways of ``inner``; its paths raise CancelledError once ``go_on()`` returns false."""
 
     def __init__(self, inner: Travel, go_on: Callable[[], bool]) -> None:
         self._inner, self._go_on = inner, go_on
@@ -260,14 +260,14 @@ def straight_path(a: Floats, b: Floats, spacing: float) -> Floats:
     return points
 
 
-# --- Ways along roads: how far they are, and the paths that robots drive on them ---
+# --- Ways along roads: distances, and the paths that robots drive on them ---
 
 
 class RoadTravel:
     """The shortest ways on the roads of ``router`` that ``restrictions`` allow.
 
-    From each place a straight line of at most ``reach`` metres leads to the nearest road. ``progress`` is
-    told which share of the distances is known, and may raise to end it.
+    From each place a straight line of at most ``reach`` metres leads to the nearest road. ``progress``
+    receives the finished share of the distances, and may raise to end the work.
 
     :raises OffNetworkError: naming the places that are farther from every road.
     """

@@ -10,14 +10,14 @@ import numpy as np
 
 from .schedules import BALANCED, Schedule, ScheduleEvaluator, Score, StageObjective, Trip
 
-# --- Trips by savings (Clarke and Wright, 1964): what two trips save when they become one ---
+# --- Trips by savings (Clarke and Wright, 1964): metres saved by joining two trips ---
 
 Pairs = list[tuple[int, int]]
 
 
 @dataclass(frozen=True)
 class TripLimits:
-    """What bounds each trip: room, metres, and seconds at ``speed`` with what is done at the targets."""
+    """Limits of each trip: room, metres, and seconds at ``speed`` including service times."""
 
     capacity: int
     range_m: float = math.inf
@@ -48,8 +48,8 @@ def trips_by_savings(
 ) -> list[Trip]:
     """Return trips that serve every one of ``targets``; each begins and ends at the nearest store.
 
-    ``pairs`` is what :func:`saving_pairs` returns. A target that is beyond the limits on its own has a trip
-    of its own.
+    ``pairs`` is what :func:`saving_pairs` returns. A target that exceeds the limits alone has a trip of its
+    own.
     """
     trip_of: dict[int, Trip] = {target: [target] for target in targets}
     for a, b in pairs:
@@ -72,14 +72,14 @@ def saving_pairs(days: ScheduleEvaluator, targets: Sequence[int]) -> Pairs:
     saved = back[:, None] + out[None, :] - metres
     np.fill_diagonal(saved, 0.0)
     saved[~np.isfinite(saved)] = 0.0
-    # On a one-way loop all that follow one another save the same: the nearest come first.
+    # On a one-way loop all successive pairs save the same: the nearest come first.
     order = np.lexsort([metres.ravel(), -np.round(saved, 3).ravel()])[: int((saved > 0).sum())]
     first, second = np.unravel_index(order, saved.shape)
     return list(zip(some[first].tolist(), some[second].tolist(), strict=True))
 
 
 def _joined(days: ScheduleEvaluator, one: Trip, other: Trip, a: int, b: int) -> Trip | None:
-    """Return the trip in which ``b`` follows ``a``; None where they are not at ends that can meet."""
+    """Return the trip in which ``b`` follows ``a``; None if they are not at ends that can be joined."""
     if a == one[-1] and b == other[0]:
         return one + other
     if a == one[0] and b == other[0]:
@@ -88,22 +88,22 @@ def _joined(days: ScheduleEvaluator, one: Trip, other: Trip, a: int, b: int) -> 
         joined = one + other[::-1]
     else:
         return None
-    # On one-way roads a trip that is turned may be longer.
+    # On one-way roads a reversed trip may be longer.
     apart = days.trip_metres(one) + days.trip_metres(other)
     return joined if days.trip_metres(joined) < apart else None
 
 
-# --- Changes of plans: what may be tried around one target ---
+# --- Changes of plans: candidate moves around one target ---
 
 Slot = tuple[int, int]
 """Robot, and number of the trip in its day."""
 TripChange = dict[Slot, Trip]
-"""Trips that become others; a trip that is not there yet has the next number of the day."""
+"""New contents of trips; a new trip has the next number of the day."""
 DayChange = dict[int, Schedule]
-"""Days, by robot, that become others."""
+"""New days, by robot."""
 
 _LONGEST = 3
-"""How many targets in a row are moved together at most."""
+"""Most targets in a row that are moved together."""
 
 
 def nearest_targets(metres: Sequence[Sequence[float]], targets: Sequence[int], count: int) -> dict[int, Trip]:
@@ -163,7 +163,7 @@ def moves_elsewhere(plan: Sequence[Schedule], a: Slot, at: int) -> Iterator[Trip
 def moves_of_trips(plan: Sequence[Schedule], a: Slot, first_free: Sequence[int]) -> Iterator[DayChange]:
     """Yield the changes that drive trip ``a`` at another time, by another robot, or in exchange for another.
 
-    Trips of robot ``r`` may come in from number ``first_free[r]`` on.
+    Trips of robot ``r`` may be inserted from number ``first_free[r]`` on.
     """
     robot, number = a
     trip, day = plan[robot][number], plan[robot]
@@ -181,7 +181,7 @@ def moves_of_trips(plan: Sequence[Schedule], a: Slot, first_free: Sequence[int])
                 }
 
 
-# --- Plans made better by small changes, each measured on the whole day of the robots that it concerns
+# --- Improvement of plans by small changes, each measured on the whole days of the robots concerned
 
 _NEAREST = 12
 _LEAST_GAIN = 1e-6
@@ -194,14 +194,14 @@ def improved(
     aim: StageObjective,
     stop: Callable[[], bool],
 ) -> list[Schedule]:
-    """Return ``plan`` as good as changes of ``movable`` targets make it until ``stop()`` says so."""
+    """Return ``plan`` improved by changes of ``movable`` targets until ``stop()`` returns true."""
     search = _Search(days, plan, sorted(movable), aim)
     search.run(stop)
     return search.plan
 
 
 class _Search:
-    """Takes every change that makes the score better; ends where none does."""
+    """Applies every change that improves the score; ends when none does."""
 
     def __init__(
         self, days: ScheduleEvaluator, plan: Sequence[Schedule], movable: list[int], aim: StageObjective
@@ -217,7 +217,7 @@ class _Search:
             self._find(robot)
 
     def _fixed_rows(self, movable: set[int]) -> list[tuple[int, Trip]]:
-        """Return for each robot the last trip with targets that stay, and these."""
+        """Return for each robot the last trip with fixed targets, and these targets."""
         fixed = []
         for day in self.plan:
             stay = [[place for place in trip if place not in movable] for trip in day]
@@ -231,7 +231,7 @@ class _Search:
                 self._at[place] = (robot, number), at
 
     def run(self, stop: Callable[[], bool]) -> None:
-        """Go round all targets until a whole round changes nothing."""
+        """Loop over all targets until a whole round changes nothing."""
         better = True
         while better:
             better = False
@@ -268,7 +268,7 @@ class _Search:
         return self._take(days)
 
     def _worth(self, change: TripChange) -> bool:
-        """Whether ``change`` can make anything better, by the lengths of its trips alone."""
+        """Whether ``change`` can improve anything, by the lengths of its trips alone."""
         if self._aim.objective == BALANCED:
             latest = max(range(len(self._costs)), key=lambda one: self._aim.end(self._costs[one]))
             if any(robot == latest for robot, _ in change):

@@ -1,4 +1,4 @@
-"""Cone plan: which robot does what, where and when; JSON document and checks."""
+"""Cone plan: stops of each robot with places and times; JSON document and checks."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from ..errors import PlanFileError, counted
 from ..json_decoder import DOCUMENT, DecodingError, decode_json
 from .job import COLLECT, PLACE, ConeTarget, PlanRobot, Store
 
-# --- The plan: which robot does what, where, when, and along which path ---
+# --- The plan: stops of each robot, with places, times and paths ---
 
 STORE, HOME = "store", "home"
 STOP_KINDS = (PLACE, COLLECT, STORE, HOME)
-"""What a robot does: place a cone, collect one, load and unload at a store, or end where it began."""
+"""Kinds of stops: place a cone, collect one, load and unload at a store, or end at the start."""
 
 Path = tuple[tuple[float, float], ...]
 
@@ -28,8 +28,8 @@ class PlanStop:
     """A place where a robot stops; ``id`` is that of the cone, the store, or, at home, the robot.
 
     ``path`` leads there from the stop before, (x, y) in metres in the site frame, ``metres`` long on the
-    ground. The robot arrives, begins its work, and has done it, in seconds from the plan's begin.
-    ``aboard`` cones to place and ``collected`` ones are on it afterwards.
+    ground. Arrival, begin of the work and its end are seconds from the plan's begin.
+    ``aboard`` cones to place and ``collected`` ones are on the robot afterwards.
     """
 
     kind: str
@@ -55,7 +55,7 @@ class PlanStop:
 
 @dataclass(frozen=True)
 class PlannedTrip:
-    """Stops from a visit to a store until the next; the first trip may begin with what is aboard."""
+    """Stops from a visit to a store until the next; the first trip may begin with cones aboard."""
 
     number: int
     stops: tuple[PlanStop, ...]
@@ -68,7 +68,7 @@ class PlannedTrip:
 
 @dataclass(frozen=True)
 class RobotPlan:
-    """The trips of ``robot`` from the state that it is in; ``done`` are the stops before that.
+    """The trips of ``robot`` from its present state; ``done`` are the earlier stops.
 
     A ``lost`` robot has no trips.
     """
@@ -90,14 +90,14 @@ class RobotPlan:
 
     @property
     def end_s(self) -> float:
-        """When the robot has done all that it is to do."""
+        """When the robot has finished."""
         stops = self.stops
         return stops[-1].end_s if stops else self.robot.ready_s
 
 
 @dataclass(frozen=True)
 class LeftOut:
-    """A target that nobody serves, and why."""
+    """A target that no robot serves, and why."""
 
     target: ConeTarget
     reason: str
@@ -105,10 +105,10 @@ class LeftOut:
 
 @dataclass(frozen=True)
 class ConePlan:
-    """What every robot is to do. ``targets`` are those to come and those that are done.
+    """The plan of all robots. ``targets`` are those to come and those done.
 
     ``finish`` is where robots go at the end, ``method`` found the plan, ``travel`` says what its ways follow,
-    and ``crs`` names the CRS of its coordinates, nothing where they are those of the site frame.
+    and ``crs`` names the CRS of its coordinates, empty for the site frame.
     """
 
     robots: tuple[RobotPlan, ...]
@@ -128,7 +128,7 @@ class ConePlan:
 
     @property
     def end_s(self) -> float:
-        """When the last robot has done all that it is to do."""
+        """When the last robot has finished."""
         return max((one.end_s for one in self.robots if not one.lost), default=0.0)
 
     @property
@@ -154,12 +154,11 @@ class ConePlan:
 
 @dataclass(frozen=True)
 class PlanSituation:
-    """How things are ``now_s`` seconds after the plan's begin.
+    """The situation ``now_s`` seconds after the plan's begin.
 
-    ``done`` are the ids of the cones that are placed or collected, ``lost`` the robots that are no more,
-    ``failed`` why cones are given up, by their ids; a cone that is to be tried again is in neither.
-    ``robots`` holds where robots are, what they carry and what battery they have, by their ids; of others it
-    is what the plan says.
+    ``done`` are the ids of the cones that are placed or collected, ``lost`` the robots that dropped out,
+    ``failed`` why cones are given up, by their ids; a cone to try again is in neither. ``robots`` holds
+    positions, loads and batteries of robots, by their ids; for others the plan's values apply.
     """
 
     now_s: float
@@ -169,7 +168,7 @@ class PlanSituation:
     robots: Mapping[str, PlanRobot] = field(default_factory=dict)
 
 
-# --- Plans as JSON: one document with everything that a desk needs to show, change and send a plan ---
+# --- Plans as JSON: one document with everything needed to show, change and send a plan ---
 # Names and units are those of :mod:`.plan`; battery without a limit is ``null``.
 
 FORMAT, VERSION = "fleet-supervisor-assignment", 1
@@ -201,7 +200,7 @@ def stop_of_document(values: Any) -> PlanStop:
 def plan_from_json(text: str | bytes) -> ConePlan:
     """Return the plan of a document that :func:`plan_to_json` made.
 
-    :raises PlanFileError: naming what is wrong and where in the document.
+    :raises PlanFileError: naming the fault and its place in the document.
     """
     try:
         document = decode_json(text, DOCUMENT)
@@ -330,7 +329,7 @@ def _checked(value: Any, kind: str, at: str) -> Any:
     return float(number)
 
 
-# --- A plan checked from its stops alone, by none of the code that makes plans ---
+# --- Check of a plan from its stops alone, independent of the code that makes plans ---
 
 _DONE = {PLACE: "placed", COLLECT: "collected"}
 _NEAR = 0.01
@@ -338,11 +337,11 @@ _NEAR = 0.01
 
 
 def check_plan(plan: ConePlan, *, led_round: bool = False) -> list[str]:
-    """Return what is wrong with ``plan``, nothing where it can be driven as it is.
+    """Return the faults of ``plan``; empty if it can be driven.
 
-    Checked are: every target once, room, what is aboard, unloading, times, speeds, paths that hang together,
-    batteries, and that no target is begun before all of lower stages are done. Paths that are ``led_round``
-    what stands may be longer than what is counted of them, as those of ClearTravel are.
+    Checked are: every target once, room, load, unloading, times, speeds, paths that hang together,
+    batteries, and that no target is begun before all of lower stages are done. Paths ``led_round`` obstacles
+    may be longer than their counted metres, as those of ClearTravel are.
     """
     faults = list(_served_once(plan))
     for one in plan.robots:

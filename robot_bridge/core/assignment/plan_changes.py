@@ -1,4 +1,4 @@
-"""Changes of plans: by hand, and replanned while they are driven."""
+"""Changes of plans: by hand, and replanning while they are driven."""
 
 from __future__ import annotations
 
@@ -14,18 +14,18 @@ from .pyvrp_search import Progress
 from .schedules import Schedule, ScheduleEvaluator, plan_of
 from .solver import Objective, assign
 
-# --- Plans changed by hand: every change gives another plan with its loads, times and paths made again ---
+# --- Plans changed by hand: every change gives a new plan with loads, times and paths recomputed ---
 
 TravelOf = Callable[[AssignmentJob], Travel]
 """Makes the ways between the places of a job, by roads or straight."""
 
 Trips = list[list[list[str]]]
-"""For each robot that is not lost its trips as ids of cones; trip 0 is done with what is aboard, and may be
+"""For each robot that is not lost its trips as ids of cones; trip 0 uses the cones aboard, and may be
 empty."""
 
 
 def job_of(plan: ConePlan) -> AssignmentJob:
-    """Return what is still to be done by ``plan``: its job without what is done, left out or lost."""
+    """Return the remaining job of ``plan``: without targets done or left out, and without lost robots."""
     gone = plan.done | {one.target.id for one in plan.left_out}
     return AssignmentJob(
         tuple(target for target in plan.targets if target.id not in gone),
@@ -54,11 +54,11 @@ def trips_of(plan: ConePlan) -> Trips:
 def move_target(
     plan: ConePlan, travel_of: TravelOf, target: str, robot: str, trip: int, place: int
 ) -> ConePlan:
-    """Return the plan in which ``robot`` serves ``target`` as number ``place``, from 0, of its trip ``trip``.
+    """Return the plan with ``target`` as number ``place``, from 0, of trip ``trip`` of ``robot``.
 
-    Trip 0 is the one on what is aboard at the start; one more than there are is a new one.
+    Trip 0 uses the cones aboard at the start; one more than there are is a new trip.
 
-    :raises PlanEditError: when that cannot be driven; ``plan`` is as it was.
+    :raises PlanEditError: when that cannot be driven; ``plan`` stays unchanged.
     """
     trips = _without(plan, target)
     names = [one.robot.id for one in plan.robots if not one.lost]
@@ -80,9 +80,9 @@ def move_target(
 def remove_target(
     plan: ConePlan, travel_of: TravelOf, target: str, reason: str = "taken out by hand"
 ) -> ConePlan:
-    """Return the plan in which nobody serves ``target``.
+    """Return the plan in which no robot serves ``target``.
 
-    :raises PlanEditError: when it is not to come.
+    :raises PlanEditError: when it is not among the open targets.
     """
     trips = _without(plan, target)
     out = LeftOut(_target(plan, target), reason)
@@ -112,7 +112,7 @@ def reorder_trip(
 def plan_with_trips(plan: ConePlan, travel_of: TravelOf, trips: Trips) -> ConePlan:
     """Return ``plan`` with ``trips`` instead of its own, as :func:`trips_of` returns them.
 
-    :raises PlanEditError: naming the robot, the trip and what is in the way.
+    :raises PlanEditError: naming the robot, the trip and the obstacle to it.
     """
     job = job_of(plan)
     travel = travel_of(job)
@@ -165,7 +165,7 @@ def _check_room(job: AssignmentJob, days: ScheduleEvaluator, rows: Sequence[Sche
 
 
 def _set_gates(job: AssignmentJob, days: ScheduleEvaluator, rows: Sequence[Schedule]) -> None:
-    """Find when each stage may begin; a day must not come back to an earlier stage."""
+    """Compute when each stage may begin; a day must not return to an earlier stage."""
     for robot, day in enumerate(rows):
         stages = [days.stage[place] for row in day for place in row]
         if stages != sorted(stages):
@@ -200,7 +200,7 @@ def _check_ways(job: AssignmentJob, days: ScheduleEvaluator, rows: Sequence[Sche
             )
 
 
-# --- Plans made again while they are driven: what is done stays, the rest is shared out again ---
+# --- Replanning while plans are driven: done stops stay, the rest is shared out again ---
 
 
 def replan(
@@ -210,10 +210,10 @@ def replan(
     objective: Objective | None = None,
     progress: Progress | None = None,
 ) -> ConePlan:
-    """Return the plan from now on: stops that are done are kept, the rest is shared out among who is left.
+    """Return the plan from now on: done stops are kept, the rest is shared out among the remaining robots.
 
     :raises JobError: when no robot is left; UnservedError, MissingSolverError and CancelledError as
-        :func:`~.solver.assign` does. ``plan`` is as it was.
+        :func:`~.solver.assign` does. ``plan`` stays unchanged.
     """
     robots = tuple(_from_now_on(one, situation) for one in plan.robots)
     known = {one.target.id for one in plan.left_out}
@@ -236,7 +236,7 @@ def replan(
 
 
 def expected_situation(plan: ConePlan, now_s: float) -> PlanSituation:
-    """Return how things are at ``now_s`` if everything has gone by the plan."""
+    """Return the situation at ``now_s`` if everything has gone by the plan."""
     done = {stop.id for _, stop in plan.all_stops() if stop.is_target and stop.end_s <= now_s}
     robots = {one.robot.id: _by_plan(one, now_s) for one in plan.robots if not one.lost}
     return PlanSituation(now_s, frozenset(done | plan.done), robots=robots)
@@ -248,13 +248,13 @@ def _from_now_on(one: RobotPlan, situation: PlanSituation) -> RobotPlan:
     robot = situation.robots.get(one.robot.id) or _by_plan(one, situation.now_s)
     if not lost:
         robot = replace(robot, ready_s=max(robot.ready_s, situation.now_s))
-    # What a robot was at counted as done by the plan before; one that was lost over it has not done it.
+    # The earlier plan counted a robot's task in progress as done; a robot lost during it has not done it.
     done = [stop for stop in one.done if not stop.is_target or stop.id in situation.done]
     return RobotPlan(robot, (), (*done, *passed), lost)
 
 
 def _passed(one: RobotPlan, situation: PlanSituation) -> tuple[PlanStop, ...]:
-    """Return the stops behind the robot: cones that are done, and stores that it was at by its plan."""
+    """Return the completed stops of the robot: cones done, and stores visited by its plan."""
     stops, done = one.stops, situation.done
     last = max((k for k, stop in enumerate(stops) if stop.is_target and stop.id in done), default=-1)
     return tuple(
@@ -278,7 +278,7 @@ def _by_plan(one: RobotPlan, now_s: float) -> PlanRobot:
         x, y, clock = stop.x, stop.y, stop.end_s
         metres += stop.metres
         if stop.end_s > now_s and stop.is_target:
-            # What has begun counts as done only when it is: the cone is still aboard.
+            # A begun stop counts as done only at its end: the cone is still aboard.
             break
         aboard, collected = stop.aboard, stop.collected
         ready = max(now_s, stop.end_s)

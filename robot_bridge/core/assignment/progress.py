@@ -1,4 +1,4 @@
-"""Progress of a plan that robots drive: its tasks, what became of them, what keeps it from going on."""
+"""Progress of an active plan: its tasks, their outcomes, and problems that keep it from continuing."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from .plan import HOME, STORE, ConePlan, PlanSituation, PlanStop, RobotPlan
 
 @dataclass(frozen=True)
 class ConeFacts:
-    """What is written down of a target: the operator's name of the cone and its layout.
+    """Stored facts on a target: the operator's name of the cone and its layout.
 
     ``placement`` is the number of the placed cone that is collected, None for one to be placed.
     """
@@ -34,7 +34,7 @@ _LABELS = {STORE: "store", HOME: "end"}
 
 @dataclass(frozen=True)
 class SentStop:
-    """A stop of the plan that was sent: who makes it, as which number of its day, by which task."""
+    """A stop of the plan that was sent: its robot, its number in that robot's day, and its task."""
 
     robot: str
     number: int
@@ -51,8 +51,8 @@ def tasks_of(
 ) -> dict[str, list[QueueTask]]:
     """Return the tasks of each robot that is not lost, in their order; ``name`` is the plan's own.
 
-    A cone comes after all cones of lower stages that other robots see to, also those that they are at
-    (``under_way``, by the robot).
+    A cone comes after all cones of lower stages of other robots, also those in progress (``under_way``, by
+    robot).
 
     :raises MessageError: naming a task that no gateway would take.
     """
@@ -106,7 +106,7 @@ def _task(
     )  # fmt: skip
 
 
-# --- How far the robots are with a plan that was sent, from what the gateway tells of their queues ---
+# --- Progress of a sent plan, from the gateway's reports on queues ---
 
 AWAY = (RobotState.LOST, RobotState.OFFLINE)
 _OPEN = (TaskState.WAITING, TaskState.CURRENT, TaskState.FAILED)
@@ -115,9 +115,9 @@ _GIVEN_UP = (TaskState.SKIPPED, TaskState.REMOVED, TaskState.FAILED)
 
 @dataclass
 class PlanProgress:
-    """What became of each stop that was sent, by its task, and of each cone, by its target's id.
+    """The outcome of each sent stop, by its task, and of each cone, by its target's id.
 
-    Only the newest ends of a queue are told, so what was heard once is kept.
+    A queue's report lists only its newest ended tasks, so earlier reports are kept.
     """
 
     name: str
@@ -131,20 +131,20 @@ class PlanProgress:
     """The tasks that were sent for a target, the newest last."""
 
     def sent(self, stops: Iterable[SentStop]) -> None:
-        """Note stops that are in a robot's queue from now on."""
+        """Record stops that are in a robot's queue from now on."""
         for one in stops:
             self.stops[one.task] = one
             self._sent_for.setdefault(one.stop.id, []).append(one.task)
 
     def forget(self, tasks: Iterable[str]) -> None:
-        """Pass over tasks that others took the place of."""
+        """Ignore tasks that were replaced by others."""
         for task in tasks:
             known = self.stops.pop(task, None)
             if known is not None:
                 self._sent_for[known.stop.id].remove(task)
 
     def take_queue(self, queue: QueueReport) -> None:
-        """Take in how a robot's queue stands."""
+        """Apply a report on a robot's queue."""
         open_ones = {task.task for task in queue.tasks}
         for report in (*reversed(queue.ended), *queue.tasks):
             self._note(report)
@@ -152,11 +152,11 @@ class PlanProgress:
         for task in theirs:
             known = self.reports.get(task)
             if task not in open_ones and known is not None and known.state in _OPEN:
-                # It ended while nobody listened; of a cone, what was written down says the rest.
+                # It ended while no client was connected; for a cone, the stored placement supplies the rest.
                 self.reports[task] = replace(known, state=TaskState.DONE)
 
     def take_placement(self, report: PlacementReport) -> None:
-        """Take in a cone that was put down or collected."""
+        """Apply a report on a placed or collected cone."""
         for target, facts in self.facts.items():
             if facts.placement is not None:
                 if facts.placement == report.placement and report.collected_at is not None:
@@ -167,14 +167,14 @@ class PlanProgress:
                 self.done.add(target)
 
     def state_of(self, target: str) -> TaskState | None:
-        """Return what became of a cone, None before it was sent."""
+        """Return the state of a cone's task, None before it was sent."""
         if target in self.done:
             return TaskState.DONE
         found = self._newest(target)
         return None if found is None else found.state
 
     def why_not(self, target: str) -> str:
-        """Return why a cone failed or was given up, nothing for another."""
+        """Return why a cone failed or was given up, an empty text for others."""
         found = self._newest(target)
         return (found.reason or "") if found is not None and found.state in _GIVEN_UP else ""
 
@@ -198,7 +198,7 @@ class PlanProgress:
 
 @dataclass(frozen=True)
 class ClosedWay:
-    """The way of ``robot`` to ``stop`` leads along a road that ``by`` closed."""
+    """The path of ``robot`` to ``stop`` leads along a road that ``by`` closed."""
 
     robot: str
     stop: str
@@ -209,7 +209,7 @@ class ClosedWay:
 
 @dataclass(frozen=True)
 class PlanProblem:
-    """Why a plan does not go on as it is: robots that are away, cones that failed, with why, closed roads."""
+    """Why a plan cannot continue unchanged: absent robots, failed cones with reasons, closed roads."""
 
     away: tuple[str, ...] = ()
     failed: tuple[tuple[str, str], ...] = ()
@@ -225,13 +225,13 @@ def problem_of(
     queues: Mapping[str, QueueReport],
     closed: tuple[ClosedWay, ...] = (),
 ) -> PlanProblem:
-    """Return what is wrong: a robot with cones to come that is away, a cone of this plan that failed, a
-    way that is ``closed``."""
+    """Return the problems: absent robots with open cones, failed cones of this plan, paths that are
+    ``closed``."""
     away, failed = [], []
     for one in plan.robots:
         if one.lost:
             continue
-        # With what it was at when the plan was made, which counts as done in that.
+        # Including its task in progress when the plan was made, which that plan counts as done.
         stops = (*one.done, *one.stops)
         left = [stop.id for stop in stops if stop.is_target and stop.id not in progress.done]
         report = queues.get(one.robot.id)
@@ -254,11 +254,11 @@ def situation_of(
     *,
     try_again: bool,
 ) -> PlanSituation:
-    """Return how things are at ``now``, seconds since 1970, for a plan of what is left.
+    """Return the situation at ``now``, seconds since 1970, for a replan.
 
-    What a robot is doing it finishes: that counts as done, and the robot is where it ends, from when it can
-    have driven there from where it is by now. ``places`` is where robots are (metres, site frame). With
-    ``try_again`` cones that failed are tried by somebody again.
+    A robot finishes its present task: that counts as done, and the robot is taken to be at its end from the
+    time at which it can have arrived from its present place. ``places`` is where robots are (metres, site
+    frame). With ``try_again`` failed cones are tried again by some robot.
     """
     now_s = max(now - progress.began_at, 0.0)
     done, robots, currents = set(progress.done), {}, current_tasks(progress)
@@ -283,11 +283,11 @@ def situation_of(
 
 
 def _seconds_left(stop: PlanStop, place: tuple[float, float], speed: float) -> float:
-    """Return how long a robot that is at ``place`` on its way to ``stop`` drives and works there yet.
+    """Return the remaining seconds of driving and work of a robot at ``place`` on its way to ``stop``.
 
-    The plan's own times say little by now: robots drive faster than planned, give way, or were held.
+    The plan's own times are unreliable by now: robots drive faster than planned, give way, or were held.
     """
-    # Only here: the gateway starts sooner without it.
+    # Imported only here: the gateway starts sooner without it.
     from shapely.geometry import LineString, Point
 
     way, here = LineString([*stop.path, (stop.x, stop.y)]), Point(place)
@@ -296,7 +296,7 @@ def _seconds_left(stop: PlanStop, place: tuple[float, float], speed: float) -> f
 
 
 def current_tasks(progress: PlanProgress) -> dict[str, str]:
-    """Return the task that each robot is doing, by the robot."""
+    """Return the present task of each robot, by robot."""
     return {
         one.robot: task
         for task, one in progress.stops.items()
@@ -305,19 +305,19 @@ def current_tasks(progress: PlanProgress) -> dict[str, str]:
 
 
 def committed_stops(progress: PlanProgress) -> list[PlanStop]:
-    """Return the stops that robots have made or are on their way to: the gateway leads them on itself."""
+    """Return the stops that robots have made or are on their way to: the gateway handles these itself."""
     return [one.stop for task, one in progress.stops.items() if _is_behind(progress, task)]
 
 
 def current_stops(progress: PlanProgress) -> dict[str, SentStop]:
-    """Return what each robot is at, by the robot."""
+    """Return the present stop of each robot, by robot."""
     return {robot: progress.stops[task] for robot, task in current_tasks(progress).items()}
 
 
 def standing_cones(progress: PlanProgress) -> list[tuple[float, float]]:
     """Return where cones of the plan stand, metres in the site frame; also those that robots are placing.
 
-    A cone that a robot is at is neither a target of what is left nor written down as placed.
+    A cone in progress is neither a target of the remaining plan nor stored as placed.
     """
     placed = [(one.x, one.y) for one in progress.placed.values() if one.collected_at is None]
     coming = [one for one in committed_stops(progress) if one.kind == PLACE and one.id not in progress.placed]
@@ -325,7 +325,7 @@ def standing_cones(progress: PlanProgress) -> list[tuple[float, float]]:
 
 
 def _loaded(robot: PlanRobot, plan: ConePlan, progress: PlanProgress, name: str) -> PlanRobot:
-    """Return the robot with what it carries once what it is doing is done."""
+    """Return the robot with its load after its present task."""
     own = plan.robot(name)
     theirs = [(task, one.stop) for task, one in progress.stops.items() if one.robot == name]
     behind = [stop for task, stop in theirs if _is_behind(progress, task)]

@@ -17,31 +17,31 @@ from .job import Floats
 from .local_search import TripLimits
 from .schedules import BALANCED, Schedule, ScheduleEvaluator, StageObjective, Trip
 
-# --- PyVRP at work, a solver for vehicle routing (Wouda, Lan and Kool, 2024), with settings for a few seconds
-# It counts in whole numbers: decimetres and tenths of a second.
+# --- The solver PyVRP (Wouda, Lan and Kool, 2024), with settings for a few seconds
+# It computes with integers: decimetres and tenths of a second.
 
 UNIT = 0.1
-"""Metres or seconds of a whole number."""
+"""Metres or seconds per integer unit."""
 NO_WAY = 10**8
-"""Decimetres or tenths of a second of a way that there is not."""
+"""Decimetres or tenths of a second for a missing way."""
 _NEIGHBOURS = 20
 _MOST_CHANGES = 15
-"""How many targets a step takes out of a plan at most before it is made good again; fewer make more steps."""
+"""Most targets removed from a plan per step before repair; fewer allow more steps."""
 _ATTEMPTS = 4
 _LEAST_PATIENCE, _PATIENCE = 500, 150
-"""Steps without anything better after which few targets are taken to be solved, and more for each of them."""
+"""Steps without improvement after which the search ends: a base, plus more per target."""
 _HISTORY = 50
-"""How many steps back a plan may be as bad as; attempts, not a long memory, lead out of dead ends."""
+"""Length of the acceptance history in steps; restarts, not a long memory, lead out of dead ends."""
 _BEYOND = np.iinfo(np.int64).max
-"""What PyVRP says that a plan costs that is over a limit."""
+"""PyVRP's cost of an infeasible plan."""
 _STEPS_BETWEEN_PENALTIES = 100
-"""Steps after which what is over the limits costs more or less, so that about two thirds keep to them."""
+"""Steps between adjustments of penalties, so that about two thirds of the plans are feasible."""
 
 
 def load_pyvrp() -> Any:
     """Return the module.
 
-    :raises MissingSolverError: where it is not installed.
+    :raises MissingSolverError: if it is not installed.
     """
     try:
         import pyvrp
@@ -54,17 +54,17 @@ def load_pyvrp() -> Any:
 
 
 Progress = Callable[[float], bool]
-"""Is told which share of the work is done, 0 to 1; what it returns says whether to go on."""
+"""Receives the finished share of the work, 0 to 1; returns whether to continue."""
 
 
 class SearchProgress:
-    """How far a search is: its shares stand for those from ``begin`` to ``end`` of the whole."""
+    """Progress of a search: its shares are mapped to those from ``begin`` to ``end`` of the whole."""
 
     def __init__(self, goes_on: Progress, begin: float = 0.0, end: float = 1.0) -> None:
         self._goes_on, self._begin, self._end = goes_on, begin, end
 
     def report(self, share: float) -> None:
-        """Tell that ``share`` of the search is over; raises AssignmentCancelledError where it is to end."""
+        """Report that ``share`` of the search is over; raises AssignmentCancelledError if it must end."""
         if not self._goes_on(self._begin + (self._end - self._begin) * share):
             raise AssignmentCancelledError("The assignment was cancelled.")
 
@@ -75,7 +75,7 @@ class SearchProgress:
 
 
 class SearchClock:
-    """Knows how much of ``seconds`` is over, and reports it to ``progress``, which may end the work."""
+    """Measures the elapsed share of ``seconds`` and reports it to ``progress``, which may end the work."""
 
     def __init__(self, seconds: float, progress: SearchProgress) -> None:
         self._seconds = max(seconds, 1e-3)
@@ -83,7 +83,7 @@ class SearchClock:
 
     @property
     def share(self) -> float:
-        """Return the share of the time that is over, and tell it."""
+        """Return the elapsed share of the time, and report it."""
         share = min((time.perf_counter() - self._begun) / self._seconds, 1.0)
         self._progress.report(share)
         return share
@@ -95,10 +95,10 @@ class SearchClock:
 
 
 class RoutingProblem:
-    """What PyVRP is to solve: its ``data``, and the ``penalty`` that being over a limit by one costs at most.
+    """A problem for PyVRP: its ``data``, and the largest ``penalty`` per unit over a limit.
 
-    To be over a limit need not cost more than what leads out of it; where it costs far more, as by PyVRP's
-    default, only plans within the limits are tried, and few of them lead on to better ones.
+    Violating a limit need not cost more than repairing it; if it costs far more, as by PyVRP's default, only
+    feasible plans are tried, and few of them lead to better ones.
     """
 
     def __init__(self, data: Any, penalty: float) -> None:
@@ -106,13 +106,13 @@ class RoutingProblem:
 
 
 def best_of_attempts(problem: RoutingProblem, start: Any, clock: SearchClock, seed: int) -> Any | None:
-    """Return the shortest solution that is found from ``start``; None where none is within the limits.
+    """Return the shortest solution found from ``start``; None if none is within the limits.
 
-    It ends early where nothing better turns up for long.
+    It ends early after long without improvement.
     """
     patience = _LEAST_PATIENCE + _PATIENCE * problem.data.num_clients
     best: Any = None
-    # What was found from a good start may be a dead end: others begin anywhere.
+    # A good start may lead to a dead end: later attempts begin anywhere.
     for attempt in range(_ATTEMPTS):
         found = _solved(problem, None if attempt else start, _Patient(clock, patience), seed + attempt)
         if found.is_feasible() and (best is None or found.distance() < best.distance()):
@@ -123,7 +123,7 @@ def best_of_attempts(problem: RoutingProblem, start: Any, clock: SearchClock, se
 
 
 def any_within(problem: RoutingProblem, start: Any, clock: SearchClock, steps: int, seed: int) -> Any | None:
-    """Return some solution within the limits, near ``start``; None where ``steps`` find none."""
+    """Return some solution within the limits, near ``start``; None if ``steps`` find none."""
     found = _solved(problem, start, _UntilWithin(clock, steps), seed)
     return found if found.is_feasible() else None
 
@@ -131,7 +131,7 @@ def any_within(problem: RoutingProblem, start: Any, clock: SearchClock, steps: i
 def _solved(problem: RoutingProblem, start: Any | None, stop: Callable[[int], bool], seed: int) -> Any:
     pyvrp = load_pyvrp()
     with warnings.catch_warnings():
-        # Limits that no plan keeps to are known by there being no plan.
+        # Infeasible limits simply yield no plan.
         warnings.simplefilter("ignore", pyvrp.exceptions.PenaltyBoundWarning)
         return pyvrp.solve(
             problem.data,
@@ -144,7 +144,7 @@ def _solved(problem: RoutingProblem, start: Any | None, stop: Callable[[int], bo
 
 
 class _Patient:
-    """Says when to end: the time is over, or for long nothing better has turned up."""
+    """Stopping criterion: the time is over, or there was no improvement for long."""
 
     def __init__(self, clock: SearchClock, patience: int) -> None:
         self._clock, self._patience = clock, patience
@@ -157,7 +157,7 @@ class _Patient:
 
 
 class _UntilWithin:
-    """Says when to end: something keeps to the limits, the time is over, or the steps are done."""
+    """Stopping criterion: a feasible plan is found, the time is over, or the steps are done."""
 
     def __init__(self, clock: SearchClock, steps: int) -> None:
         self._clock, self._left = clock, steps
@@ -174,7 +174,7 @@ def _params(pyvrp: Any, penalty: float) -> Any:
     return pyvrp.SolveParams(
         ils=IteratedLocalSearchParams(history_length=_HISTORY, exhaustive_on_best=False),
         penalty=pyvrp.PenaltyParams(solutions_between_updates=_STEPS_BETWEEN_PENALTIES, max_penalty=penalty),
-        # On one-way roads what is near one way is not near the other.
+        # On one-way roads nearness depends on the direction.
         neighbourhood=NeighbourhoodParams(num_neighbours=_NEIGHBOURS, symmetric_proximity=False),
         perturbation=PerturbationParams(max_perturbations=_MOST_CHANGES),
     )
@@ -186,16 +186,16 @@ def whole(values: Floats) -> np.ndarray[Any, Any]:
     return np.where(finite, np.rint(np.where(finite, values, 0.0) / UNIT), NO_WAY).astype(np.int64)
 
 
-# --- Trips by PyVRP, from a store and back, found from good ones ---
+# --- Trips by PyVRP, from a store and back, improved from good ones ---
 # Where there are several stores, a trip begins and ends at the nearest one.
 
 
 def trips_by_pyvrp(
     days: ScheduleEvaluator, trips: Sequence[Trip], limits: TripLimits, clock: SearchClock, seed: int = 0
 ) -> list[Trip] | None:
-    """Return trips as good as the time of ``clock`` allows, found from ``trips``.
+    """Return trips as good as the time of ``clock`` allows, starting from ``trips``.
 
-    None where none within the limits are found.
+    None if none within the limits are found.
 
     :raises MissingSolverError: where PyVRP is not installed.
     """
@@ -213,7 +213,7 @@ def trips_by_pyvrp(
 def _problem(
     pyvrp: Any, days: ScheduleEvaluator, targets: list[int], limits: TripLimits, trips: int
 ) -> RoutingProblem:
-    """Return the problem; location 0 is whichever store is nearest."""
+    """Return the problem; location 0 is the nearest store."""
     places = days.job.places
     middle = places[targets].mean(axis=0).tolist()
     metres = np.zeros((len(targets) + 1, len(targets) + 1))
@@ -235,7 +235,7 @@ def _problem(
         [whole(metres)],
         [whole(metres / limits.speed)],
     )
-    # What is too much for one trip needs at most one of its own, to the farthest target.
+    # A target beyond one trip's limits needs at most a trip of its own, to the farthest target.
     rounds = metres[0, 1:] + metres[1:, 0]
     return RoutingProblem(data, rounds[np.isfinite(rounds)].max(initial=0.0) / UNIT)
 
@@ -246,16 +246,15 @@ def _client(pyvrp: Any, days: ScheduleEvaluator, location: int, place: int) -> A
     return pyvrp.Client(location, service_duration=service, **{what: [days.demand[place]]})
 
 
-# --- Days by PyVRP of robots that have aboard what they place, so that they need no store on their way
-# Each robot is a vehicle of its own: from where it is, with the cones that it has left, to where its day
-# ends.
+# --- Days by PyVRP for robots that carry all their cones, and so need no store on their way
+# Each robot is a vehicle of its own: from its place, with its remaining cones, to where its day ends.
 
 _STEPS = 1000
-"""Steps in which a plan that ends earlier has to turn up, or is taken not to be."""
+"""Steps within which a plan that ends earlier must be found, or is taken not to exist."""
 _FIRST_STEP, _LAST_STEP = 0.04, 0.001
-"""Of the last robot's end: by how much earlier a plan is asked for at first, and at least."""
+"""Share of the last robot's end by which a plan must end earlier, at first and at least."""
 _TRIES = 0.7
-"""Of the time: until when plans that end earlier are looked for; what is left makes the ways shorter."""
+"""Share of the time for finding plans that end earlier; the rest is for shortening ways."""
 
 
 def loaded_days_by_pyvrp(
@@ -268,8 +267,8 @@ def loaded_days_by_pyvrp(
 ) -> list[Schedule]:
     """Return days as good as the time of ``clock`` allows, found from ``plan``.
 
-    ``before`` are the days without the targets to share out, ``plan`` those with it: each target follows, on
-    the first trip of some robot, what is in ``before``.
+    ``before`` are the days without the targets to share out, ``plan`` those with them: each target follows
+    the content of ``before`` on the first trip of some robot.
 
     :raises MissingSolverError: where PyVRP is not installed.
     """
@@ -281,22 +280,22 @@ def loaded_days_by_pyvrp(
     problem = fleet.problem(bound_s)
     found = best_of_attempts(problem, fleet.solution(problem, rows), clock, seed)
     if found is None:
-        # Rounded to what PyVRP counts in, not even these need be within the bound.
+        # Rounded to PyVRP's units, not even these need be within the bound.
         return fleet.days_of(rows)
     return fleet.days_of(fleet.rows_of(found))
 
 
 def _ended_early(fleet: _Fleet, rows: list[Trip], clock: SearchClock, seed: int) -> list[Trip]:
-    """Return rows whose last robot ends as early as that of any that were found.
+    """Return the rows found whose last robot ends earliest.
 
-    PyVRP makes a sum least, not the greatest of many. So it is asked again and again for any plan that ends
-    by an earlier time: much earlier after each success, less so after each failure.
+    PyVRP minimises a sum, not a maximum. So it is run repeatedly for any plan that ends by an earlier time:
+    much earlier after each success, less so after each failure.
     """
     end, step = fleet.end(rows), _FIRST_STEP
     while step >= _LAST_STEP and clock.share < _TRIES:
         problem = fleet.problem(end * (1.0 - step))
         found = any_within(problem, fleet.solution(problem, rows), clock, _STEPS, seed)
-        # Rounded to what PyVRP counts in, a plan may keep to the bound and in fact end no earlier.
+        # Rounded to PyVRP's units, a plan may keep to the bound and in fact end no earlier.
         if found is not None and fleet.end(fleet.rows_of(found)) < end:
             rows, step = fleet.rows_of(found), min(2 * step, 0.5)
             end = fleet.end(rows)
@@ -307,7 +306,7 @@ def _ended_early(fleet: _Fleet, rows: list[Trip], clock: SearchClock, seed: int)
 
 @dataclass(frozen=True)
 class _Vehicle:
-    """A robot with ``room`` cones aboard that are not placed yet, as it is at place ``at`` at ``ready_s``."""
+    """A robot with ``room`` unplaced cones aboard, at place ``at`` from ``ready_s``."""
 
     robot: int
     at: int
@@ -318,10 +317,10 @@ class _Vehicle:
 
 
 class _Fleet:
-    """The robots that have cones aboard as PyVRP's vehicles, and the targets that they share.
+    """The robots with cones aboard as PyVRP's vehicles, and the targets that they share.
 
-    Its locations are where the vehicles begin, where they end, and the targets. The way home of a robot that
-    is given nothing does not count; in what is planned last it has been driven before, or is not at all.
+    Its locations are where the vehicles begin, where they end, and the targets. The way home of a robot
+    without targets does not count; in the last stage it was driven before, or never is.
     """
 
     def __init__(
@@ -338,11 +337,11 @@ class _Fleet:
         self._metres, self._home_s = self._ways()
 
     def rows(self, plan: Sequence[Schedule]) -> list[Trip]:
-        """Return for each vehicle what its robot has in ``plan`` and had not before."""
+        """Return for each vehicle the targets that its robot gained in ``plan``."""
         return [plan[one.robot][0][len(self._before[one.robot][0]) :] for one in self._vehicles]
 
     def rows_of(self, solution: Any) -> list[Trip]:
-        """Return what ``solution`` gives each vehicle."""
+        """Return the targets of each vehicle in ``solution``."""
         rows: list[Trip] = [[] for _ in self._vehicles]
         for route in solution.routes():
             row = [self._targets[activity.idx] for activity in route if activity.is_client()]
@@ -350,7 +349,7 @@ class _Fleet:
         return rows
 
     def days_of(self, rows: Sequence[Trip]) -> list[Schedule]:
-        """Return the robots' whole days with ``rows`` after what they had before."""
+        """Return the robots' whole days with ``rows`` appended to their earlier ones."""
         made = [[list(trip) for trip in day] for day in self._before]
         for one, row in zip(self._vehicles, rows, strict=True):
             made[one.robot][0] += row
@@ -404,7 +403,7 @@ class _Fleet:
         return metres, home_s
 
     def _seconds(self, speed: float) -> Floats:
-        """Return the seconds between all locations; ways home count only where they do for the aim."""
+        """Return the seconds between all locations; ways home count only if they do for the objective."""
         count = len(self._vehicles)
         seconds: Floats = self._metres / speed
         seconds[:, count : 2 * count] = self._home_s if self._aim.last else 0.0
@@ -438,9 +437,9 @@ class _Fleet:
 
 
 def _vehicle(days: ScheduleEvaluator, robot: int, day: Schedule) -> _Vehicle | None:
-    """Return the vehicle that ``robot`` is after ``day``; None where nothing is aboard for other targets."""
+    """Return the vehicle of ``robot`` after ``day``; None if nothing is aboard for other targets."""
     one = days.job.robots[robot]
-    # What it collects takes none of what it has aboard to place.
+    # Collecting uses up none of the cones aboard.
     room = one.aboard - sum(days.demand[place] for place in day[0] if days.places_cone[place])
     if len(day) > 1 or room < 1:
         return None

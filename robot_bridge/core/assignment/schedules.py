@@ -1,4 +1,4 @@
-"""Schedules of robots: trips, their cost, trips given to robots, timetable of a plan."""
+"""Schedules of robots: trips, their cost, their assignment to robots, timetable of a plan."""
 
 from __future__ import annotations
 
@@ -12,10 +12,9 @@ import numpy as np
 from .job import PLACE, TO_START, TO_STORE, AssignmentJob, Floats, Travel
 from .plan import HOME, STORE, ConePlan, Path, PlannedTrip, PlanStop, RobotPlan
 
-# --- The days of robots: which targets on which trip, and what that costs ---
-# A day is a list of trips, a trip a list of the places of targets. Trip 0 is done with what is aboard at
-# the
-# start, and may be empty; a visit to a store comes before every other one.
+# --- The days of robots: targets of each trip, and their cost ---
+# A day is a list of trips, a trip a list of the places of targets. Trip 0 uses the cones aboard at the start,
+# and may be empty; a visit to a store precedes every other one.
 
 Trip = list[int]
 Schedule = list[Trip]
@@ -67,7 +66,7 @@ class ScheduleEvaluator:
         return load <= one.capacity
 
     def store_between(self, before: int, after: int) -> int:
-        """Return the store that is the least way round from ``before`` to ``after``."""
+        """Return the store with the shortest detour from ``before`` to ``after``."""
         pair = before, after
         if pair not in self._between:
             stores = range(self.job.first_store, self.job.first_target)
@@ -103,7 +102,7 @@ class ScheduleEvaluator:
         return metres, metres / self.job.robots[robot].speed + service
 
     def cost(self, robot: int, day: Schedule) -> ScheduleCost:
-        """Return what ``day`` costs; infinite metres where there is no way or not enough battery."""
+        """Return the cost of ``day``; infinite metres if there is no way or too little battery."""
         one = self.job.robots[robot]
         tour = self.tour(robot, day)
         metres, clock, served, at = 0.0, one.ready_s, one.ready_s, robot
@@ -133,7 +132,7 @@ class ScheduleEvaluator:
         return total + self.to_store[at]
 
 
-# --- Which robot drives which trip: longest trips first, each to the robot that suits the objective best
+# --- Assignment of trips to robots: longest trips first, each to the robot that suits the objective best
 
 BALANCED, LEAST_DISTANCE = "balanced", "distance"
 OBJECTIVES = (BALANCED, LEAST_DISTANCE)
@@ -149,11 +148,11 @@ class StageObjective:
     last: bool = True
 
     def end(self, cost: ScheduleCost) -> float:
-        """Return the seconds that count of one robot's day."""
+        """Return the seconds of one robot's day that count."""
         return cost.home_s if self.last else cost.served_s
 
     def score(self, costs: Sequence[ScheduleCost]) -> Score:
-        """Return what is compared, the lesser the better."""
+        """Return the value to compare; smaller is better."""
         latest = max(self.end(cost) for cost in costs)
         metres = sum(cost.metres for cost in costs)
         if math.isinf(metres):
@@ -184,7 +183,7 @@ def scheduled(
 
 
 def _with(days: ScheduleEvaluator, robot: int, day: Schedule, trip: Trip) -> list[Schedule]:
-    """Return the days in which ``trip`` follows: on what is aboard, and after a visit to a store."""
+    """Return the days with ``trip`` appended: with the cones aboard, and after a visit to a store."""
     choices = []
     if days.fits(robot, day[-1] + trip, first=len(day) == 1):
         choices.append([*day[:-1], day[-1] + trip])
@@ -197,7 +196,7 @@ def _length(days: ScheduleEvaluator, trip: Trip) -> float:
     return days.trip_metres(trip) + sum(days.service[place] for place in trip)
 
 
-# --- Days made into a plan: loads, times and paths of every stop ---
+# --- From days to a plan: loads, times and paths of every stop ---
 
 
 def plan_of(
@@ -263,7 +262,7 @@ class _Clock:
 
 
 def _trips_of_tour(days: ScheduleEvaluator, tour: Sequence[int]) -> list[Trip]:
-    """Return the stops of each trip; what comes after the last target belongs to the last trip."""
+    """Return the stops of each trip; stops after the last target belong to the last trip."""
     begin = days.job.first_target
     last = max((k for k, place in enumerate(tour) if place >= begin), default=-1)
     rows: list[Trip] = []

@@ -1,4 +1,4 @@
-"""Solver: who serves which target on which trip, stage after stage, by PyVRP or as a preview."""
+"""Solver: assignment of targets to robots and trips, stage by stage, by PyVRP or as a preview."""
 
 from __future__ import annotations
 
@@ -16,14 +16,15 @@ from .local_search import TripLimits, improved, saving_pairs, trips_by_savings
 from .plan import ConePlan
 from .schedules import Schedule, ScheduleEvaluator, Score, StageObjective, Trip
 
-# --- One stage of a job: targets that are added to the days that robots have had so far ---
+# --- One stage of a job: targets added to the robots' days so far ---
 
 _SLACK = 1.05
 """By how much trips may be longer than an even share of the work."""
 _FIRST_SHARE = 0.05
-"""Of the time: until when the first plan is made better before PyVRP works on its trips."""
+"""Share of the time for improving the first plan before PyVRP works on its trips."""
 _LAST_SHARE = {schedules.BALANCED: 0.85, schedules.LEAST_DISTANCE: 0.97}
-"""Of the time: until when PyVRP may work. It shortens trips; to share them out evenly is left to do then."""
+"""Share of the time until which PyVRP may work. It shortens trips; the rest is for sharing them out
+evenly."""
 
 
 @dataclass(frozen=True)
@@ -37,13 +38,13 @@ class StageSolution:
 
     @property
     def rank(self) -> tuple[int, Score]:
-        """What is compared, the lesser the better."""
+        """The value to compare; smaller is better."""
         return len(self.left), self.score
 
 
 @dataclass(frozen=True)
 class Effort:
-    """The seconds a stage may take, whether PyVRP works on it, and who is told which share is over."""
+    """Seconds of a stage, whether PyVRP works on it, and the receiver of progress."""
 
     seconds: float
     use_pyvrp: bool
@@ -92,7 +93,7 @@ def solved_stage(
 
 
 def _clock_of_pyvrp(effort: Effort, aim: StageObjective, seconds_left: float) -> pyvrp_search.SearchClock:
-    """Return the clock of what PyVRP does: it leaves time for small changes."""
+    """Return the clock for PyVRP: it leaves time for small changes."""
     begin, end = _FIRST_SHARE, _LAST_SHARE[aim.objective]
     seconds = seconds_left - effort.seconds * (1.0 - end)
     return pyvrp_search.SearchClock(seconds, effort.progress.part(begin, end))
@@ -104,9 +105,9 @@ def _all_on_board(plan: Sequence[Schedule], start: Sequence[Schedule]) -> bool:
 
 
 def _on_board(days: ScheduleEvaluator, targets: Sequence[int], start: Sequence[Schedule]) -> list[Schedule]:
-    """Return the days with the cones that are aboard from the start given to the nearest targets.
+    """Return the days in which cones aboard from the start go to the nearest targets.
 
-    Of all robots the one goes next that has the shortest way to a target.
+    The robot with the shortest way to a target goes next.
     """
     plan = [[list(trip) for trip in day] for day in start]
     left = {place for place in targets if days.places_cone[place]}
@@ -149,7 +150,7 @@ def _first(
 
 
 def _limits(days: ScheduleEvaluator, targets: list[int], aim: StageObjective) -> list[TripLimits]:
-    """Return what trips may be bounded by; long trips are few, short ones can be shared out evenly."""
+    """Return candidate limits of trips; long trips are few, short ones can be shared out evenly."""
     robots = days.job.robots
     heaviest = max((days.demand[place] for place in targets), default=1)
     rooms = sorted({robot.capacity for robot in robots if robot.capacity >= heaviest})
@@ -191,7 +192,7 @@ def _improved(
 
 
 def _trips(plan: Sequence[Schedule], targets: set[int]) -> list[Trip]:
-    """Return the trips of ``plan``, of each what serves ``targets``."""
+    """Return the trips of ``plan``, reduced to those of ``targets``."""
     trips = [[place for place in trip if place in targets] for day in plan for trip in day]
     return [trip for trip in trips if trip]
 
@@ -210,11 +211,11 @@ def _score(days: ScheduleEvaluator, plan: Sequence[Schedule], aim: StageObjectiv
     return aim.score([days.cost(robot, day) for robot, day in enumerate(plan)])
 
 
-# --- Who serves which target on which trip: stage after stage, by PyVRP or as a quick preview ---
+# --- Assignment stage by stage, by PyVRP or as a quick preview ---
 
 AUTOMATIC, PYVRP, PREVIEW = "automatic", "pyvrp", "preview"
 PREVIEW_KEPT = f"{PYVRP}, which found nothing better than the preview"
-"""The method of a plan that PyVRP looked at and could not improve."""
+"""The method of a plan that PyVRP could not improve."""
 METHODS = (AUTOMATIC, PYVRP, PREVIEW)
 
 
@@ -222,7 +223,7 @@ METHODS = (AUTOMATIC, PYVRP, PREVIEW)
 class Objective:
     """The objective to minimise, by which method, and how many seconds it may take.
 
-    :raises JobError: when one of them is none.
+    :raises JobError: when one of them is invalid.
     """
 
     objective: str = schedules.BALANCED
@@ -249,9 +250,8 @@ def assign(
 ) -> ConePlan:
     """Return the plan by which the robots of ``job`` serve all its targets.
 
-    :raises UnservedError: naming targets that no robot can reach or has the battery for;
-        MissingSolverError when PyVRP is asked for and not installed; CancelledError when ``progress`` says
-        so.
+    :raises UnservedError: naming targets that no robot can reach or has the battery for; MissingSolverError
+        when PyVRP is requested but not installed; CancelledError when ``progress`` returns false.
     """
     objective = objective or Objective()
     use_pyvrp = _use_pyvrp(objective.method)
@@ -299,7 +299,7 @@ def _places(job: AssignmentJob) -> range:
 
 
 def _close_stage(days: ScheduleEvaluator, plan: Sequence[Schedule], stage: int) -> None:
-    """Let targets of later stages wait until all of ``plan`` are done."""
+    """Let targets of later stages wait until all targets in ``plan`` are done."""
     end = max(days.cost(robot, day).served_s for robot, day in enumerate(plan) if any(day))
     for later in days.job.stages:
         if later > stage:
@@ -321,7 +321,7 @@ def _refuse_unreachable(days: ScheduleEvaluator) -> None:
 
 
 def _alone(days: ScheduleEvaluator, place: int) -> list[tuple[int, Schedule]]:
-    """Return the days of robots that could serve ``place`` if nothing else was to be done."""
+    """Return the days of robots that could serve ``place`` if it were the only target."""
     robots = range(len(days.job.robots))
     on_board: list[tuple[int, Schedule]] = [
         (one, [[place]]) for one in robots if days.fits(one, [place], True)

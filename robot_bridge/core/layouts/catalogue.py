@@ -126,14 +126,14 @@ class SkidPad(Layout):
 
 
 def _at(x: float, y: float, radius: float, angle: float, turn: int, colour: str, role: str) -> Spot:
-    """Return the spot on a circle; one drives past it as ``turn`` says."""
+    """Return the spot on a circle; ``turn`` is the direction of driving past it."""
     theta = math.remainder(angle + turn * math.pi / 2, 2 * math.pi)
     return Spot(x + radius * math.cos(angle), y + radius * math.sin(angle), theta, colour, role)
 
 
 # --- Severe lane changes: ISO 3888-1 and ISO 3888-2 ---
 # The texts of the standards are not public; the dimensions come from models that name them as their source.
-# Where those differ, the difference is said, and is a dimension.
+# Where those differ, the difference is documented, and is a dimension.
 
 LEFT_LANE, CENTRE_LANE, RIGHT_LANE = 1, 0, -1
 

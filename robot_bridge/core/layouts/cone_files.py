@@ -35,14 +35,14 @@ Rows = list[dict[str, str]]
 
 
 def is_track(file: Path) -> bool:
-    """Tell by its suffix whether ``file`` is a track in YAML or SDF."""
+    """Return whether ``file`` is a track in YAML or SDF, by its suffix."""
     return file.suffix.lower() in _READERS
 
 
 def read_track(file: Path) -> Rows:
     """Return a row for each cone of a track in YAML or SDF.
 
-    :raises ConeTableError: naming the file, what is wrong in it and what is read.
+    :raises ConeTableError: naming the file, the fault and the supported formats.
     """
     try:
         size = file.stat().st_size
@@ -95,7 +95,7 @@ def headless_rows(file: Path) -> Rows | None:
                 if line
             ]
     except (OSError, UnicodeDecodeError, csv.Error):
-        # What reads tables with a head line says what is wrong.
+        # The reader of tables with a head line reports the error.
         return None
 
 
@@ -121,7 +121,7 @@ def _yaml_rows(text: str, name: str) -> Iterator[dict[str, str]]:
             "or give the track as CSV."
         ) from error
     try:
-        # Not libyaml's loader: brackets that are nested deep enough end its process.
+        # Not libyaml's loader: deeply nested brackets crash its process.
         content = yaml.load(text, yaml.SafeLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise ConeTableError(f"{name} is no YAML: {_first_line(error)}; correct it.") from error
@@ -183,7 +183,7 @@ def _pair_of(colour: str, head: list[str]) -> tuple[str, str] | None:
 
 
 def _colour_in(words: str) -> str | None:
-    """Return the colour that a name says, such as ``model://eufs/big_orange_cone``; None without one."""
+    """Return the colour in a name such as ``model://eufs/big_orange_cone``; None without one."""
     text = words.lower()
     if "orange" in text and "big" in text:
         return BIG_ORANGE
@@ -204,12 +204,12 @@ def _first_line(error: Exception) -> str:
 # --- Cones from the rows of a table, such as a CSV file or a layer without geometry ---
 
 _MOST_COLUMNS, _MOST_ROWS = 1000, 100_000
-"""More than any table of cones has; what a file costs to read goes by its length up to there."""
+"""More than any table of cones has; up to these limits reading time is proportional to the file's length."""
 
 
 @dataclass(frozen=True)
 class ConeColumns:
-    """The names of the columns; an empty one is not there. ``heading`` is in degrees
+    """The names of the columns; an empty name means no such column. ``heading`` is in degrees
     clockwise from the y axis.
 
     Rows count only where ``layout`` holds ``only``, when that is given.
@@ -249,7 +249,7 @@ def read_csv(file: Path) -> tuple[list[str], list[dict[str, str]]]:
 
 
 def _rows(lines: Iterable[list[str]], head: list[str], name: str) -> Iterator[dict[str, str]]:
-    """Yield the rows by column; the first that does not fit ends it, before the others are read."""
+    """Yield the rows by column; the first invalid row raises before the others are read."""
     for number, values in enumerate(filter(None, lines), 2):
         if len(values) != len(head):
             raise ConeTableError(
@@ -263,10 +263,10 @@ def _rows(lines: Iterable[list[str]], head: list[str], name: str) -> Iterator[di
 def cones_of(
     rows: Iterable[Mapping[str, Any]], head: Sequence[str], columns: ConeColumns, name: str, first: int = 2
 ) -> list[Cone]:
-    """Return a cone for each of ``rows``; ``first`` is the number that people know the first one by.
+    """Return a cone for each of ``rows``; ``first`` is the row number shown to users for the first one.
 
-    Without a column of ids, cones are named after ``name``; without one of orders they are placed as they
-    come. Cones are sorted by order.
+    Without a column of ids, cones are named after ``name``; without one of orders they are placed in the
+    order of the rows. Cones are sorted by order.
 
     :raises ConeTableError: naming row and column, and what to do.
     """

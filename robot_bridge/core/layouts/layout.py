@@ -18,8 +18,8 @@ from ..errors import DimensionError, LayoutLineError
 
 ORANGE, BIG_ORANGE, BLUE, YELLOW = "orange", "big_orange", "blue", "yellow"
 COLOURS = (ORANGE, BIG_ORANGE, BLUE, YELLOW)
-"""The cones of Formula Student: blue on the left of the track, yellow on its right, orange where one goes in
-and out, big orange at lines where time is taken."""
+"""The cones of Formula Student: blue on the left of the track, yellow on its right, orange at entry and exit,
+big orange at timing lines."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class Cone:
-    """A spot with a name and a place in the order of placing, from 1."""
+    """A spot with a name and a number in the order of placing, from 1."""
 
     id: str
     order: int
@@ -101,14 +101,14 @@ def mirrored(spots: list[Spot]) -> list[Spot]:
     ]
 
 
-# --- What every layout has: a name, the standard it follows, dimensions that can be changed, and cones
+# --- Base of layouts: a name, the standard it follows, adjustable dimensions, and cones
 
 BASE_M = 0.285
 """Across the base of the cone of 505 mm of Formula Student; ISO 3888-2 asks for 500 mm of height or more."""
 
 
 class DimensionFault(Enum):
-    """What a value of a dimension may be that it must not be."""
+    """Faults of a value of a dimension."""
 
     NO_NUMBER = auto()
     NOT_CHOSEN = auto()
@@ -120,8 +120,8 @@ class DimensionFault(Enum):
 class Dimension:
     """One number of a layout: what it is, in which unit, and its value in the standard.
 
-    Values are ``least`` or more, without a fraction where ``whole``, and one of ``choices`` where there are
-    any: these are named by what they mean.
+    Values are ``least`` or more, without a fraction if ``whole``, and one of ``choices`` if there are any:
+    these map to their meanings.
     """
 
     name: str
@@ -139,12 +139,12 @@ class Dimension:
 
     @property
     def whole_text(self) -> str:
-        """Return what it is, with what each choice means."""
+        """Return the description, with the meaning of each choice."""
         meanings = ", ".join(f"{choice:g} {name}" for choice, name in self.choices.items())
         return f"{self.text}: {meanings}" if meanings else self.text
 
     def fault(self, value: float) -> DimensionFault | None:
-        """Return what is wrong with ``value``, None where nothing is."""
+        """Return the fault of ``value``, None if it is valid."""
         if not math.isfinite(value):
             return DimensionFault.NO_NUMBER
         if self.choices and value not in self.choices:
@@ -154,7 +154,7 @@ class Dimension:
         return DimensionFault.NOT_WHOLE if self.whole and value != int(value) else None
 
     def problem(self, value: float) -> str:
-        """Return what to give in place of ``value``, nothing where it is good."""
+        """Return what to give instead of ``value``, an empty text if it is valid."""
         fault = self.fault(value)
         if fault is None:
             return ""
@@ -175,7 +175,7 @@ def dimension(standard: float, text: str, unit: str = "m", least: float = 0.0, *
 class Layout(ABC):
     """A layout with its dimensions, in a frame of its own: x along the travel, y to the left, in metres.
 
-    :raises DimensionError: when a dimension has a value that it cannot have.
+    :raises DimensionError: when a dimension has an invalid value.
     """
 
     NAME: ClassVar[str] = ""
@@ -206,7 +206,7 @@ class Layout(ABC):
     def of(cls, values: Mapping[str, float]) -> Layout:
         """Return the layout with ``values`` in place of the standard's.
 
-        :raises DimensionError: naming what the layout has, when a name is none of it.
+        :raises DimensionError: naming the layout's dimensions, when a name is none of them.
         """
         known = [one.name for one in cls.dimensions()]
         for name in values:
@@ -301,11 +301,11 @@ def _normals(units: Floats, edge: NDArray[np.int64], places: Floats, at: Floats)
     return np.stack([-along[:, 1], along[:, 0]], axis=1)
 
 
-# --- Whether cones may stand where they are: on an allowed surface, clear of obstacles and of one another
+# --- Checks of cone positions: on an allowed surface, clear of obstacles and of one another
 
 
 class ConeFindingKind(Enum):
-    """What a finding is about."""
+    """The subject of a finding."""
 
     SURFACE = "surface"
     OBSTACLE = "obstacle"
@@ -314,7 +314,7 @@ class ConeFindingKind(Enum):
 
 @dataclass(frozen=True)
 class ConeFinding:
-    """One cone that may not stand where it is, with the reason."""
+    """A misplaced cone, with the reason."""
 
     kind: ConeFindingKind
     cone: str
@@ -340,7 +340,7 @@ def find_misplaced_cones(
     obstacle_distance: float,
     cone_distance: float,
 ) -> list[ConeFinding]:
-    """Return what is wrong, in the order of the cones.
+    """Return findings in the order of the cones.
 
     A cone must be in one of ``surfaces``, unless that is None; ``obstacle_distance`` metres or more from
     every obstacle, and ``cone_distance`` from every other cone, measured from the middle of the cone.
@@ -404,7 +404,7 @@ def near_cones(cones: Sequence[Cone], distance: float) -> list[ConeFinding]:
 def _near_box(points: Floats, line: Floats, distance: float) -> NDArray[np.int64]:
     """Return which of ``points`` are in the box around ``line`` or nearer to it than ``distance``.
 
-    Of a long shore only the cones beside it are then held against each of its points.
+    So only the cones near a long shoreline are compared with each of its points.
     """
     low, high = line.min(axis=0) - distance, line.max(axis=0) + distance
     return np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
@@ -419,7 +419,7 @@ def _finding(kind: ConeFindingKind, cone: Cone, text: str) -> ConeFinding:
 
 
 def _inside(points: Floats, rings: Sequence[Floats]) -> NDArray[np.bool_]:
-    """Return which ``points`` an odd number of edges lie to the right of: those inside, holes left out."""
+    """Return which ``points`` are inside, not in holes: an odd number of edges lies to their right."""
     odd = np.zeros(len(points), bool)
     x, y = points[:, :1], points[:, 1:]
     for ring in rings:

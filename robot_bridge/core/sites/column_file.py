@@ -1,4 +1,4 @@
-"""File of numpy columns: written row by row, checked whole, mapped into memory; texts as columns."""
+"""File of numpy columns: written row by row, fully checked, mapped into memory; texts as columns."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ..errors import CacheError
 from ..json_decoder import DecodingError, JsonBounds, decode_json
 
-# --- Arrays on the disk that grow row by row: what is written of a large site is never in memory as a whole
+# --- Arrays on the disk that grow row by row: data of a large site is never in memory as a whole
 
 AT_ONCE = 100_000
 """rows that are in memory together."""
@@ -67,15 +67,15 @@ class RowFile:
             yield self.read(begin, min(begin + AT_ONCE, self._count))
 
     def mapped(self) -> NDArray[Any]:
-        """Return the whole array, of which only what is looked at comes into memory; raises OSError."""
+        """Return the whole array, of which only accessed parts are loaded into memory; raises OSError."""
         self._rows.flush()
         if not self._count:
             return np.empty(self.shape, self.dtype)
-        # As a plain array: every slice of the other kind takes some microseconds longer.
+        # As a plain array: every slice of a memmap takes some microseconds longer.
         return np.memmap(self._file, self.dtype, "r", shape=self.shape).view(np.ndarray)
 
     def close(self) -> None:
-        """Write nothing more, and read no more."""
+        """Close for reading and writing."""
         self._rows.close()
 
     def remove(self) -> None:
@@ -88,7 +88,7 @@ class RowFile:
 
 
 class ColumnFile(RowFile):
-    """A :class:`RowFile` that is to become a column; its rows are digested as they come."""
+    """A :class:`RowFile` that will become a column; its rows are digested as they are written."""
 
     def __init__(self, file: Path, kind: Any, width: int = 0) -> None:
         super().__init__(file, kind, width)
@@ -96,7 +96,7 @@ class ColumnFile(RowFile):
 
     @property
     def sha256(self) -> str:
-        """The digest of all rows as they stand in the file."""
+        """The digest of all rows as stored in the file."""
         return self._digest.hexdigest()
 
     def _wrote(self, content: memoryview) -> None:
@@ -134,17 +134,17 @@ class ColumnFiles:
         return dict(self._files)
 
     def mapped(self) -> dict[str, NDArray[Any]]:
-        """Return all columns as arrays that stay on the disk until they are looked at; raises OSError."""
+        """Return all columns as arrays that stay on the disk until accessed; raises OSError."""
         return {name: file.mapped() for name, file in self._files.items()}
 
     def close(self) -> None:
-        """Write nothing more, and read no more."""
+        """Close for reading and writing."""
         for file in self._files.values():
             file.close()
 
 
 def bytes_of(rows: NDArray[Any]) -> memoryview:
-    """Return contiguous ``rows`` as they stand in memory."""
+    """Return the memory of contiguous ``rows``."""
     return rows.reshape(math.prod(rows.shape)).view(np.uint8).data
 
 
@@ -165,11 +165,11 @@ _HEAD = JsonBounds(depth=6, length=_LARGEST_HEAD, values=200_000)
 _KINDS = ("|b1", "|i1", "|u1", "<i4", "<i8", "<f8")
 _AT_ONCE = 1 << 20
 _LARGE = 16 << 20
-"""bytes from which on a file is mapped, and not held in memory."""
+"""bytes from which a file is mapped instead of held in memory."""
 
 
 class ColumnSet(NamedTuple):
-    """Arrays by name, and what is said of them."""
+    """Arrays by name, and their description ``about``."""
 
     about: dict[str, Any]
     arrays: dict[str, NDArray[Any]]
@@ -185,7 +185,7 @@ class _Place(NamedTuple):
 
 
 def write_columns(file: Path, about: Mapping[str, Any], columns: Mapping[str, ColumnFile]) -> None:
-    """Write ``columns`` to the new ``file``, some at a time; raises OSError."""
+    """Write ``columns`` to the new ``file``, piece by piece; raises OSError."""
     entries = {
         name: {"kind": column.dtype.str, "shape": list(column.shape), "sha256": column.sha256}
         for name, column in columns.items()
@@ -203,10 +203,10 @@ def write_columns(file: Path, about: Mapping[str, Any], columns: Mapping[str, Co
 
 
 def read_columns(file: Path) -> ColumnSet:
-    """Return what is in ``file``, checked whole; the arrays cannot be written to.
+    """Return the content of ``file``, fully checked; the arrays are read-only.
 
-    A large file is copied and the copy mapped: whoever writes over the file, or cuts it off, while it is in
-    use changes nothing, and ends nobody who reads it.
+    A large file is copied and the copy mapped: overwriting or truncating the file while it is in use neither
+    changes the data nor crashes a reader.
 
     :raises CacheError: for a file that is cut off, altered or of another version; and OSError.
     """
@@ -218,7 +218,8 @@ def read_columns(file: Path) -> ColumnSet:
 
 
 def read_about(file: Path) -> dict[str, Any]:
-    """Return what is said of the columns in ``file``, which are not read; raises as :func:`read_columns`."""
+    """Return the description of the columns in ``file``, which are not read; raises as
+    :func:`read_columns`."""
     with file.open("rb") as source:
         return _head(file, source, os.fstat(source.fileno()).st_size)[0]
 
@@ -250,7 +251,7 @@ def _head(file: Path, source: IO[bytes], size: int) -> tuple[dict[str, Any], lis
 
 
 def _places(entries: Any, begin: int) -> list[_Place]:
-    """Return where columns are; raises KeyError, TypeError or ValueError for what describes none."""
+    """Return the places of columns; raises KeyError, TypeError or ValueError for invalid entries."""
     places = []
     for name, entry in dict(entries).items():
         kind, shape = entry["kind"], tuple(entry["shape"])
@@ -276,7 +277,7 @@ def _copy(file: Path, source: IO[bytes], size: int, places: list[_Place]) -> byt
             copy.write(some)
             left -= len(some)
         copy.flush()
-        # Read and not looked at in the map: that would bring all of it into this process.
+        # Read, not accessed through the map: that would load all of it into this process.
         _check(file, copy, places)
         return mmap.mmap(copy.fileno(), size, access=mmap.ACCESS_READ)
 
@@ -300,7 +301,7 @@ def _array(copy: bytes | mmap.mmap, place: _Place) -> NDArray[Any]:
 
 def _roomy_folder() -> str | None:
     """Return a folder that is likely to be on a disk and not in memory; None for the system's own choice."""
-    folder = "/var/tmp"  # nosec B108 # what is made in it gets a random name
+    folder = "/var/tmp"  # nosec B108 # files in it get random names
     return None if "TMPDIR" in os.environ or not os.access(folder, os.W_OK) else folder
 
 
@@ -308,19 +309,19 @@ def _gap(offset: int) -> int:
     return -offset % _ALIGNED
 
 
-# --- Many texts as columns, each made when it is asked for ---
+# --- Many texts as columns, each created on access ---
 
 T = TypeVar("T")
 
 HALVES = "surrogatepass"
-"""Half a character is kept as it is; where it must not be, that is told there."""
+"""Lone surrogates are kept; where they are not allowed, that is reported there."""
 
 _MOST_KNOWN = 10_000
-"""different texts, and mappings, that are kept as such."""
+"""distinct texts, and mappings, that are cached."""
 
 
 class _Columns(Sequence[T]):
-    """Values that are made when they are asked for; equal to any sequence of the same values."""
+    """Values that are created on access; equal to any sequence of the same values."""
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Sequence) and list(self) == list(other)
@@ -355,7 +356,7 @@ class Texts(_Columns[str]):
 
 
 class CodedTexts(_Columns[str]):
-    """K texts of which many are the same: text k is ``table[codes[k]]``."""
+    """K texts of which many are equal: text k is ``table[codes[k]]``."""
 
     def __init__(self, table: Sequence[str], codes: NDArray[Any]) -> None:
         self.table = table
@@ -382,7 +383,7 @@ class CodedTexts(_Columns[str]):
 
 
 class CodedExtras(_Columns[Mapping[str, str]]):
-    """K mappings, kept as the texts that ``read`` makes mappings of."""
+    """K mappings, stored as texts that ``read`` parses."""
 
     def __init__(self, texts: CodedTexts, read: Any) -> None:
         self._texts = texts

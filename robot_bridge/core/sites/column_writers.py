@@ -15,12 +15,12 @@ from ..robotmap.window_index import cell_keys, level_counts, placed_in
 from .column_file import AT_ONCE, HALVES, ColumnFiles, RowFile
 from .geopackage import extras_text
 
-# --- Texts written into columns as they come: those that :mod:`.texts` reads ---
+# --- Texts appended to columns, as read by :mod:`.texts` ---
 
 _MOST_KNOWN = 8 << 20
-"""bytes, about, of texts that are remembered, so that each is written once."""
+"""approximate bytes of remembered texts, so that each is written once."""
 _EACH = 100
-"""bytes, about, that one of them takes besides its characters."""
+"""approximate bytes that a remembered text takes besides its characters."""
 
 
 class TextColumns:
@@ -39,19 +39,19 @@ class TextColumns:
         self.add_lengths(lengths)
 
     def add_bytes(self, content: NDArray[Any]) -> None:
-        """Add bytes of texts whose lengths come by :meth:`add_lengths`; raises OSError."""
+        """Add bytes of texts whose lengths are added by :meth:`add_lengths`; raises OSError."""
         self._content.append(content)
 
     def add_lengths(self, lengths: NDArray[Any]) -> None:
-        """Add texts of so many bytes each; raises OSError."""
+        """Add the lengths of texts in bytes; raises OSError."""
         self._offsets.append(self._end + np.cumsum(lengths))
         self._end += int(lengths.sum())
 
 
 class CodedTextColumns:
-    """Appends texts of which many are the same: to a table of them, and their places to ``_codes``.
+    """Appends texts of which many are equal: distinct ones to a table, their indices to ``_codes``.
 
-    Of very many different ones some stand in the table again.
+    If there are very many distinct ones, some occur in the table again.
     """
 
     def __init__(self, columns: ColumnFiles, name: str) -> None:
@@ -89,11 +89,11 @@ def bytes_of_texts(texts: Iterable[str]) -> tuple[NDArray[Any], NDArray[Any]]:
     return np.frombuffer(b"".join(raw), np.uint8), np.fromiter(map(len, raw), np.int64, len(raw))
 
 
-# --- The columns of outlines, and of what is said of those that are no obstacles, written as they come
+# --- The columns of outlines, and of notes on those that are no obstacles, written incrementally
 
 _PLAIN = ("shape_type", "courtyard", "height", "outdoor")
 _BESIDE = (("low", np.float64, 2), ("high", np.float64, 2), ("everywhere", np.bool_, 0))
-"""What is kept of a note besides its text."""
+"""The columns of a note besides its text."""
 
 
 class OutlineColumns:
@@ -123,7 +123,7 @@ class OutlineColumns:
         self._has_extras |= outlines.ext is not None
 
     def end(self) -> None:
-        """Remove the columns in which nothing is said."""
+        """Remove empty columns."""
         if not self._has_base:
             self._columns.remove("base")
         if not self._has_extras:
@@ -132,7 +132,7 @@ class OutlineColumns:
 
 
 class NoteColumns:
-    """Keeps notes in ``folder``, those of one kind together, until they are put into columns."""
+    """Stores notes in ``folder``, grouped by kind, until they are written into columns."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -152,7 +152,7 @@ class NoteColumns:
                 own[name].append(rows)
 
     def end(self, columns: ColumnFiles) -> None:
-        """Put all notes into ``columns``, kind by kind; raises OSError."""
+        """Write all notes into ``columns``, kind by kind; raises OSError."""
         texts = TextColumns(columns, "note")
         beside = {name: columns.make(f"note_{name}", kind, width) for name, kind, width in _BESIDE}
         put = {"text": texts.add_bytes, "lengths": texts.add_lengths}
@@ -163,7 +163,7 @@ class NoteColumns:
                     put[name](piece)
 
     def remove(self) -> None:
-        """Delete what is kept."""
+        """Delete the temporary files."""
         for own in self._kinds.values():
             for file in own.values():
                 file.remove()
@@ -175,7 +175,7 @@ class NoteColumns:
         return own
 
 
-# --- The median of more numbers than there is memory for ---
+# --- Median of more numbers than fit into memory ---
 
 _BINS = 1 << 16
 _SIGN = np.uint64(1 << 63)
@@ -184,7 +184,7 @@ Codes = NDArray[np.uint64]
 
 
 def median(numbers: RowFile) -> float:
-    """Return what ``numpy.median`` does of ``numbers``, float64 and finite; 0 of none. Raises OSError."""
+    """Return ``numpy.median`` of ``numbers``, float64 and finite; 0 if there are none. Raises OSError."""
     count = len(numbers)
     if not count:
         return 0.0
@@ -202,7 +202,7 @@ def median(numbers: RowFile) -> float:
 def _at_rank(numbers: RowFile, rank: int) -> float:
     """Return the number that would be at ``rank`` if they were sorted.
 
-    What it is among is counted in bins that become narrower, until few enough are left to be sorted.
+    Candidates are counted in ever narrower bins, until few enough are left to sort.
     """
     low, high, left = 0, 1 << 64, len(numbers)
     while left > AT_ONCE and high - low > 1:
@@ -221,9 +221,9 @@ def _at_rank(numbers: RowFile, rank: int) -> float:
 
 
 def _codes(numbers: NDArray[np.float64]) -> Codes:
-    """Return whole numbers that are in the same order."""
+    """Return integers that are in the same order."""
     bits = numbers.view(np.uint64)
-    # Of what is below zero all bits are turned round, else the sign alone.
+    # For negative numbers all bits are inverted, else the sign bit alone.
     return np.where(bits & _SIGN, ~bits, bits | _SIGN)
 
 
@@ -236,15 +236,15 @@ def _within(codes: Codes, low: int, high: int) -> Codes:
     return codes[(codes >= np.uint64(low)) & (codes <= np.uint64(high - 1))]
 
 
-# --- Many boxes put cell by cell on the disk, for a :class:`~...robotmap.grid.BoxGrid` ---
+# --- Boxes sorted by cell on the disk, for a :class:`~...robotmap.grid.BoxGrid` ---
 
 _SAMPLED = 256
-"""One key in so many of each run tells how many boxes are where."""
+"""One key in so many of each run is sampled, to estimate the distribution of boxes."""
 _LEAST, _MOST = np.iinfo(np.int64).min, np.iinfo(np.int64).max
 
 
 class _Piece(NamedTuple):
-    """Rows as they came, in a file of their own kind."""
+    """Rows in the order of arrival, in a file of their own dtype."""
 
     file: RowFile
     begin: int
@@ -252,7 +252,7 @@ class _Piece(NamedTuple):
 
 
 class CellSorting:
-    """Takes boxes with a row of numbers each, and puts the rows cell by cell, in ``folder`` meanwhile.
+    """Receives boxes with a row of numbers each, and sorts the rows by cell, with ``folder`` for its files.
 
     The order is that of :meth:`.grid.BoxGrid.of`. In memory are some :data:`~.column_file.AT_ONCE` boxes, and
     a number for each :data:`_SAMPLED` of all.
@@ -269,7 +269,7 @@ class CellSorting:
     def add(self, low: NDArray[Any], level: NDArray[Any], rows: NDArray[Any]) -> None:
         """Add boxes by their lower corners, (n, 2), and levels, (n,); ``rows`` is (n, width).
 
-        ``rows`` may be of a wider kind than others were. Raises OSError.
+        ``rows`` may have a wider dtype than earlier ones. Raises OSError.
         """
         for axis, column in enumerate(self._low):
             column.append(low[:, axis])
@@ -285,9 +285,9 @@ class CellSorting:
             self._pieces.append(_Piece(own, begin, min(begin + AT_ONCE, len(own))))
 
     def sort_into(self, columns: ColumnFiles, grid: str, names: str) -> dict[str, Any]:
-        """Add the rows and the grid to ``columns``, and return what is said of the grid; raises OSError.
+        """Add the rows and the grid to ``columns``, and return the grid's description; raises OSError.
 
-        The columns are called ``names``; those of the grid begin with ``grid``. What was kept is deleted.
+        The columns are called ``names``; those of the grid begin with ``grid``. Temporary files are deleted.
         """
         origin = [median(file) for file in self._low]
         runs = _Runs(self._folder, self._name, *self._kind())
@@ -307,7 +307,7 @@ class CellSorting:
         return {"origin": origin, "placed": placed, "levels": list(levels)}
 
     def remove(self) -> None:
-        """Delete what is kept."""
+        """Delete the temporary files."""
         for file in (*self._low, self._level, *self._rows.values()):
             file.remove()
 
@@ -325,7 +325,7 @@ class CellSorting:
 
 
 class _Runs:
-    """Rows with a key each, sorted run by run as they come, then all together."""
+    """Rows with a key each, sorted run by run on arrival, then merged."""
 
     def __init__(self, folder: Path, name: str, kind: Any, width: int) -> None:
         self._keys = RowFile(folder / f"{name}.keys", np.int64)
@@ -366,7 +366,7 @@ class _Runs:
 
 
 def _borders(samples: NDArray[Any]) -> list[int]:
-    """Return keys between which there are few samples, or no other key than the first."""
+    """Return keys with few samples between them, or with no other key than the first."""
     few = AT_ONCE // _SAMPLED
     borders, room = [int(_LEAST)], few
     for key, count in zip(*(found.tolist() for found in np.unique(samples, return_counts=True)), strict=True):
@@ -381,7 +381,7 @@ def _borders(samples: NDArray[Any]) -> list[int]:
 
 
 class _CellColumns:
-    """The columns of a grid, made of the keys of its boxes in their order."""
+    """The columns of a grid, made from the sorted keys of its boxes."""
 
     def __init__(self, columns: ColumnFiles, name: str) -> None:
         self._keys = columns.make(f"{name}_keys", np.int64)
@@ -390,14 +390,14 @@ class _CellColumns:
         self._count = 0
 
     def add(self, keys: NDArray[Any]) -> None:
-        """Add some keys, which are sorted."""
+        """Add the next keys, sorted."""
         cells, starts = np.unique(keys, return_index=True)
-        # A cell may go on from those before.
+        # A cell may continue from the previous keys.
         goes_on = int(cells[0] == self._last)
         self._keys.append(cells[goes_on:])
         self._starts.append(starts[goes_on:] + self._count)
         self._last, self._count = int(cells[-1]), self._count + len(keys)
 
     def end(self) -> None:
-        """Say where the last cell ends."""
+        """Write the end of the last cell."""
         self._starts.append(np.array([self._count]))

@@ -19,15 +19,15 @@ from ..robotmap.window_index import BoxGrid
 from .frame import Points
 from .site_layers import group_spans
 
-# --- Areas that nobody may drive into: which edges, places and paths come into them ---
+# --- Forbidden areas: edges, places and paths that enter them ---
 
 
 class KeepoutIndex:
-    """Finds what comes into one of ``areas``, each an outer ring and its holes, (n, 2) each.
+    """Finds geometries that enter one of ``areas``, each an outer ring and its holes, (n, 2) each.
 
-    What runs along the rim of an area, or stands on it, does not come into it.
+    Running along the rim of an area, or standing on it, is not entering.
 
-    :raises ImportError: where shapely is not installed.
+    :raises ImportError: if shapely is not installed.
     """
 
     def __init__(self, areas: Sequence[Sequence[Floats]]) -> None:
@@ -38,16 +38,16 @@ class KeepoutIndex:
         )
 
     def entered(self, tracks: Sequence[Track]) -> dict[int, int]:
-        """Return the numbers of those of ``tracks`` that come into an area, each with the area's lowest."""
+        """Return the indices of ``tracks`` that enter an area, each with the lowest area's number."""
         import shapely
 
         found = self._entries([shapely.LineString(t) if len(t) > 1 else shapely.Point(t[0]) for t in tracks])
         return dict(sorted(found.T.tolist(), reverse=True))
 
     def between_ends(self, path: Track) -> int | None:
-        """Return the number of an area that ``path`` comes into and that holds neither end of it, or None.
+        """Return the number of an area that ``path`` enters and that holds neither of its ends, or None.
 
-        Whoever is in an area has to come out of it, and whoever was sent into one has to come there.
+        A robot in an area must be able to leave it, and one sent into an area must be able to reach it.
         """
         import numpy as np
         import shapely
@@ -58,7 +58,7 @@ class KeepoutIndex:
         return int(crossed[0]) if len(crossed) else None
 
     def edges_through(self, network: Network) -> Ints:
-        """Return the edges of ``network`` that come into an area, each once."""
+        """Return the edges of ``network`` that enter an area, each once."""
         import numpy as np
         import shapely
 
@@ -67,7 +67,7 @@ class KeepoutIndex:
         return through.astype(np.int64)
 
     def _entries(self, geometries: Sequence[object]) -> Ints:
-        """Return the numbers of what comes into areas, and those of the areas, (2, n)."""
+        """Return the indices of entering geometries, and those of the areas, (2, n)."""
         import numpy as np
 
         found = [self._tree.query(geometries, predicate=predicate) for predicate in ("crosses", "within")]
@@ -75,7 +75,7 @@ class KeepoutIndex:
         return entries
 
 
-# --- The areas of a site that robots must not be in, keepouts and obstacles, and which of them are near
+# --- Areas closed to robots, keepouts and obstacles, and queries for those nearby
 
 if TYPE_CHECKING:
     from .geopackage import Area
@@ -83,15 +83,15 @@ if TYPE_CHECKING:
 Indices = NDArray[np.int64]
 
 OVERHEAD_M = 2.5
-"""An obstacle that begins so many metres above the ground is driven under."""
+"""Metres above the ground from which robots drive under an obstacle."""
 TOUCH_M = 0.05
 """Metres within which a leg touches an area."""
 _MOST_KEPT = 20_000
-"""obstacles whose geometry is kept, of those that robots came near to last."""
+"""obstacles whose geometries are cached, the most recently approached ones."""
 
 
 class FencedAreas(ABC):
-    """Areas with a name each; metres in the site frame."""
+    """Named areas; metres in the site frame."""
 
     @abstractmethod
     def __len__(self) -> int:
@@ -102,20 +102,21 @@ class FencedAreas(ABC):
         """Return the name of an area."""
 
     def id(self, area: int) -> int:
-        """Return what an area is known by, beside all others of its kind: its number."""
+        """Return the id of an area, unique among its kind: its number."""
         return area
 
     def near(self, places: Points, metres: float) -> Indices:
         """Return which of ``places``, (n, 2), are within ``metres`` of which area: (2, m), place and area.
 
-        With 0 metres those inside an area; one on its rim is not, as with the paths of commands.
+        0 metres means inside an area; the rim does not count as inside, as with the paths of commands.
         """
         import shapely
 
         return self._near(places, places, lambda rows: shapely.points(places[rows]), metres)
 
     def are_near(self, places: Points, pairs: Indices, metres: float) -> NDArray[np.bool_]:
-        """Tell which of ``pairs``, (2, m) of a place and an area, :meth:`near` returns for ``metres``."""
+        """Return a mask of ``pairs``, (2, m) of place and area, that :meth:`near` would return for
+        ``metres``."""
         import shapely
 
         return _are_within(self._shapes(pairs[1]), shapely.points(places[pairs[0]]), metres)
@@ -131,9 +132,9 @@ class FencedAreas(ABC):
         return self._near(low, high, lambda rows: shapely.linestrings(legs[rows]), metres)
 
     def are_between(self, start: tuple[float, float], goal: tuple[float, float], metres: float) -> bool:
-        """Tell whether the straight leg comes within ``metres`` of an area at neither end, or touches one.
+        """Return whether the straight leg comes within ``metres`` of an area at neither end, or touches one.
 
-        A robot may leave an area that it is at, and come to one that it is sent to.
+        A robot may leave an area that it is at, and reach one that it is sent to.
         """
         places = np.array([start, goal])
         for apart in (metres, TOUCH_M):
@@ -147,8 +148,8 @@ class FencedAreas(ABC):
     ) -> Indices:
         """Return which geometries are within ``metres`` of which area; with 0 metres inside it.
 
-        Their boxes are from ``low`` to ``high``, (n, 2) each. Most are near no area, and are never made:
-        ``geometries`` returns those of some rows.
+        Their boxes are from ``low`` to ``high``, (n, 2) each. Most are near no area, and are never built:
+        ``geometries`` builds those of the given rows.
         """
         query, area = self._boxes_between(low - metres, high + metres)
         if not len(query):
@@ -168,9 +169,9 @@ class FencedAreas(ABC):
 
 
 class FencedPolygons(FencedAreas):
-    """Some areas, under ``ids`` where their numbers may be those of others.
+    """Some areas, with ``ids`` if their numbers could collide with others.
 
-    :raises ImportError: where shapely is not installed.
+    :raises ImportError: if shapely is not installed.
     """
 
     def __init__(
@@ -201,7 +202,7 @@ class FencedPolygons(FencedAreas):
         return self._names[area]
 
     def id(self, area: int) -> int:
-        """Return what an area is known by."""
+        """Return the id of an area."""
         return area if self._ids is None else self._ids[area]
 
     def _boxes_between(self, low: Points, high: Points) -> tuple[Indices, Indices]:
@@ -228,14 +229,14 @@ class FencedRows:
 
     @classmethod
     def of(cls, outlines: Outlines) -> FencedRows:
-        """Return what is fenced of ``outlines``: :func:`fenced_boxes`."""
+        """Return the fenced ones of ``outlines``: :func:`fenced_boxes`."""
         groups, low, high = fenced_boxes(outlines)
         grid, order = BoxGrid.of(low, high)
         return cls(groups[order, 0], groups[order, 1], low[order], high[order], grid)
 
 
 def fenced_boxes(outlines: Outlines) -> tuple[Indices, NDArray[Any], NDArray[Any]]:
-    """Return what is fenced of ``outlines``; ramps and what is overhead are driven on and under.
+    """Return the fenced ones of ``outlines``; ramps and overhead obstacles are excluded, as robots pass them.
 
     The first row of each area and the one behind its last, (n, 2), and the corners of its box, (n, 2) each.
     """
@@ -250,7 +251,7 @@ def fenced_boxes(outlines: Outlines) -> tuple[Indices, NDArray[Any], NDArray[Any
 
 
 class FencedOutlines(FencedAreas):
-    """The obstacles of a site, of which only those near robots are ever made geometries of."""
+    """The obstacles of a site; geometries are built only of those near robots."""
 
     def __init__(self, outlines: Outlines, rows: FencedRows) -> None:
         self._outlines = outlines
@@ -289,9 +290,9 @@ class FencedOutlines(FencedAreas):
 
 @dataclass(frozen=True)
 class Fences:
-    """The keepouts and the obstacles of one publication, and ``observed``, which operators accepted.
+    """The keepouts and the obstacles of one publication, and ``observed`` ones, which operators accepted.
 
-    The ids of observed ones are no obstacle's of the publication.
+    The ids of observed ones differ from those of the publication's obstacles.
     """
 
     keepouts: FencedAreas
@@ -300,7 +301,7 @@ class Fences:
 
     @classmethod
     def of(cls, keepouts: Iterable[Area], outlines: Outlines, rows: FencedRows | None = None) -> Fences:
-        """Return the fences of a site; ``rows`` are those of ``outlines`` where they are known."""
+        """Return the fences of a site; ``rows`` are those of ``outlines`` if they are known."""
         import shapely
 
         areas = list(keepouts)
@@ -345,7 +346,7 @@ def _boxes(outlines: Outlines, rows: NDArray[Any]) -> tuple[NDArray[Any], NDArra
 
 
 def _name(outlines: Outlines, k: int) -> str:
-    """Return the name that stands behind the kind in ``building,Control tower``, else what there is."""
+    """Return the name after the kind in ``building,Control tower``, else the whole label."""
     kind, _, name = outlines.semantics[k].partition(",")
     return name or kind or outlines.source[k] or f"obstacle {k + 1}"
 
@@ -360,6 +361,6 @@ def _geometry(outlines: Outlines, first: int, last: int) -> Any:
         holes = [ring for ring in map(outlines.points, range(first + 1, last)) if len(ring) > 3]
         return shapely.Polygon(points, holes)
     if outlines.shape_type[first] == ShapeType.STAIRS and len(points) % 2 == 0:
-        # Between the first riser and the last there are steps everywhere.
+        # The whole area between the first and the last riser is steps.
         return shapely.MultiLineString(list(points.reshape(-1, 2, 2))).convex_hull
     return shapely.LineString(points)

@@ -1,4 +1,4 @@
-"""Site frame: the metres of robots as a place in a projected CRS; transforms into it; access to pyproj."""
+"""Site frame: the robots' metric frame within a projected CRS; transforms into it; access to pyproj."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ import numpy.typing as npt
 
 from ..errors import CrsError
 
-# --- The way to pyproj, which is imported only when a CRS has to be understood ---
+# --- Access to pyproj, which is imported only when a CRS must be resolved ---
 
 
 def projections() -> Any:
     """Return the module ``pyproj``.
 
     A distribution's pyproj seen from a virtual environment looks for its database under the environment's
-    prefix and warns; PROJ itself then finds it where the distribution put it, so the warning is kept quiet.
+    prefix and warns; PROJ itself then finds it where the distribution put it, so the warning is suppressed.
 
     :raises CrsError: when pyproj is not installed.
     """
@@ -61,7 +61,7 @@ def utm_zone_of(longitude: float, latitude: float) -> str:
     return f"EPSG:{(32600 if latitude >= 0 else 32700) + zone}"
 
 
-# --- The site frame: the metres that robots speak, as a place in a projected CRS ---
+# --- The site frame: the robots' metric frame within a projected CRS ---
 
 Points = npt.NDArray[np.float64]
 
@@ -97,7 +97,7 @@ class SiteFrame:
         # Column by column: numpy takes five times as long to add a pair to each row.
         points[:, 0] -= self.origin[0]
         points[:, 1] -= self.origin[1]
-        # Most sites are not turned at all.
+        # Most sites are not rotated.
         return points @ self.axes().T if self.rotation else points
 
     def to_crs(self, xy: Any) -> Points:
@@ -166,11 +166,11 @@ def _points(xy: Any) -> Points:
 # --- From coordinates in any CRS to the site frame, many at once ---
 
 _KEPT = 16
-"""Ways from a CRS to the site that are kept: each costs a few hundredths of a second to find."""
+"""Cached transforms from a CRS to the site: each takes a few hundredths of a second to create."""
 
 
 class CrsTransform:
-    """Where coordinates lie in a site frame, from whatever CRS; any thread may ask."""
+    """Transform of coordinates in any CRS to a site frame; thread-safe."""
 
     def __init__(self, frame: SiteFrame) -> None:
         self._frame = frame
@@ -216,7 +216,7 @@ class CrsTransform:
 # --- From the earth to the site: latitude, longitude and compass heading as a robot's GPS gives them ---
 
 _STEP = 10.0
-"""metres ahead at which it is looked where a heading leads; short against the curvature of any projection."""
+"""metres ahead used to transform a heading; short against the curvature of any projection."""
 
 
 NEAR = 10_000.0
@@ -231,7 +231,7 @@ def is_near(place: tuple[float, float], bounds: SiteBounds) -> bool:
 
 
 class GpsTransform:
-    """Where WGS 84 positions lie in a site frame."""
+    """Transform of WGS 84 positions to a site frame."""
 
     def __init__(self, frame: SiteFrame) -> None:
         self._frame = frame
@@ -286,7 +286,7 @@ class GpsTransform:
         return projections().Geod(ellps="WGS84")
 
 
-# --- Where a robot map lies on the earth, from its leading lines ---
+# --- Georeference of a robot map, from its leading lines ---
 
 _UNPLACED = "write the map with its leading lines (not strict), or choose a format in the site's own metres"
 
@@ -294,7 +294,7 @@ _UNPLACED = "write the map with its leading lines (not strict), or choose a form
 def frame_of_map(meta: Mapping[str, str]) -> SiteFrame | None:
     """Return the frame that the lines crs, origin and rotation of a map give; None when it names no CRS.
 
-    :raises CrsError: naming a line that is not what it must be.
+    :raises CrsError: naming an invalid line.
     """
     crs = meta.get("crs", "").strip()
     if not crs:
@@ -305,9 +305,9 @@ def frame_of_map(meta: Mapping[str, str]) -> SiteFrame | None:
 
 
 def lonlat_of(frame: SiteFrame | None) -> Callable[[Points], Points]:
-    """Return the way from (n, 2) metres in the site frame to (n, 2) longitudes and latitudes (WGS 84).
+    """Return the function from (n, 2) metres in the site frame to (n, 2) longitudes and latitudes (WGS 84).
 
-    :raises CrsError: when there is no frame, or PROJ does not know its CRS or where on the earth it is.
+    :raises CrsError: when there is no frame, or PROJ does not know its CRS or its place on the earth.
     """
     if frame is None:
         raise CrsError(f"The map does not say where on the earth it is: it has no line crs; {_UNPLACED}.")

@@ -17,12 +17,12 @@ from ..json_decoder import DecodingError, decode_json
 from ..roads.network import DEFAULT_SPEED, DRAWN, Centrelines, centrelines
 from .frame import Points, crs_of, projections
 
-# --- What a site has besides obstacles, as plain arrays in the site frame ---
+# --- Centrelines and areas of a site, as plain arrays in the site frame ---
 
 
 @dataclass(frozen=True)
 class Centreline:
-    """The middle of one road: ``points`` is (n, 2), metres in the site frame, as it was digitised.
+    """The centreline of one road: ``points`` is (n, 2), metres in the site frame, as digitised.
 
     ``direction`` is 1 for one way along the line, -1 against it, and 0 for both; ``level`` is 0 on the
     ground, above it on bridges.
@@ -55,7 +55,7 @@ class Area:
 class LayerSpec:
     """A layer's name, its OGR geometry type and its fields with the numpy type of each.
 
-    ``defaults`` are the fields that a site of an older version may lack, with what they are then.
+    ``defaults`` are the fields that a site of an older version may lack, with their values then.
     """
 
     name: str
@@ -66,8 +66,8 @@ class LayerSpec:
     def declared_geometry(self, empty: bool) -> str:
         """Return the geometry type that the layer's table declares.
 
-        A layer of any geometry with nothing in it is to QGIS 3.22 a table without geometry and CRS: an empty
-        one declares polygons.
+        QGIS 3.22 reads an empty layer of any geometry as a table without geometry and CRS: so an empty one
+        declares polygons.
         """
         return "Polygon" if empty and self.geometry == "Unknown" else self.geometry
 
@@ -101,7 +101,7 @@ SURFACES = LayerSpec(
 KEEPOUTS = LayerSpec("keepouts", "Polygon", {"name": str})
 
 
-# --- What else an obstacle has to say, as one field of a layer: a JSON object of texts, or nothing ---
+# --- Extras of an obstacle as one field of a layer: a JSON object of texts, or nothing ---
 
 
 def extras_text(extras: Mapping[str, str]) -> str:
@@ -111,7 +111,7 @@ def extras_text(extras: Mapping[str, str]) -> str:
 
 @lru_cache(maxsize=1000)
 def _text(extras: tuple[tuple[str, str], ...]) -> str:
-    """Return what :func:`extras_text` does; a city has few different ones."""
+    """Return the result of :func:`extras_text`, cached: a city has few different ones."""
     return json.dumps(dict(extras), ensure_ascii=False)
 
 
@@ -132,11 +132,11 @@ def extras_of(text: str | None, where: str) -> dict[str, str]:
     return found
 
 
-# --- The roads of a site as the network takes them ---
+# --- The roads of a site as input of the network ---
 
 
 def road_lines(roads: Sequence[Centreline]) -> Centrelines:
-    """Return ``roads``, at least one, with all that is known of each."""
+    """Return ``roads``, at least one, with all their attributes."""
     return centrelines(
         [road.points for road in roads],
         width=[road.width_m for road in roads],
@@ -148,13 +148,13 @@ def road_lines(roads: Sequence[Centreline]) -> Centrelines:
     )
 
 
-# --- How far around a site it is known what stands there ---
+# --- Extent of known obstacles around a site ---
 
 KNOWN_BEYOND = 100.0
-"""metres: obstacles are published up to so far outside the site's bounds, for a robot at its edge."""
+"""metres outside the site's bounds within which obstacles are published, for a robot at its edge."""
 
 
-# --- ``site.gpkg`` on disk: layers of geometries and fields, read and written with every defect named ---
+# --- ``site.gpkg`` on disk: layers of geometries and fields, read and written; errors name every defect ---
 
 GEOPACKAGE_FILE = "site.gpkg"
 STAMP_KEY = "FLEET_SITE"
@@ -191,7 +191,7 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
     """Write ``layers`` to the new GeoPackage ``file`` in ``crs``.
 
     Version 1.3 of the format, which GDAL 3.6 and older read. ``stamp`` names the publication this file
-    belongs to. The environment variable OGR_CURRENT_DATE, where set, stands for the time of writing.
+    belongs to. The environment variable OGR_CURRENT_DATE, if set, replaces the time of writing.
 
     :raises LayerError: when the file cannot be written.
     """
@@ -209,7 +209,7 @@ def write_layers(file: Path, layers: Sequence[Layer], crs: str, stamp: str) -> N
 
 
 def read_layers(file: Path, specs: Sequence[LayerSpec], crs: str, stamp: str) -> list[Layer]:
-    """Return the layers ``specs`` of the GeoPackage ``file``, each checked whole.
+    """Return the layers ``specs`` of the GeoPackage ``file``, fully checked.
 
     :raises LayerError: when the file is missing or damaged, belongs to another publication than ``stamp``,
         or a layer is missing, lacks a field, is in another CRS than ``crs`` or has a defective feature.
@@ -254,7 +254,7 @@ def _read(file: Path, spec: LayerSpec, crs: str) -> Layer:
 
 
 def _geometries(wkb: Any, ids: Any, spec: LayerSpec, file: Path) -> np.ndarray[Any, Any]:
-    # A GeoPackage keeps unclosed rings and half geometries; shapely does not say which one it was.
+    # A GeoPackage may hold unclosed rings and incomplete geometries; shapely does not say which one it was.
     with np.errstate(invalid="ignore"):
         geometries: np.ndarray[Any, Any] = _shapely().from_wkb(wkb, on_invalid="ignore")
     unreadable = _shapely().is_missing(geometries) & np.array([blob is not None for blob in wkb], dtype=bool)
@@ -275,7 +275,7 @@ def _check_crs(file: Path, spec: LayerSpec, found: str | None, expected: str) ->
 
 
 def check_features(layer: Layer, place: str) -> None:
-    """Raise :class:`LayerError` for the first feature with no usable geometry or number.
+    """Raise :class:`LayerError` for the first feature without a usable geometry or number.
 
     ``place`` is the file, for messages.
     """

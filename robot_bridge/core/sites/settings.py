@@ -1,4 +1,4 @@
-"""``site.toml``: what a published site is called, where it lies and which limits hold on it."""
+"""``site.toml``: name, frame, bounds and limits of a published site."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ class SiteSettings:
 
     @property
     def stamp(self) -> str:
-        """What both files of one publication carry."""
+        """The stamp in both files of one publication."""
         return f"{self.id} version {self.version}"
 
     @property
@@ -107,7 +107,7 @@ class SiteSettings:
 
 
 class SettingsSource(Protocol):
-    """What knows the settings of a site, which may be others tomorrow."""
+    """A source of a site's settings, which may change."""
 
     @property
     def settings(self) -> SiteSettings:
@@ -117,7 +117,7 @@ class SettingsSource(Protocol):
 def read_settings(file: Path) -> SiteSettings:
     """Return the settings in ``file``.
 
-    :raises SettingsError: naming the file, the key, its value and what is right.
+    :raises SettingsError: naming the file, the key, its value and the valid values.
     """
     return settings_of(_tables(file), file)
 
@@ -139,7 +139,7 @@ def settings_of(tables: Mapping[str, Any], file: Path) -> SiteSettings:
 
 
 def check_settings(settings: SiteSettings, file: Path) -> None:
-    """Raise :class:`SettingsError` for the first value that has the right type and is still wrong."""
+    """Raise :class:`SettingsError` for the first value of the right type that is invalid."""
     check_values(settings, file)
     try:
         check_site_crs(settings.crs)
@@ -148,7 +148,7 @@ def check_settings(settings: SiteSettings, file: Path) -> None:
 
 
 def check_values(settings: SiteSettings, file: Path) -> None:
-    """As :func:`check_settings`, but for the CRS, which needs pyproj to be understood."""
+    """Like :func:`check_settings`, but without the CRS, whose check needs pyproj."""
     wrong = _first_wrong(settings)
     if wrong is not None:
         raise SettingsError(f"{file}: {wrong}")
@@ -157,9 +157,9 @@ def check_values(settings: SiteSettings, file: Path) -> None:
 def settings_text(settings: SiteSettings, earlier: str = "") -> str:
     """Return ``settings`` as the text of a ``site.toml``.
 
-    In the text of an ``earlier`` one only what a publication settles is changed: table ``[site]``, table
-    ``[liveness]`` and values of ``settings`` that are not the default. Everything else, comments and all, is
-    the operator's and stays.
+    In the text of an ``earlier`` one only what a publication sets is changed: table ``[site]``, table
+    ``[liveness]`` and values of ``settings`` that differ from the default. Everything else, including
+    comments, belongs to the operator and stays.
     """
     everything = asdict(settings)
     tables = {"site": {key: value for key, value in everything.items() if key not in TABLES}}
@@ -188,12 +188,12 @@ TABLES: dict[str, type[Any]] = {
     "limits": LimitSettings,
     "links": LinkOptions,
 }
-"""The tables beside ``[site]``, by name."""
+"""The tables besides ``[site]``, by name."""
 SITE_KEYS = {f.name for f in fields(SiteSettings)} - set(TABLES)
 
 
 def earlier_settings(folder: Path, id: str) -> str:
-    """Return the text of the ``site.toml`` in ``folder``; empty where none is, or one of another site."""
+    """Return the text of the ``site.toml`` in ``folder``; empty if there is none, or one of another site."""
     file = folder / SETTINGS_FILE
     if not file.is_file():
         return ""
@@ -203,7 +203,7 @@ def earlier_settings(folder: Path, id: str) -> str:
 
 
 def _first_wrong(settings: SiteSettings) -> str | None:
-    """Return what is wrong first, None where nothing is."""
+    """Return the first fault, None if there is none."""
     wrong = [*_not_finite(settings), *_broken_rules(settings)]
     wrong += [text for name in TABLES for text in out_of_range(name, getattr(settings, name))]
     return next(iter(wrong), None)

@@ -9,12 +9,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, Literal
 
-# --- The text of a ``site.toml``: written whole, or changed in place with every other line left as it was
-# Python before 3.11, which some QGIS come with, reads no TOML: tables and keys are found by their shape.
+# --- The text of a ``site.toml``: written whole, or changed in place with all other lines kept
+# Python before 3.11, shipped with some QGIS versions, reads no TOML: tables and keys are found by patterns.
 
 _HEADER = re.compile(r"""^[ \t]*\[{1,2}[ \t]*(["'\w.\- \t]+?)[ \t]*\]{1,2}[ \t]*(?:#.*)?$""")
 _KEY = re.compile(r"""^[ \t]*(["']?)([\w-]+)\1[ \t]*=[ \t]*(.*)$""")
-# An unclosed text ends with its line: to look for its end from each of its quotes takes n² steps.
+# An unclosed string ends with its line: searching for its end from each quote would take n² steps.
 _QUOTED = re.compile(r'"(?:[^"\\]|\\.)*"?|\'[^\']*\'|#.*')
 _LONGEST_HEADER = 200
 
@@ -39,7 +39,7 @@ def changed_text(text: str, tables: Mapping[str, Mapping[str, Any]]) -> str:
 
 
 def value_text(text: str, table: str, key: str) -> str | None:
-    """Return what stands behind ``key =`` in ``[table]``, without a comment; None where it does not stand."""
+    """Return the text after ``key =`` in ``[table]``, without a comment; None if the key is missing."""
     lines = text.splitlines()
     start, end = _table(lines, table) or (0, 0)
     found = _keys(lines, start, end).get(key)
@@ -83,7 +83,7 @@ def _table(lines: list[str], table: str) -> tuple[int, int] | None:
 
 
 def _keys(lines: list[str], start: int, end: int) -> dict[str, tuple[int, int]]:
-    """Return the lines [first, last) of each key; an array may go over several."""
+    """Return the lines [first, last) of each key; an array may span several."""
     found, number = {}, start
     while number < end:
         match = _KEY.match(lines[number])
@@ -103,13 +103,13 @@ def _open_brackets(text: str) -> int:
     return bare.count("[") - bare.count("]")
 
 
-# --- The tables of ``site.toml`` beside ``[site]``: what each key means, its default and what it may be
+# --- The tables of ``site.toml`` besides ``[site]``: meaning, default and range of each key
 
 _LONGEST_DAYS = 36500.0
 _LARGEST_IMAGE = 8_000_000
-"""bytes; as text of a statement up to twice that, and a MariaDB as it is installed takes 16 MiB."""
+"""bytes; as text of a statement up to twice that; a MariaDB with default settings accepts 16 MiB."""
 _LARGEST_MAP = 48_000_000
-"""bytes; as base64 in one frame 64 MB, which the reference robot takes."""
+"""bytes; as base64 in one frame 64 MB, which the reference robot accepts."""
 
 
 def _number(default: Any, *, least: float = 0.0, above: bool = False, most: float = math.inf) -> Any:
@@ -130,7 +130,7 @@ class CommandSettings:
     """``expire_after_s``: seconds after which a command that no robot fetched is given up.
 
     Ended commands and tasks, collected cones and cleared emergency stops are deleted after ``keep_days``.
-    ``override_role``: the least role that may send a robot where desk or gateway say that it should not go.
+    ``override_role``: the least role that may override objections of desk or gateway to a command.
     """
 
     expire_after_s: float = _number(300.0, above=True)
@@ -140,7 +140,7 @@ class CommandSettings:
 
 @dataclass(frozen=True)
 class TrajectorySettings:
-    """Which positions are stored, and for how long.
+    """Conditions for storing positions, and how long they are kept.
 
     A position is stored when the robot has moved ``min_distance_m`` or turned ``min_turn_deg`` since the last
     stored one, at most every ``min_interval_s``; and in any case after ``max_interval_s``. It is deleted
@@ -158,11 +158,11 @@ class TrajectorySettings:
 
 @dataclass(frozen=True)
 class ObservationSettings:
-    """What robots may tell: the largest image, how much of one robot waits, and the size of an object.
+    """Limits of observations: the largest image, pending ones of a robot, and the default size of an object.
 
     ``most_pending`` observations of one robot may wait for review; more are refused. ``object_radius_m`` is
     that of an object whose size the robot did not say. Rejected objects are deleted after ``keep_days``,
-    reviewed images after ``keep_images_days``; what waits for review, and what is on the map, stays.
+    reviewed images after ``keep_images_days``; observations pending review or on the map stay.
     """
 
     largest_image_bytes: int = _number(4_000_000, least=1024, most=_LARGEST_IMAGE)
@@ -174,17 +174,17 @@ class ObservationSettings:
 
 @dataclass(frozen=True)
 class AuditSettings:
-    """``keep_days``: after how many days an entry of the audit log, and an ended session, is deleted."""
+    """``keep_days``: days after which entries of the audit log and ended sessions are deleted."""
 
     keep_days: float = _number(365.0, above=True, most=_LONGEST_DAYS)
 
 
 @dataclass(frozen=True)
 class MapSettings:
-    """What maps robots are sent without asking: after Ready, and when the site was published again.
+    """Maps sent to robots without a request: after Ready, and after a new publication of the site.
 
-    The map of the whole site where it has at most ``largest_whole_bytes`` in the binary format; else that of
-    a square of ``window_m`` metres around the robot, or less where much stands there.
+    The map of the whole site if it has at most ``largest_whole_bytes`` in the binary format; else that of a
+    square of ``window_m`` metres around the robot, or less if there are many obstacles.
     """
 
     largest_whole_bytes: int = _number(8_000_000, most=_LARGEST_MAP)
@@ -193,12 +193,12 @@ class MapSettings:
 
 @dataclass(frozen=True)
 class RouteSettings:
-    """How robots drive along roads, and the margins where several do.
+    """Parameters of driving along roads, and the margins between robots.
 
     Paths have points ``spacing_m`` apart at most and arcs of ``turning_radius_m``. A robot is
-    ``robot_width_m`` wide and ``robot_length_m`` long, drives at ``speed_ms`` where it does not show another
-    speed, and is to be ``margin_m`` away from others. ``no_way`` says what becomes of a robot whose road was
-    closed and that has no other way: it is told to ``stop``, or operators are only told (``tell``).
+    ``robot_width_m`` wide and ``robot_length_m`` long, drives at ``speed_ms`` unless it shows another speed,
+    and should stay ``margin_m`` away from others. ``no_way`` is the action for a robot whose road was closed
+    and that has no other way: ``stop`` it, or only notify operators (``tell``).
     """
 
     spacing_m: float = _number(0.5, least=0.01, most=100.0)
@@ -211,20 +211,21 @@ class RouteSettings:
 
     @property
     def radius_m(self) -> float:
-        """Metres: of the circle about a robot's middle that it is within however it stands."""
+        """Radius in metres of the circle about a robot's middle that contains it in any orientation."""
         return math.hypot(self.robot_width_m, self.robot_length_m) / 2
 
 
 @dataclass(frozen=True)
 class QueueSettings:
-    """``on_failure``: whether a robot's queue pauses when it refuses a task or gives it up, or skips that."""
+    """``on_failure``: whether a robot's queue pauses when the robot refuses or gives up a task, or skips that
+    task."""
 
     on_failure: Literal["pause", "skip"] = "pause"
 
 
 @dataclass(frozen=True)
 class ConeSettings:
-    """Where the cone that a robot puts down or picks up stands: metres ahead of the robot and to its left."""
+    """Position of the cone that a robot puts down or picks up: metres ahead of the robot and to its left."""
 
     offset_ahead_m: float = _number(0.0, least=-20.0, most=20.0)
     offset_left_m: float = _number(0.0, least=-20.0, most=20.0)
@@ -240,11 +241,11 @@ FenceAction = Literal["none", "pause", "abort"]
 
 @dataclass(frozen=True)
 class GeofenceSettings:
-    """What the gateway does by itself when a robot comes into a keepout, or too near to an obstacle.
+    """The gateway's action when a robot enters a keepout, or comes too near to an obstacle.
 
-    Operators are told of it in any case; ``pause`` and ``abort`` stop the robot as an operator's do, once
-    each time that it comes in. Distances are from a robot's middle: ``keepout_clearance_m`` beyond the edge
-    of a keepout, ``obstacle_clearance_m`` from an obstacle, None for the robot's radius after ``[routes]``.
+    Operators are notified in any case; ``pause`` and ``abort`` stop the robot like an operator's, once per
+    entry. Distances are from a robot's middle: ``keepout_clearance_m`` beyond the edge of a keepout,
+    ``obstacle_clearance_m`` from an obstacle, None for the robot's radius after ``[routes]``.
     """
 
     in_keepout: FenceAction = "none"
@@ -255,10 +256,10 @@ class GeofenceSettings:
 
 @dataclass(frozen=True)
 class NearnessSettings:
-    """From where on operators are told of people and vehicles, that are only seen, near robots.
+    """Limits of alarms on people and vehicles, which are only observed, near robots.
 
-    ``metres`` are between the middles of two; 0 switches it off. They are told, too, of who will be so near
-    within ``within_s`` seconds if both go on as they do.
+    ``metres`` are between the middles of two; 0 switches it off. An alarm is also raised for those that will
+    be so near within ``within_s`` seconds if both keep their motion.
     """
 
     metres: float = _number(5.0, most=1000.0)
@@ -270,7 +271,7 @@ class FieldPageOptions:
     """The field page for phones, at ``/field``, unless it is not ``served``.
 
     ``tiles`` is the address of its background map in Web Mercator, with {z}, {x} and {y}, such as that of a
-    WMTS; none is drawn where it is empty. ``attribution`` names whose map that is.
+    WMTS; none is drawn if it is empty. ``attribution`` names the map's owner.
     """
 
     served: bool = True
@@ -281,10 +282,10 @@ class FieldPageOptions:
 
 @dataclass(frozen=True)
 class GatewayOptions:
-    """What ``robot-bridge serve`` takes where its command line does not say it; None for its own default.
+    """Options of ``robot-bridge serve`` that its command line does not set; None for its own default.
 
     ``certificate`` and ``key`` are files in PEM; a relative one lies in the folder of ``site.toml``. ``bus``
-    is that between several gateways of one fleet, and ``when_cut_off`` what becomes of the robots of one that
+    is that between several gateways of one fleet, and ``when_cut_off`` the action for the robots of one that
     reaches neither the database nor any other gateway for five seconds; ``public_address`` is where robots
     reach this one, ``ws://host:port`` or ``wss://``.
     """
@@ -301,7 +302,7 @@ class GatewayOptions:
 
 @dataclass(frozen=True)
 class LinkOptions:
-    """Links that the gateway starts and keeps going: files of settings in the site's folder, by kind."""
+    """Links that the gateway starts and keeps running: settings files in the site's folder, by kind."""
 
     tracker: tuple[str, ...] = ()
     vda5050: tuple[str, ...] = ()
@@ -315,7 +316,7 @@ class LinkOptions:
 
 
 def out_of_range(table: str, values: object) -> Iterator[str]:
-    """Yield a sentence for every number of the dataclass ``values`` that its field does not allow."""
+    """Yield a sentence for every number of the dataclass ``values`` outside the range of its field."""
     for f in fields(values):  # type: ignore[arg-type]
         value = getattr(values, f.name)
         if "least" not in f.metadata or value is None:
@@ -332,7 +333,7 @@ def out_of_range(table: str, values: object) -> Iterator[str]:
             yield f"{name} is above {most:.12g}."
 
 
-# --- Table ``[limits]`` of ``site.toml``: what the gateway takes from whoever connects ---
+# --- Table ``[limits]`` of ``site.toml``: what the gateway accepts from its peers ---
 
 
 def _limit(default: float, least: float, most: float) -> Any:
@@ -341,22 +342,21 @@ def _limit(default: float, least: float, most: float) -> Any:
 
 @dataclass(frozen=True)
 class LimitSettings:
-    """What the gateway takes from whoever connects, before it refuses and then closes.
+    """Limits of what the gateway accepts from a peer, before it refuses and then closes.
 
     ``robot_messages_per_s`` and ``desk_messages_per_s`` are for each connection, with a burst of so many at
     once; each robot of a link has those of a robot, and the link ``link_messages_per_s`` for all its frames.
-    ``robots``, ``desks`` and ``links`` are connections in all, ``per_address`` those of one kind from one
-    IP address, ``desks_per_account`` those of one operator. ``pending_per_address`` counts those
-    from one address that have not been let in yet; they have ``handshake_s`` for that, and the oldest
-    makes room for one more. Whoever was let in has ``first_message_s`` to say something; until then a
-    desk makes room for another one. A robot may be silent for ``silent_s`` at most. A client that takes
-    nothing of what is sent to it for ``stuck_s`` is cut off; ``send_buffer_bytes`` is what may wait for
-    it in the system. ``origins`` are the web pages, as ``https://host:port``, whose scripts may connect.
-    ``hosts`` are names of this computer under which the gateway's own pages may be asked for, beside those
-    of its certificate.
+    ``robots``, ``desks`` and ``links`` are connections in all, ``per_address`` those of one kind from one IP
+    address, ``desks_per_account`` those of one operator. ``pending_per_address`` counts those from one
+    address that are not admitted yet; they have ``handshake_s`` for that, and the oldest makes room for one
+    more. An admitted peer has ``first_message_s`` for its first message; until then a desk makes room for
+    another one. A robot may be silent for ``silent_s`` at most. A client that receives nothing for
+    ``stuck_s`` is cut off; ``send_buffer_bytes`` may wait for it in the system. ``origins`` are the web
+    pages, as ``https://host:port``, whose scripts may connect. ``hosts`` are names of this computer under
+    which the gateway's own pages may be requested, besides those of its certificate.
 
-    A robot that says to be more than ``place_within_m`` outside the site's bounds, or more than ``leap_m``
-    from where it was a moment ago, is not believed and keeps its place on the map.
+    A reported position more than ``place_within_m`` outside the site's bounds, or more than ``leap_m`` from
+    the one a moment ago, is rejected, and the robot keeps its place on the map.
     """
 
     largest_message_bytes: int = _limit(1_048_576, 1024, 256_000_000)

@@ -35,10 +35,10 @@ from .settings import (
 from .settings_tables import value_text
 from .site_cache import CACHE_FILE, SURELY_TOO_LARGE, CacheWriter, SiteCache, read_cache
 
-# --- A site as the gateway serves it: what is on it, and the robot maps cut from it ---
+# --- A site as served by the gateway: its content, and the robot maps cut from it ---
 
 _SMALLEST_NEAR = 20.0
-"""metres; a robot sees so far by itself, whatever stands there."""
+"""metres; within this range a robot's own sensors suffice."""
 
 
 @dataclass(frozen=True)
@@ -51,7 +51,7 @@ class Site:
     surfaces: tuple[Surface, ...]
     keepouts: tuple[geopackage.Area, ...]
     cache: SiteCache | None = None
-    """what was computed of ``outlines`` at publishing; else it is computed when it is needed first."""
+    """data computed from ``outlines`` at publishing; else it is computed at first use."""
 
     @property
     def id(self) -> str:
@@ -80,7 +80,7 @@ class Site:
 
     @property
     def bounds_border(self) -> Border:
-        """What the map of the whole site covers: the bounds in whole centimetres."""
+        """The border of the map of the whole site: the bounds in whole centimetres."""
         return Window.from_bounds(*self.bounds).border
 
     def contains(self, x: float, y: float) -> bool:
@@ -89,11 +89,11 @@ class Site:
 
     @property
     def has_index(self) -> bool:
-        """Whether what maps are cut from is at hand."""
+        """Whether the index that maps are cut from is loaded."""
         return self.cache is not None or "_index" in self.__dict__
 
     def make_index(self) -> None:
-        """Make what maps are cut from, which takes seconds where nothing was computed at publishing."""
+        """Make the index that maps are cut from; this takes seconds if nothing was computed at publishing."""
         assert self._index is not None
 
     def whole_map(self) -> RobotMap:
@@ -101,7 +101,7 @@ class Site:
         return self._map(Window.from_bounds(*self.bounds))
 
     def whole_texts(self) -> Iterable[GroupText]:
-        """Return the text of :meth:`whole_map` in parts, to hold little of it at once."""
+        """Return the text of :meth:`whole_map` in parts, to hold little in memory."""
         if self.cache is not None and self.cache.whole.texts is not None:
             return self.cache.whole.texts()
         return group_texts(self._index.outlines, self.bounds_border)
@@ -111,7 +111,7 @@ class Site:
         return whole_head(self.settings)
 
     def is_too_large(self, most_bytes: int) -> bool:
-        """Tell whether :meth:`whole_map` surely has more bytes than that in the binary format."""
+        """Return whether :meth:`whole_map` surely exceeds ``most_bytes`` in the binary format."""
         whole = None if self.cache is None else self.cache.whole
         if whole is not None and not whole.is_estimate:
             return whole.size > most_bytes
@@ -119,17 +119,17 @@ class Site:
         return size > SURELY_TOO_LARGE * most_bytes
 
     def whole_binary(self) -> bytes | None:
-        """Return :meth:`whole_map` in the binary format where it was made at publishing."""
+        """Return :meth:`whole_map` in the binary format if it was made at publishing, else None."""
         whole = None if self.cache is None else self.cache.whole
         return whole.content if whole is not None and whole.head == self.whole_head() else None
 
     @property
     def segment_count(self) -> int:
-        """How many segments all obstacles have together, about."""
+        """Approximate number of segments of all obstacles."""
         return self._index.count_near(self.bounds_border)
 
     def segments_around(self, x: float, y: float, area: float) -> int:
-        """Return how many segments the map of a square has at most, as :meth:`map_around` makes it.
+        """Return an upper bound for the segments of the map that :meth:`map_around` makes.
 
         :raises WindowError: when the three are no window.
         """
@@ -138,7 +138,7 @@ class Site:
     def map_near(self, x: float, y: float, side: float, most: int) -> RobotMap:
         """Return the map of a square around (x, y), or around the nearest place of the site's bounds.
 
-        It has ``side`` metres, or less where it would have more than about ``most`` segments.
+        Its side is ``side`` metres, or less if it would have more than about ``most`` segments.
         """
         x_min, y_min, x_max, y_max = self.bounds
         x, y = min(max(x, x_min), x_max), min(max(y, y_min), y_max)
@@ -150,8 +150,8 @@ class Site:
     def map_around(self, x: float, y: float, area: float) -> RobotMap:
         """Return the answer to GetMap(x, y, A): a square of ``area`` m² centred on (x, y), site frame.
 
-        :raises WindowError: when the three are no window (no area, NaN), or one of which nothing is known:
-            the empty map of it would say that all is free there.
+        :raises WindowError: when the three are no window (no area, NaN), or one without data: its empty map
+            would mean that all is free there.
         """
         window = Window.square(x, y, area)
         if not self._is_near(window):
@@ -165,7 +165,7 @@ class Site:
         return self._map(window)
 
     def _is_near(self, window: Window) -> bool:
-        """Tell whether any of ``window`` is where it is known what stands."""
+        """Return whether any part of ``window`` is in the area whose obstacles are known."""
         x_min, y_min, x_max, y_max = self.bounds
         apart_x = abs(window.x - (x_min + x_max) / 2) - (window.width + x_max - x_min) / 2
         apart_y = abs(window.y - (y_min + y_max) / 2) - (window.height + y_max - y_min) / 2
@@ -176,12 +176,12 @@ class Site:
 
     @cached_property
     def surface_index(self) -> SurfaceIndex:
-        """What tells the road surface at a place; made when it is asked for first."""
+        """The index of road surfaces; made at first use."""
         return SurfaceIndex(self.surfaces)
 
     @cached_property
     def keepout_index(self) -> KeepoutIndex:
-        """What tells which places and ways come into keepouts; made when it is asked for first."""
+        """The index of places and paths in keepouts; made at first use."""
         return KeepoutIndex([area.rings for area in self.keepouts])
 
     def keepout_between(self, path: Track) -> str | None:
@@ -191,7 +191,7 @@ class Site:
 
     @cached_property
     def fences(self) -> Fences:
-        """What tells which places are in keepouts and at obstacles; made when it is asked for first."""
+        """The index of places in keepouts and at obstacles; made at first use."""
         return Fences.of(self.keepouts, self.outlines, None if self.cache is None else self.cache.fenced)
 
     @cached_property
@@ -212,7 +212,7 @@ def whole_head(settings: SiteSettings) -> str:
 def map_meta(settings: SiteSettings, border: Border) -> dict[str, str]:
     """Return the leading lines of the map of ``border`` of a site (design, section 6).
 
-    One that leaves out some of the site says so by the rectangle of all of it.
+    A map that leaves out part of the site states the rectangle of the whole site.
     """
     frame, whole = settings.frame, Window.from_bounds(*settings.bounds).border
     part_of = {} if border.contains(whole) else {PART_OF: ",".join(f"{edge:.2f}" for edge in whole)}
@@ -226,18 +226,18 @@ def map_meta(settings: SiteSettings, border: Border) -> dict[str, str]:
     }
 
 
-# --- A published site on disk: a folder with ``site.toml`` and ``site.gpkg``, written whole or not at all
+# --- A published site on disk: a folder with ``site.toml`` and ``site.gpkg``, written atomically
 
 log = logging.getLogger(__name__)
 
 MANY = 50_000
-"""Outlines that take seconds to be read from a GeoPackage."""
+"""Number of outlines whose reading from a GeoPackage takes seconds."""
 
 
 def check_site(folder: Path | str) -> SiteSettings:
     """Return the settings of the site published in ``folder``, without reading its layers.
 
-    :raises SiteError: naming what is missing or wrong in the settings, where, and what to do.
+    :raises SiteError: naming the missing or wrong setting, its place, and the remedy.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -251,7 +251,7 @@ def check_site(folder: Path | str) -> SiteSettings:
 def read_site(folder: Path | str) -> Site:
     """Return the site published in ``folder``.
 
-    :raises SiteError: naming what is missing, half there or wrong, where, and what to do.
+    :raises SiteError: naming what is missing, incomplete or wrong, its place, and the remedy.
     """
     folder = Path(folder)
     settings = check_site(folder)
@@ -292,8 +292,8 @@ def read_site(folder: Path | str) -> Site:
 def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles: CacheWriter) -> None:
     """Write ``site.cache`` beside the ``site.gpkg`` in ``folder`` that ``obstacles`` are published in.
 
-    ``text`` is that of ``site.toml``, which says how large a map may be. What a gateway would refuse, or
-    read otherwise, has no such file. Raises OSError.
+    ``text`` is that of ``site.toml``, which limits the size of maps. Nothing is written for obstacles that a
+    gateway would refuse or read differently. Raises OSError.
     """
     largest = value_text(text, "maps", "largest_whole_bytes") or ""
     most = int(largest) if largest.isdecimal() else settings.maps.largest_whole_bytes
@@ -304,9 +304,9 @@ def write_site_cache(folder: Path, settings: SiteSettings, text: str, obstacles:
 
 
 def cache_writer(partial: Path, frame: SiteFrame) -> CacheWriter:
-    """Return what takes the obstacles of a publication that is made in ``partial``; raises OSError.
+    """Return the writer for the obstacles of a publication that is made in ``partial``; raises OSError.
 
-    It is left, as a context manager, before ``partial`` is removed: see :meth:`.StagedFiles.enter`.
+    As a context manager it exits before ``partial`` is removed: see :meth:`.StagedFiles.enter`.
     """
     return CacheWriter(partial / "columns", frame)
 
@@ -325,7 +325,7 @@ def _cache(folder: Path, settings: SiteSettings) -> SiteCache | None:
 
 
 def _publication(settings: SiteSettings) -> dict[str, Any]:
-    """Return what the columns of ``site.cache`` depend on."""
+    """Return the values that the columns of ``site.cache`` depend on."""
     return {
         "site": settings.stamp,
         "frame": [settings.crs, *settings.origin, settings.rotation_deg],
@@ -343,11 +343,11 @@ def write_site(
 ) -> None:
     """Publish a site in ``folder``: all geometry in the site frame, in metres.
 
-    Other files in ``folder`` stay, and so does in ``site.toml`` what the operator set there, see
-    :func:`settings_text`. A publication that is there already is replaced only after the new one
-    is complete; one cut off between its two files is refused by :func:`read_site`, never read half.
+    Other files in ``folder`` stay, and so do the operator's settings in ``site.toml``, see
+    :func:`settings_text`. An existing publication is replaced only after the new one is complete; one
+    interrupted between its two files is refused by :func:`read_site`, never read half.
 
-    :raises SiteError: for what :func:`read_site` would refuse, and when the folder cannot be written.
+    :raises SiteError: for a site that :func:`read_site` would refuse, and when the folder cannot be written.
     """
     folder = Path(folder)
     check_settings(settings, folder / SETTINGS_FILE)
@@ -386,7 +386,7 @@ def write_settings_and_cache(
 ) -> None:
     """Write ``site.toml`` and ``site.cache`` beside the layers in ``staged``, which ``cache`` was given.
 
-    In ``site.toml`` the tables stay that the operator set in the ``earlier`` one, its text. Raises OSError.
+    Tables that the operator set in the ``earlier`` text of ``site.toml`` stay. Raises OSError.
     """
     text = settings_text(settings, earlier)
     (staged.folder / SETTINGS_FILE).write_text(text, encoding="utf-8")
@@ -394,12 +394,12 @@ def write_settings_and_cache(
 
 
 def publish_staged(staged: StagedFiles) -> None:
-    """Put the layers, the settings and the cache in ``staged`` in the place of those that are published.
+    """Replace the published layers, settings and cache by those in ``staged``.
 
-    The cache goes before the files that it belongs to: a gateway does not look at it until they have changed,
-    and one that reads between the replacement of those refuses what it finds and reads no half site.
+    The cache is replaced before the files that it belongs to: a gateway does not read it until they have
+    changed, and one that reads between their replacements refuses the mixture.
 
-    :raises OSError: the block of ``staged`` is to end by it, so that all is as it was.
+    :raises OSError: let the block of ``staged`` end with it, so that everything is rolled back.
     """
     if (staged.folder / CACHE_FILE).is_file():
         staged.publish([CACHE_FILE, geopackage.GEOPACKAGE_FILE, SETTINGS_FILE])
@@ -407,7 +407,7 @@ def publish_staged(staged: StagedFiles) -> None:
         staged.publish([geopackage.GEOPACKAGE_FILE, SETTINGS_FILE], removed=[CACHE_FILE])
 
 
-# --- The published sites that lie in one folder, and which of them may follow one another on one gateway
+# --- The published sites in one folder, and which of them may follow one another on one gateway
 
 
 def sibling_sites(folder: Path) -> list[str]:
@@ -416,7 +416,8 @@ def sibling_sites(folder: Path) -> list[str]:
 
 
 def frame_mismatch(served: SiteSettings, other: SiteSettings) -> str | None:
-    """Return why ``other`` cannot follow ``served`` where commands and positions are kept, None if it can."""
+    """Return why ``other`` cannot replace ``served`` while commands and positions are stored, None if it
+    can."""
     if (served.crs, served.origin, served.rotation_deg) == (other.crs, other.origin, other.rotation_deg):
         return None
     return (
@@ -426,12 +427,12 @@ def frame_mismatch(served: SiteSettings, other: SiteSettings) -> str | None:
 
 
 def frame_text(settings: SiteSettings) -> str:
-    """Return the frame of a site in words: two texts are the same where the frames are, to a micrometre."""
+    """Return the frame of a site in words: two texts are equal if the frames are, to a micrometre."""
     x, y = settings.origin
     return f"{settings.crs}, origin {x:.12g}, {y:.12g}, rotation {settings.rotation_deg:.12g}°"
 
 
-# --- What a site has in a box beside its obstacles: keepouts, and roads with their widths and speeds ---
+# --- Content of a site in a box besides obstacles: keepouts, and roads with widths and speeds ---
 
 
 def areas_in_box(site: Site, box: tuple[float, float, float, float]) -> SiteAreas:
@@ -439,7 +440,7 @@ def areas_in_box(site: Site, box: tuple[float, float, float, float]) -> SiteArea
 
     Closed roads and those on bridges and in tunnels are left out: a robot on the ground drives by others.
 
-    :raises SiteError: where they have more points than one answer holds.
+    :raises SiteError: if they have more points than one answer holds.
     """
     keepouts = [
         SiteArea(area.label, [_places(ring) for ring in area.rings])

@@ -1,4 +1,4 @@
-"""``site.cache``: what is computed of a site's obstacles, made at publishing and mapped by the gateway."""
+"""``site.cache``: data computed from a site's obstacles, made at publishing and mapped by the gateway."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from .frame import SiteFrame
 from .geopackage import extras_of
 from .site_layers import as_read_back, row_spans
 
-# --- What tells one ``site.gpkg`` from every other, whoever has opened it since ---
+# --- Identity of a ``site.gpkg``, whichever program has opened it since ---
 
 _AT_ONCE = 1 << 20
 # SQLite writes there whenever a program opens the file in another journal mode, as QGIS does to read it:
@@ -35,7 +35,7 @@ _VOLATILE = (slice(18, 20), slice(24, 28), slice(92, 100))
 
 
 def geopackage_digest(file: Path) -> str:
-    """Return the SHA-256 of what ``file`` holds, with changes that wait beside it; raises OSError."""
+    """Return the SHA-256 of the content of ``file``, including pending changes beside it; raises OSError."""
     digest = hashlib.sha256()
     with file.open("rb") as source:
         head = bytearray(source.read(_AT_ONCE))
@@ -55,13 +55,13 @@ def _add(digest: hashlib._Hash, source: BinaryIO) -> None:
         digest.update(some)
 
 
-# --- What ``site.cache`` holds of a site: outlines, their index, what is fenced, and the whole map's text
+# --- Content of ``site.cache``: outlines, their index, fenced areas, and the text of the whole map
 
 CACHE_FILE = "site.cache"
 CACHE_CONTENT = 1
-"""The version of what is computed: higher whenever the same site.gpkg would give other columns."""
+"""The version of the computation: increased whenever the same site.gpkg would give other columns."""
 SURELY_TOO_LARGE = 2
-"""times the largest size of a whole map: one that has more, as far as some windows tell, is not tried."""
+"""times the largest size of a whole map: one estimated from some windows to have more is not tried."""
 _NOT_USED = "It is not used; publish the site again, or delete it"
 
 CACHE_COLUMNS = (
@@ -97,19 +97,18 @@ CACHE_COLUMNS = (
     "whole_text",
     "whole_map",
 )
-"""What there may be in the file, in this order."""
+"""The possible columns of the file, in this order."""
 
 Arrays = dict[str, NDArray[Any]]
 Publication = Mapping[str, Any]
-"""What columns depend on beside site.gpkg: the stamp, the frame and the bounds of the site."""
+"""The values that columns depend on besides site.gpkg: the stamp, the frame and the bounds of the site."""
 
 
 @dataclass(frozen=True)
 class WholeMap:
-    """The map of the whole site, made at publishing, of ``head`` and ``texts``; ``content`` is it in binary.
+    """The map of the whole site, made at publishing, of ``head`` and ``texts``; ``content`` is binary.
 
-    Where it is too large to be sent there are no texts; ``size`` is how many bytes it has, or about that
-    many where it ``is_estimate``.
+    If it is too large to send there are no texts; ``size`` is its bytes, approximate if ``is_estimate``.
     """
 
     size: int
@@ -121,7 +120,7 @@ class WholeMap:
 
 @dataclass(frozen=True)
 class SiteCache:
-    """The arrays of one publication; those of a large site stay on the disk until they are looked at."""
+    """The arrays of one publication; those of a large site stay on the disk until accessed."""
 
     index: window_index.OutlineIndex
     fenced: FencedRows
@@ -134,10 +133,10 @@ class SiteCache:
 
 
 def read_cache(file: Path, geopackage: Path, publication: Publication) -> SiteCache:
-    """Return what ``file`` holds, computed of ``geopackage`` as it is now.
+    """Return the content of ``file``, which must be computed from ``geopackage`` as it is now.
 
-    :raises CacheError: for one that is damaged, of another version, or of another publication, saying what to
-        do; and OSError.
+    :raises CacheError: for one that is damaged, of another version, or of another publication, with the
+        remedy; and OSError.
     """
     try:
         _check_same(file, column_file.read_about(file), {"content": CACHE_CONTENT, **publication})
@@ -172,9 +171,9 @@ def _cache_of(columns: column_file.ColumnSet) -> SiteCache:
 
 
 def index_of(arrays: Arrays, grid: Mapping[str, Any]) -> window_index.OutlineIndex:
-    """Return the index that ``arrays`` hold; ``grid`` is what is said of its grid.
+    """Return the index in ``arrays``; ``grid`` is the description of its grid.
 
-    :raises ValueError: naming what is wrong, or KeyError for a column that is missing.
+    :raises ValueError: naming the fault, or KeyError for a missing column.
     """
     notes = window_index.OutlineNotes(
         column_file.Texts(arrays["note_text"], arrays["note_offsets"]),
@@ -186,7 +185,7 @@ def index_of(arrays: Arrays, grid: Mapping[str, Any]) -> window_index.OutlineInd
 
 
 def parts_of(text: NDArray[Any], groups: Iterable[Sequence[Any]]) -> Iterator[window_index.GroupText]:
-    """Yield the parts of ``text``, each of a group and so many bytes."""
+    """Yield the parts of ``text``; ``groups`` holds the group and the bytes of each."""
     end = 0
     for group, length in groups:
         end += length
@@ -253,16 +252,16 @@ def _require(fine: bool | np.bool_, column: str) -> None:
         raise ValueError(column)
 
 
-# --- ``site.cache`` written while the obstacles of a site are read: few of them are in memory at a time
+# --- Writing ``site.cache`` while the obstacles of a site are read: few of them are in memory at a time
 
 _OBSTACLES = 2000
-"""that are passed on together where many come at once."""
+"""that are handled together."""
 
 
 class CacheWriter:
-    """Takes the obstacles of a site and writes ``site.cache`` of them.
+    """Receives the obstacles of a site and writes ``site.cache`` from them.
 
-    ``folder`` is made for what is kept meanwhile, some times as large as ``site.cache``. ``frame`` is the
+    ``folder`` is created for temporary files, several times as large as ``site.cache``. ``frame`` is the
     site's.
     """
 
@@ -295,9 +294,9 @@ class CacheWriter:
                 self._add_waiting()
 
     def write(self, file: Path, geopackage: Path, publication: Publication, head: str, most: int) -> None:
-        """Write the new ``file`` of what was added, which is what ``geopackage`` holds, or none.
+        """Write the new ``file`` from what was added, which must equal ``geopackage``, or write none.
 
-        There is none for obstacles that only ``geopackage`` tells what becomes of. ``head`` is the text of
+        None is written for obstacles whose published form only ``geopackage`` shows. ``head`` is the text of
         the whole map up to its obstacles, ``most`` the largest in bytes that is sent. Raises OSError.
         """
         self._add_waiting()
@@ -322,7 +321,7 @@ class CacheWriter:
             )
 
     def remove(self) -> None:
-        """Delete what was kept; nothing may be added or written any more."""
+        """Delete the temporary files; nothing may be added or written afterwards."""
         self._columns.close()
         for kept in (self._notes, self._segments, self._fences):
             kept.remove()
@@ -369,7 +368,7 @@ class CacheWriter:
     def _add_whole(
         self, index: window_index.OutlineIndex, bounds: Border, head: str, most: int
     ) -> dict[str, Any]:
-        """Return what is said of the map of the whole site, whose columns are added where it is small."""
+        """Return the description of the map of the whole site, whose columns are added if it is small."""
         size, is_estimate, groups = window_index.size_in_binary(index, bounds), True, []
         if size <= SURELY_TOO_LARGE * most:
             groups = self._add_text(index.outlines, bounds)
@@ -390,7 +389,7 @@ class CacheWriter:
         return groups
 
     def _encoded(self, head: str, groups: list[list[Any]]) -> bytes | None:
-        """Return the map in binary; None without the package for it, as in most QGIS."""
+        """Return the map in binary; None without the package for it, as in most QGIS installations."""
         text = self._columns["whole_text"].mapped()
 
         def pieces() -> Iterator[str]:
@@ -403,7 +402,7 @@ class CacheWriter:
 
 
 def _pieces(outlines: Outlines) -> Iterator[Outlines]:
-    """Yield ``outlines``, many of them some at a time."""
+    """Yield ``outlines`` in pieces."""
     if len(outlines.coordinates) <= column_file.AT_ONCE:
         yield outlines
         return

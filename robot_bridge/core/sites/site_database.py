@@ -1,9 +1,9 @@
 """Sites published in PostgreSQL with PostGIS: their address, and the tables that publisher and gateway share.
 
 The schema ``fleet_sites`` holds the newest version of each site: one row in ``sites``, which is switched in
-the transaction that writes all else, and in ``files`` and ``parts`` the files of its folder, which a gateway
-fetches. The layers of a version are tables in a schema of that version, and views in a schema of the site
-stand for those of the newest, for GIS programs.
+the transaction that writes everything else, and in ``files`` and ``parts`` the files of its folder, which a
+gateway fetches. The layers of a version are tables in a schema of that version, and views in a schema of the
+site show those of the newest, for GIS programs.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from .site_cache import CACHE_FILE
 
 SCHEMA = "fleet_sites"
 FORMAT = "sites of Fleet Supervisor, format 1"
-"""The comment of the schema: what it holds, and how."""
+"""The comment of the schema, which identifies its format."""
 SITE_FILES = (CACHE_FILE, GEOPACKAGE_FILE, SETTINGS_FILE)
-"""The files of a site's folder; all but the first are there always."""
+"""The files of a site's folder; all but the first are mandatory."""
 PART_BYTES = 4 << 20
-"""So much of a file is one row: neither side holds more of it at a time."""
+"""Bytes of a file per row: neither side holds more of it at a time."""
 LONGEST_ID = 40
 """Bytes of a site's id, which are part of the names of schemas."""
 
@@ -57,12 +57,12 @@ def view_schema(site: str) -> str:
 
 
 def version_schema(site: str, version: int) -> str:
-    """Return the schema of the tables of one version; no id of a site has the sign between the two."""
+    """Return the schema of the tables of one version; no id of a site contains the separator."""
     return f"{view_schema(site)}@{version}"
 
 
 def digest_text(files: dict[str, str]) -> bytes:
-    """Return what the digest of a version is made of: the names and digests of its ``files``."""
+    """Return the input for the digest of a version: the names and digests of its ``files``."""
     return "".join(f"{digest}  {name}\n" for name, digest in sorted(files.items())).encode()
 
 
@@ -83,14 +83,14 @@ class SiteAddress(NamedTuple):
 
 
 def is_database_address(text: str) -> bool:
-    """Tell whether ``text`` is the address of a PostgreSQL, and no folder."""
+    """Return whether ``text`` is the address of a PostgreSQL database, not a folder."""
     return text.partition("://")[0] in SCHEMES and "://" in text
 
 
 def read_site_address(text: str) -> SiteAddress:
     """Return the parts of ``postgresql://account@host/database#site``.
 
-    :raises SiteError: where the site is missing, or its id cannot be one.
+    :raises SiteError: if the site is missing, or its id is invalid.
     """
     parts = urlsplit(text)
     site = unquote(parts.fragment)

@@ -26,8 +26,8 @@ def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> geopackage.Layer:
 
     A courtyard becomes a hole of the ring before it; a flight of stairs one multi line string of risers.
 
-    :raises LayerError: naming the source of an outline that is no ring where it must be one, or whose
-        risers are not pairs of points.
+    :raises LayerError: naming the source of an outline that should be a ring and is not, or whose risers are
+        not pairs of points.
     """
     geometries: list[Any] = []
     columns: dict[str, list[Any]] = {name: [] for name in geopackage.OBSTACLES.fields}
@@ -39,7 +39,7 @@ def obstacle_layer(outlines: Outlines, frame: SiteFrame) -> geopackage.Layer:
 
 
 def obstacle_values(row: OutlineRow) -> dict[str, Any]:
-    """Return the fields of the feature that ``row`` is published as."""
+    """Return the fields of the published feature of ``row``."""
     return {
         "source": row.source,
         "semantics": row.semantics,
@@ -91,13 +91,13 @@ def outline_groups(outlines: Outlines) -> Iterator[tuple[int, int]]:
 
 
 def group_spans(outlines: Outlines) -> NDArray[np.int64]:
-    """Return what :func:`outline_groups` yields, (n, 2)."""
+    """Return the groups of :func:`outline_groups` as an array, (n, 2)."""
     first = np.flatnonzero(~_joined(outlines))
     return np.column_stack([first, np.append(first[1:], len(outlines))[: len(first)]])
 
 
 def row_spans(outlines: Outlines, obstacles: int) -> Iterator[tuple[int, int]]:
-    """Yield (first, last + 1) of so many obstacles at a time, each with its courtyards."""
+    """Yield (first, last + 1) of ``obstacles`` obstacles at a time, each with its courtyards."""
     first = np.flatnonzero(~_joined(outlines))[::obstacles].tolist()
     yield from pairwise([*first, len(outlines)])
 
@@ -105,12 +105,12 @@ def row_spans(outlines: Outlines, obstacles: int) -> Iterator[tuple[int, int]]:
 def as_read_back(outlines: Outlines, frame: SiteFrame) -> Outlines | None:
     """Return ``outlines`` as :func:`outlines_of` reads them from their own layer.
 
-    None where a ring does not close or a number is not finite, which only the layer tells what becomes of.
+    None if a ring does not close or a number is not finite, as only the layer shows the result then.
     """
     joined, closed = _joined(outlines), is_closed(outlines.shape_type)
     group = np.cumsum(~joined) - 1
     of = np.flatnonzero(~joined)[group] if len(outlines) else group
-    # What is no ring has no holes.
+    # Only rings have holes.
     kept = np.flatnonzero(~joined | closed[of])
     lengths = np.diff(outlines.offsets)[kept]
     if not (np.isfinite(outlines.coordinates).all() and np.isfinite(outlines.height).all() and lengths.all()):
@@ -140,7 +140,7 @@ def as_read_back(outlines: Outlines, frame: SiteFrame) -> Outlines | None:
 
 
 def _joined(outlines: Outlines) -> NDArray[np.bool_]:
-    """Tell which outlines are holes of the one before them, (K,) bool."""
+    """Return a mask of the outlines that are holes of the one before them, (K,) bool."""
     joined = np.zeros(len(outlines), dtype=bool)
     for k in np.flatnonzero(outlines.courtyard).tolist():
         joined[k] = k > 0 and outlines.source[k] == outlines.source[k - 1]
