@@ -1,4 +1,4 @@
-"""What it costs to drive from each of many places to each other, all at once."""
+"""Matrix of driving costs between many places."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ from .network import BACKWARD, FORWARD, SAME, Floats, Ints, Network
 from .routes import REACH, Place, Restrictions
 
 _AT_ONCE_BY_SCIPY, _AT_ONCE_BY_HEAP = 32, 1
-"""How many nodes ways are searched from before whoever waits is told: some tenths of a second's work on the
-roads of a small country."""
+"""Nodes searched between reports of progress: some tenths of a second's work on the roads of a small
+country."""
 
 
 @dataclass(frozen=True)
 class RoadMatrix:
     """``costs`` is (n, n), metres or seconds on the roads from the row's place to the column's.
 
-    Infinity stands where no way leads. Not counted are the metres, (n,) in ``away``, from each place to the
-    nearest road; ``away`` is infinite where none is in reach. ``engine`` says what found the ways.
+    Infinity means no way. Not counted are the metres, (n,) in ``away``, from each place to the nearest road;
+    ``away`` is infinite if none is in reach. ``engine`` names the engine.
     """
 
     costs: Floats
@@ -41,10 +41,10 @@ def road_matrix(
     closed: NDArray[np.bool_] | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> RoadMatrix:
-    """Return what the best routes between all of ``places`` cost, as :class:`~.routes.Router` finds them.
+    """Return the costs of the best routes between all of ``places``, as :class:`~.routes.Router` finds them.
 
-    ``closed``, (edges,), says which edges are closed; by default it is what the roads themselves say.
-    ``progress`` is told which share of the work is done, and may raise to end it.
+    ``closed``, (edges,), flags closed edges; the default comes from the roads themselves. ``progress``
+    receives the finished share of the work, and may raise to end it.
     """
     restrictions = restrictions or Restrictions()
     allowed = restrictions.fit(network) & ~(network.edges.closed if closed is None else closed)
@@ -65,7 +65,7 @@ def road_matrix(
 
 @dataclass(frozen=True)
 class _Ends:
-    """Of each of n places its edge's nodes, (n, 2), and what it costs to go to them and come from them."""
+    """For each of n places, its edge's nodes, (n, 2), and the costs to and from them."""
 
     nodes: Ints
     leaving: Floats
@@ -82,7 +82,7 @@ class _Ends:
         pace = per_edge[edge] / np.where(length > 0, length, 1.0)
         metres = np.column_stack([station, length - station])
         direction = network.edges.direction[edge][:, None]
-        # Who stands on a node stands on all its roads.
+        # A place on a node is on all its roads.
         near = metres <= SAME
         out = near | (direction != np.array([FORWARD, BACKWARD]))
         back = near | (direction != np.array([BACKWARD, FORWARD]))

@@ -16,10 +16,10 @@ import numpy as np
 from ..errors import MissingEngineError
 from .network import Floats, Ints
 
-# --- What a search for routes needs of an engine ---
+# --- The interface of an engine for routes ---
 
 Ends = Sequence[tuple[int, float]]
-"""Nodes with what it costs to come from the start to each, or from each to the goal."""
+"""Nodes with the cost from the start to each, or from each to the goal."""
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Engine(Protocol):
     """Finds cheapest ways on one graph under one set of costs, which may change arc by arc."""
 
     name: str
-    """What people are told was used."""
+    """The engine's name for messages."""
 
     def set_costs(self, arcs: Ints, costs: Floats) -> None:
         """Give ``arcs`` other costs, above 0; infinity closes one."""
@@ -48,7 +48,7 @@ class Engine(Protocol):
 
 
 def cheapest_of_parallel(graph: RouteGraph, costs: Floats) -> Ints:
-    """Return, of the arcs that lead from one node to the same other, the cheapest one each."""
+    """Return the cheapest arc of each group of parallel ones."""
     order = np.lexsort([costs, graph.head, graph.tail])
     tail, head = graph.tail[order], graph.head[order]
     new = np.ones(len(order), bool)
@@ -57,11 +57,11 @@ def cheapest_of_parallel(graph: RouteGraph, costs: Floats) -> Ints:
     return best
 
 
-# --- Dijkstra's algorithm with a heap: slow, and needs nothing ---
+# --- Dijkstra's algorithm with a heap: slow, without dependencies ---
 
 
 class PlainEngine:
-    """Looks around from the start until it comes to the goal."""
+    """Searches outwards from the start until the goal is reached."""
 
     name = "Dijkstra in Python"
 
@@ -112,22 +112,22 @@ class PlainEngine:
 
 
 def scipy_engines(graph: RouteGraph) -> Callable[[Floats], ScipyEngine]:
-    """Return what makes engines on ``graph`` from the cost of each arc.
+    """Return the factory of engines on ``graph`` from the cost of each arc.
 
-    :raises ImportError: where SciPy is not installed, so that another engine can be chosen in time.
+    :raises ImportError: if SciPy is not installed, so that another engine can be chosen in time.
     """
     importlib.import_module("scipy.sparse.csgraph")
     return lambda costs: ScipyEngine(graph, costs)
 
 
 class ScipyEngine:
-    """Searches a sparse matrix, into which changed costs are written where they stand.
+    """Searches a sparse matrix, in which changed costs are written in place.
 
-    Its entries are the pairs of nodes that arcs lead between, in the order of cheapest_of_parallel. It would
-    add up what parallel arcs cost, so that of each pair it has the cheapest arc alone; where that is closed,
-    the entry is infinite.
+    Its entries are the pairs of nodes that arcs lead between, in the order of cheapest_of_parallel. The
+    matrix would add up the costs of parallel arcs, so it holds only the cheapest arc of each pair; if that is
+    closed, the entry is infinite.
 
-    :raises ImportError: where SciPy is not installed.
+    :raises ImportError: if SciPy is not installed.
     """
 
     name = "SciPy"
@@ -190,18 +190,18 @@ def _entries(graph: RouteGraph, order: Ints) -> Ints:
 
 
 # --- Customisable contraction hierarchies (Dibbelt, Strasser and Wagner, 2016) by RoutingKit ---
-# The graph is ordered once; costs are laid over it afterwards, and a few of them are changed in
+# The graph is ordered once; costs are applied to it afterwards, and a few of them can be changed in
 # milliseconds.
 
 _INFINITE = 2**31 - 1
 _UNIT = 1e-4
-"""Metres or seconds in one whole number: RoutingKit counts in 31 bits, so that ways end at 214 km."""
+"""Metres or seconds per integer unit: RoutingKit counts in 31 bits, which limits ways to 214 km."""
 
 
 class ContractionEngines:
     """Makes engines on one graph, which is ordered once, through the package ``routingkit-cch``.
 
-    :raises ImportError: where that package is not installed.
+    :raises ImportError: if that package is not installed.
     """
 
     name = "contraction hierarchies (RoutingKit)"
@@ -224,7 +224,7 @@ class ContractionEngines:
 class ContractionEngine:
     """Finds ways under one set of costs, in whole units of a tenth of a millimetre or millisecond.
 
-    Of two ways that differ by less than rounding either may be found.
+    If two ways differ by less than rounding, either may be found.
     """
 
     name = ContractionEngines.name
@@ -233,7 +233,7 @@ class ContractionEngine:
         self._graph = made_by.graph
         self._costs = costs.copy()
         self._lengths = _Metric(made_by, _whole(costs))
-        # Ways are too short in arcs for this to overflow, so that it knows what cannot be reached.
+        # Ways have too few arcs for this to overflow, so it marks unreachable nodes.
         self._arcs = _Metric(made_by, _one_each(costs))
         self._lock = threading.Lock()
 
@@ -254,15 +254,15 @@ class ContractionEngine:
             if way is not None or self._arcs.way(*_without_costs(starts, goals)) is None:
                 return way
             costs = self._costs.copy()
-        # There is a way, and it is too long to be counted.
+        # There is a way, but it is too long to count.
         return PlainEngine(self._graph, costs).way(starts, goals)
 
 
 class _Metric:
     """One set of whole costs over the ordered graph.
 
-    Changes are laid over it when the next way is asked for: what is closed for one way and opened after it
-    costs no more than what stays closed.
+    Changes are applied when the next way is requested: closing an edge for one way costs no more than leaving
+    it closed.
     """
 
     def __init__(self, made_by: ContractionEngines, costs: Ints) -> None:
@@ -277,8 +277,8 @@ class _Metric:
         if self._changes:
             self._kit.CCHMetricPartialUpdater(self._hierarchy).apply(self._metric, self._changes)
             self._changes = {}
-        # A query belongs to the thread that made it, engines are asked from several, and as long as there is
-        # one the costs cannot be changed. To make one takes less than to hand the question to its thread.
+        # A query belongs to its thread, engines are used from several, and costs cannot change while a query
+        # exists. Creating one takes less time than passing the request to its thread.
         query = self._kit.CCHQuery(self._metric)
         result = query.run_multi(starts, goals)
         if result.distance is None:
@@ -302,7 +302,7 @@ def _whole(costs: Floats) -> Ints:
     return whole
 
 
-# --- The fastest engine that runs here ---
+# --- The fastest available engine ---
 
 EngineFactory = Callable[[Floats], Engine]
 """Makes an engine on one graph from the cost of each arc."""
@@ -314,20 +314,20 @@ _MAKERS: dict[str, tuple[str, str, Callable[[RouteGraph], EngineFactory]]] = {
     "scipy": ("scipy", "scipy", scipy_engines),
     "plain": ("heapq", "", lambda graph: lambda costs: PlainEngine(graph, costs)),
 }
-"""Of each engine the module that it needs, the package that has it, and how engines are made."""
+"""For each engine its module, the package of that, and its factory."""
 
 ENGINES = (AUTOMATIC, *_MAKERS)
 
 
 def engines_for(graph: RouteGraph, name: str = AUTOMATIC) -> EngineFactory:
-    """Return the maker of engines ``name``; of AUTOMATIC the fastest one that runs here.
+    """Return the factory of engines ``name``; for AUTOMATIC the fastest one available.
 
-    :raises MissingEngineError: when ``name`` is none, or its package is not installed.
+    :raises MissingEngineError: when ``name`` is unknown, or its package is not installed.
     """
     if name not in ENGINES:
         raise MissingEngineError(f"There is no engine {name!r} for routes: choose of {', '.join(ENGINES)}.")
     if not len(graph.tail):
-        # There is no way to find, and RoutingKit ends the process on a graph without arcs.
+        # There is no way to find, and RoutingKit crashes the process on a graph without arcs.
         return lambda costs: PlainEngine(graph, costs)
     if name == AUTOMATIC:
         return _fastest(graph)
@@ -342,7 +342,7 @@ def engines_for(graph: RouteGraph, name: str = AUTOMATIC) -> EngineFactory:
 
 
 def safe_engines(graph: RouteGraph) -> EngineFactory:
-    """Return the maker of the fastest engines here that cannot end the process: all but RoutingKit's."""
+    """Return the factory of the fastest engines here that cannot crash the process: all but RoutingKit's."""
     return _fastest(graph, [name for name in _MAKERS if name != "contraction"])
 
 

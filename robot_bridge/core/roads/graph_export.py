@@ -14,13 +14,13 @@ import numpy as np
 from ..errors import RoadExportError
 from .network import BACKWARD, FORWARD, Floats, Ints, Network
 
-# --- The part of a network that is written: open roads, none of which ends where it begins ---
+# --- The exported part of a network: open roads, none of which ends where it begins ---
 
 
 def open_roads(network: Network, closed: Collection[int] = ()) -> Network:
-    """Return the open edges of ``network`` but ``closed``, and the nodes that they have.
+    """Return the open edges of ``network`` except ``closed``, and their nodes.
 
-    Rings become two edges: formats that know an edge by its nodes cannot say which way round it is driven.
+    Rings become two edges: formats that identify an edge by its nodes cannot express its direction.
 
     :raises RoadExportError: when no edge is open.
     """
@@ -64,7 +64,7 @@ def _without_rings(network: Network) -> Network:
 
 
 def _firsts(first: Ints, middles: Ints) -> Ints:
-    """Return where lines begin once each of the points ``middles`` ends one line and begins another."""
+    """Return the first points of lines after splitting at each of the points ``middles``."""
     shifted = first + np.searchsorted(middles, first)
     starts = middles + 1 + np.arange(len(middles))
     merged: Ints = np.sort(np.concatenate([shifted, starts]))
@@ -80,7 +80,7 @@ _DIGITS = 6
 
 @dataclass(frozen=True)
 class LayoutNames:
-    """What the layout, its map and the vehicles that may drive on it are called."""
+    """Names of the layout, its map and the vehicles that may drive on it."""
 
     project: str
     map_id: str = "map"
@@ -90,7 +90,7 @@ class LayoutNames:
 def lif_document(network: Network, names: LayoutNames, exported_at: datetime) -> bytes:
     """Return the layout of ``network``, whose coordinates are metres in the frame of the vehicles' map.
 
-    Roads that are driven both ways become two edges. A road that is not straight has a trajectory of degree
+    Two-way roads become two edges. A road that is not straight has a trajectory of degree
     1, a line through its points.
     """
     at = exported_at.astimezone(timezone.utc)
@@ -114,7 +114,7 @@ def lif_document(network: Network, names: LayoutNames, exported_at: datetime) ->
         ],
     }
     text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    # A node or an edge a line: people and their diffs read it.
+    # One node or edge per line, for readable diffs.
     for key in ("nodeId", "edgeId"):
         text = text.replace(f'{{"{key}":', f'\n{{"{key}":')
     return (text + "\n").encode()
@@ -145,7 +145,7 @@ def _edges(network: Network, names: LayoutNames) -> Iterator[dict[str, Any]]:
                 "maxSpeed": float(edges.speed[k]),
             }
             points = edges.line(k)[::direction]
-            # A vehicle that drives along a line with corners turns in them.
+            # A vehicle on a line with corners turns in them.
             traits["rotationAllowed"] = len(points) > 2
             if len(points) > 2:
                 traits["trajectory"] = _trajectory(points)
@@ -173,11 +173,11 @@ def _node_id(number: int) -> str:
 
 
 # --- A graph for Nav2's route server, as its GeoJsonGraphFileLoader reads it ---
-# The loader passes over the geometry of edges: robots drive straight from node to node. So every point of a
+# The loader ignores the geometry of edges: robots drive straight from node to node. So every point of a
 # line becomes a node, and the edges between them are straight.
 
 STAND_IN_CRS = "urn:ogc:def:crs:EPSG::3857"
-"""What Nav2's own graphs say of metres in a frame that no CRS describes; programs then show metres."""
+"""The CRS in Nav2's own graphs for metres in a frame without a CRS; programs then show metres."""
 
 
 def nav2_route_graph(
@@ -185,8 +185,8 @@ def nav2_route_graph(
 ) -> bytes:
     """Return the graph of ``network``, whose coordinates are metres in the robots' frame ``frame``.
 
-    ``crs`` is the code of the CRS that they are metres of, if of any. ``site_frame``, which says where the
-    frame lies on the earth, becomes a member of its own, which the route server passes over.
+    ``crs`` is the code of their CRS, if any. ``site_frame``, the georeference of the frame, becomes a member
+    of its own, which the route server ignores.
     """
     content: dict[str, Any] = {
         "type": "FeatureCollection",
@@ -207,12 +207,12 @@ def nav2_route_graph(
     ]
     content["features"] = [*nodes, *_pieces(network, ids, xy)]
     text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    # A feature a line: people and their diffs read it.
+    # One feature per line, for readable diffs.
     return (text.replace('{"type":"Feature",', '\n{"type":"Feature",') + "\n").encode()
 
 
 def largest_error(network: Network) -> float:
-    """Return by how many metres the route server moves a node at most: it keeps coordinates in 32 bits."""
+    """Return the largest shift of a node by the route server in metres: it stores coordinates in 32 bits."""
     return float(np.spacing(np.float32(np.abs(network.edges.xy).max()))) / 2.0
 
 
@@ -233,7 +233,7 @@ def _node_points(network: Network, ids: Ints) -> np.ndarray[Any, Any]:
 
 
 def _pieces(network: Network, ids: Ints, xy: list[list[float]]) -> Iterator[dict[str, Any]]:
-    """Yield the straight edges, each direction of its own; their ids follow those of the nodes."""
+    """Yield the straight edges, one per direction; their ids follow those of the nodes."""
     edges = network.edges
     number = len(xy)
     for k in range(len(network)):
@@ -266,7 +266,8 @@ def _edge(
 
 
 def _metadata(network: Network, k: int) -> dict[str, Any]:
-    """Return what scorers and operations are told; numbers as floats, or the server ends by an exception."""
+    """Return the metadata for scorers and operations; numbers as floats, or the server ends with an
+    exception."""
     edges = network.edges
     traits: dict[str, Any] = {
         "abs_speed_limit": float(edges.speed[k]),

@@ -15,31 +15,30 @@ from ..errors import RoadExportError
 from .network import BACKWARD, BOTH, FORWARD, Floats, Network
 
 # --- Lanes of roads as pairs of borders, and the turns that join them at junctions ---
-# Lanes follow one another where they share the points at their ends. Roads that meet at an angle cannot: so
-# each ends short of its junction, and turns lead from every lane that comes in to every lane that goes out.
-# Readers find out by geometry which way a border runs, so borders must not cross: lanes are narrower where
-# a
-# junction is nearer than they are wide, where roads meet at a sharp angle, and in tight corners.
+# Lanes follow one another if they share the points at their ends. Roads that meet at an angle cannot: so each
+# ends short of its junction, and turns lead from every incoming to every outgoing lane. Readers derive the
+# direction of a border from geometry, so borders must not cross: lanes are narrower where a junction is
+# nearer than they are wide, where roads meet at a sharp angle, and in tight corners.
 
 _LARGEST_SHARE = 0.4
-"""The part of a road that one junction may take of it."""
+"""The share of a road that one junction may take."""
 
 _LARGEST_MITRE = 2.0
-"""How much further than straight a border lies from its centreline in corners."""
+"""Limit of a border's distance from its centreline in corners, relative to straight stretches."""
 
 _ROOM = 0.8
-"""The part of the room up to where borders would meet that they use."""
+"""The share of the room up to where borders would meet that they use."""
 
 _STRAIGHT_BACK = -math.cos(math.radians(5.0))
-"""The cosine of the angle from which on a turn leads back the way it came, as onto a road drawn twice."""
+"""The cosine of the angle from which a turn leads back, as onto a road drawn twice."""
 
 _LEAST_M = 0.01
-"""Half of a lane's width where there is no room at all."""
+"""Half of a lane's width if there is no room at all."""
 
 
 @dataclass(frozen=True)
 class LaneBorder:
-    """A line through ``points``, numbers of points of :class:`Lanes`; ``kind`` says what it is."""
+    """A line through ``points``, numbers of points of :class:`Lanes`; ``kind`` is its type."""
 
     points: tuple[int, ...]
     kind: str
@@ -47,7 +46,7 @@ class LaneBorder:
 
 @dataclass(frozen=True)
 class Lane:
-    """What is driven from its first points to its last; ``left`` and ``right`` are numbers of borders.
+    """A lane, driven from its first points to its last; ``left`` and ``right`` are numbers of borders.
 
     Borders that two lanes share may run against the lane. ``name`` is that of the edge, empty for turns.
     """
@@ -60,7 +59,7 @@ class Lane:
 
 @dataclass(frozen=True)
 class _End:
-    """One end of a lane: where left and right border stop, how far they are from the centreline, and speed.
+    """One end of a lane: the ends of both borders, their distances from the centreline, and the speed.
 
     ``heading`` is the unit vector in which the lane is driven there.
     """
@@ -94,7 +93,7 @@ class Lanes:
 
 
 def lanes_of(network: Network, keep_left: bool = False) -> Lanes:
-    """Return the lanes of ``network``: one a direction, each half of the road where it has both."""
+    """Return the lanes of ``network``: one per direction, each half of the road if it has both."""
     made = Lanes()
     setbacks = _setbacks(network)
     lines = [_shortened(network.edges.line(k), *setbacks[k]) for k in range(len(network))]
@@ -164,7 +163,7 @@ def _rooms(network: Network, outwards: Floats, setbacks: Floats) -> Floats:
 def _borders(line: Floats, half: float, outwards: Floats, rooms: Floats) -> tuple[dict[str, Floats], Floats]:
     """Return the lines left, right and in the middle of a road, as seen along ``line``.
 
-    With them comes how far left and right are from the middle at both ends: at most ``rooms``.
+    Also returned: the distances of left and right from the middle at both ends, at most ``rooms``.
     """
     steps = np.diff(line, axis=0)
     lengths = np.hypot(*steps.T)
@@ -172,11 +171,11 @@ def _borders(line: Floats, half: float, outwards: Floats, rooms: Floats) -> tupl
     first, last = _left_of(outwards[0]), _left_of(-outwards[1])
     before, after = np.concatenate([[first], normals]), np.concatenate([normals, [last]])
     turns = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], (before * after).sum(axis=1))
-    # Turns go on from where the roads' nodes lie, not from where the line begins.
+    # Turns continue from the roads' nodes, not from where the line begins.
     before[-1], after[0] = last, first
     between = before + after
     size = np.hypot(*between.T)
-    # Where a line turns back upon itself its normals cancel one another.
+    # If a line turns back upon itself, its normals cancel one another.
     between = np.where(size[:, None] > 1e-9, between / np.maximum(size, 1e-9)[:, None], before)
     mitre = np.minimum(2.0 / np.maximum(size, 1e-9), _LARGEST_MITRE)
     left, right = (np.minimum(half, _inside(sign * turns, lengths)) for sign in (1.0, -1.0))
@@ -195,7 +194,7 @@ def _inside(turns: Floats, lengths: Floats) -> Floats:
     shorter = np.minimum(np.concatenate([[np.inf], lengths]), np.concatenate([lengths, [np.inf]]))
     room = _ROOM / 2.0 * shorter / np.maximum(np.tan(np.maximum(turns, 0.0) / 2.0), 1e-9)
     around = np.concatenate([[np.inf], room, [np.inf]])
-    # A border that comes in far from a corner would cross what leads out of it.
+    # A border that enters far from a corner would cross the one that leaves it.
     least: Floats = np.maximum(np.minimum(np.minimum(around[:-2], around[2:]), room), _LEAST_M)
     return least
 
@@ -272,15 +271,15 @@ def _shortened(line: Floats, at_start: float, at_end: float) -> Floats:
 
 
 def misread_places(lanes: Lanes) -> list[tuple[float, float]]:
-    """Return where lanes lie whose borders cross, (x, y) in metres.
+    """Return the places of lanes whose borders cross, (x, y) in metres.
 
-    Lanelet2 finds out which way a border runs by the side on which it has the middle point of the other;
-    these it takes the wrong way round.
+    Lanelet2 derives the direction of a border from the side of the other's middle point; it reads these in
+    the wrong direction.
     """
     xy = np.array(lanes.points, dtype=np.float64)
     places = []
     for lane in lanes.lanes:
-        # Of a road that is driven against its centreline both borders run against the lane.
+        # If a road is driven against its centreline, both borders run against the lane.
         order = -1 if lane.name.endswith("r") else 1
         left, right = (xy[list(lanes.borders[number].points)][::order] for number in (lane.left, lane.right))
         if _side(left, _middle(right)) >= 0.0 or _side(right, _middle(left)) <= 0.0:
@@ -301,7 +300,7 @@ def _side(line: Floats, point: Floats) -> float:
     share = np.clip((steps * offsets).sum(axis=1) / squares, 0.0, 1.0)
     away = np.hypot(*(offsets - share[:, None] * steps).T)
     across = (steps[:, 0] * offsets[:, 1] - steps[:, 1] * offsets[:, 0]) / np.sqrt(squares)
-    # Beyond a corner two parts are as near: the one that the point is more to the side of tells.
+    # Beyond a corner two parts are equally near: the one with the larger offset decides.
     across[away > away.min() + 1e-9] = 0.0
     return float(across[np.argmax(np.abs(across))])
 
@@ -325,7 +324,7 @@ _LANE = (
 def lanelet2_document(lanes: Lanes, to_lonlat: ToLonLat) -> bytes:
     """Return the map of ``lanes``, whose coordinates are metres in the site frame.
 
-    Nodes have these, too, as ``local_x`` and ``local_y``. Lanelets of roads name their edge as ``road``.
+    Nodes also have these as ``local_x`` and ``local_y``. Lanelets of roads name their edge as ``road``.
 
     :raises RoadExportError: when a position is none on the earth.
     """

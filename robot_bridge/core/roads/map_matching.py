@@ -26,7 +26,7 @@ from .network import (
 
 @dataclass(frozen=True)
 class Foothold:
-    """A point of an edge: ``station`` metres along it, and ``away`` metres from the place that was asked."""
+    """A point of an edge: ``station`` metres along it, and ``away`` metres from the given place."""
 
     edge: int
     station: float
@@ -53,8 +53,8 @@ class NearestEdge:
         begin = np.searchsorted(self._owner, np.arange(len(edges)))
         self._station = total[:-1] - total[begin][self._owner]
         self._metres = metres
-        # A place as one complex number: on as few segments as are near a place the count of steps is what
-        # costs, and this takes half as many.
+        # Places are complex numbers: with the few segments near a place the number of operations dominates,
+        # and this halves it.
         self._from = self._a @ _AS_COMPLEX
         self._step = self._b @ _AS_COMPLEX - self._from
         self._square = np.maximum(np.abs(self._step) ** 2, 1e-18)
@@ -108,7 +108,7 @@ class NearestEdge:
 
     def _in_cells(self, left: float, bottom: float, right: float, top: float) -> Ints:
         """Return the segments in the cells that a box touches; some more than once."""
-        # Plain numbers: with arrays of two the bounds would take longer than the search.
+        # Plain numbers: computing the bounds with arrays of two would take longer than the search.
         least_x, least_y, most_x, most_y = self._bounds
         left, bottom = max(left, least_x), max(bottom, least_y)
         right, top = min(right, most_x), min(top, most_y)
@@ -123,18 +123,18 @@ class NearestEdge:
         return np.concatenate([self._segment[begin:end] for begin, end in spans])
 
 
-# --- Which edges a path runs along: those that it shares the direction and the room of, not those it crosses
+# --- Edges that a path runs along: those whose direction and room it shares, not those that it crosses
 
 _STEP = 0.5
-"""Metres between the places of a path that are looked at."""
+"""Metres between the sampled places of a path."""
 _ASLANT = math.cos(math.radians(40.0))
-"""Beyond this angle a path crosses an edge, it does not run along it."""
+"""Beyond this angle a path crosses an edge instead of running along it."""
 _LEAST = 1.0
 """Metres of a path along an edge below which it only touches that edge, as at a junction."""
 _SAME = 0.01
-"""Metres by which of two edges one must be nearer to be the one that a place is on."""
+"""Metres by which one of two edges must be nearer to be the one that a place is on."""
 _TOGETHER = 64
-"""Places that are looked at together, so that few edges are near them."""
+"""Places that are processed together, so that few edges are near them."""
 
 
 def edges_along(
@@ -144,7 +144,7 @@ def edges_along(
 
     A place of the path is on the nearest edge that it heads along and is no more than half its width away
     from. A path runs along an edge on which it has ``least`` metres, or half of the edge where that is less.
-    Levels are not known of a path and do not count.
+    A path has no levels, so these are ignored.
     """
     network = nearest.network
     places, heading, step = _looked_at(points)
@@ -160,7 +160,7 @@ def edges_along(
 
 
 def _runs(network: Network, places: Floats, among: NDArray[np.bool_] | None, room: float) -> list[slice]:
-    """Return the runs of places that are looked at: those that come near an edge of ``among``."""
+    """Return the runs of places to check: those near an edge of ``among``."""
     begins = np.arange(0, len(places), _TOGETHER)
     if not len(begins) or not len(network):
         return []
@@ -207,7 +207,7 @@ def _looked_at(points: Floats) -> tuple[Floats, Floats, float]:
 
 
 def _on(network: Network, a: Floats, b: Floats, owner: Ints, places: Floats, heading: Floats) -> Ints:
-    """Return the edges that the places are on, each as often as places are on it."""
+    """Return the edges that the places are on, once per place."""
     if not len(a):
         return np.empty(0, np.int64)
     step = b - a
@@ -221,24 +221,24 @@ def _on(network: Network, a: Floats, b: Floats, owner: Ints, places: Floats, hea
     off[(off > network.edges.width[owner] / 2) | (np.abs(heading @ unit.T) < _ASLANT)] = np.inf
     least = off.min(axis=1, keepdims=True)
     place, segment = np.nonzero(np.isfinite(off) & (off <= least + _SAME))
-    # Two segments of one edge meet where a place is as near to either.
+    # A place is equally near to two segments of one edge where they meet.
     once = np.unique(np.column_stack([place, owner[segment]]), axis=0)
     edges: Ints = once[:, 1]
     return edges
 
 
-# --- Roads closed for a time: a stretch of road as it was closed, found again on whatever network is in force
-# Edges have no names that outlive a publication, so that a closure keeps the line of its edge.
+# --- Temporary closures: finding a closed stretch of road on the present network
+# Edges have no ids that outlive a publication, so a closure stores the line of its edge.
 
 BESIDE = 0.5
-"""Metres by which a road may have been moved in a new publication and still be the one that was closed."""
+"""Metres by which a road may move in a new publication and still count as the closed one."""
 
 
 def edges_of_closure(nearest: NearestEdge, line: Floats, level: int) -> Ints:
     """Return the edges that lie where ``line``, (n, 2), was closed on ``level``.
 
     An edge that has been split since is found in all its pieces, one that has been joined to others as the
-    longer edge that it is a part of: rather too much is closed than too little.
+    longer edge that it is a part of: closing too much is safer than closing too little.
     """
     network = nearest.network
     along = edges_along(nearest, line)
@@ -248,7 +248,7 @@ def edges_of_closure(nearest: NearestEdge, line: Floats, level: int) -> Ints:
 
 
 def _beside(network: Network, edge: int, line: Floats) -> bool:
-    """Tell whether the shorter of the edge and ``line`` lies on the longer, so that they are one road."""
+    """Return whether the shorter of the edge and ``line`` lies on the longer, so that they are one road."""
     own = network.edges.line(edge)
     shorter, longer = (own, line) if _metres(own) <= _metres(line) else (line, own)
     middle = _middle(shorter)

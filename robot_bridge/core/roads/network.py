@@ -1,4 +1,4 @@
-"""Road network: centrelines as columns, and edges between nodes, made by splitting them where they meet."""
+"""Road network: centrelines as columns, and edges between nodes, split where they meet."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..errors import RoadInputError
 
-# --- Centrelines of roads as columns: what the network is built from ---
+# --- Centrelines of roads as columns: the input of the network ---
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -21,7 +21,7 @@ BOTH, FORWARD, BACKWARD = 0, 1, -1
 """Directions in which a road may be driven, as seen along its digitised line."""
 
 DEFAULT_SPEED = 1.0
-"""m/s on a road of which no speed is known."""
+"""m/s on a road of unknown speed."""
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def centrelines(
 ) -> Centrelines:
     """Return ``lines``, each (n, 2) with n ≥ 2, as columns; an attribute is one value or one for each line.
 
-    :raises RoadInputError: naming the first road that is none.
+    :raises RoadInputError: naming the first invalid road.
     """
     arrays = [np.asarray(line, dtype=np.float64) for line in lines]
     for k, line in enumerate(arrays):
@@ -141,7 +141,7 @@ def _check(roads: Centrelines) -> None:
 # --- One piece of ground to drive on ---
 
 Origin = Literal["drawn", "generated"]
-"""Where a surface comes from: a person's hand, or the widths of centrelines."""
+"""Origin of a surface: drawn by hand, or generated from the widths of centrelines."""
 
 DRAWN: Final = "drawn"
 GENERATED: Final = "generated"
@@ -161,14 +161,14 @@ class Surface:
     origin: Origin = DRAWN
 
 
-# --- Asking in the midst of long work whether it is still wanted ---
+# --- Cancelling long work ---
 
 CancelCheck = Callable[[], None]
-"""Called between the steps of long work; what it raises ends that, with nothing changed."""
+"""Called between the steps of long work; an exception from it ends the work, with nothing changed."""
 
 
 def never_cancel() -> None:
-    """Let the work go on to its end."""
+    """Never cancel the work."""
 
 
 # --- Which boxes may touch: a grid in plain numpy, so that a stock QGIS needs no spatial library ---
@@ -176,7 +176,7 @@ def never_cancel() -> None:
 _Numbers = TypeVar("_Numbers", int, Ints)
 
 _CELLS_FOR_EACH_BOX = 8.0
-"""How many cells a box covers on average at most: more cells cost memory, fewer cost comparisons."""
+"""Most cells of a box on average: more cells cost memory, fewer cost comparisons."""
 
 
 def boxes_of(a: Floats, b: Floats, margin: float) -> Floats:
@@ -228,11 +228,11 @@ def cell_number(column: _Numbers, row: _Numbers) -> _Numbers:
     return (row << 31) + column
 
 
-# --- Points that are one, and parts that hang together ---
+# --- Coincident points and connected parts ---
 
 
 def same_points(points: Floats, within: float) -> Ints:
-    """Return a label for each of ``points``, (n, 2): those ``within`` metres of one another share it.
+    """Return a label for each of ``points``, (n, 2): those ``within`` metres of one another share one.
 
     The label is the index of the first point of the group.
     """
@@ -250,7 +250,7 @@ def same_points(points: Floats, within: float) -> Ints:
 
 
 def connected(count: int, a: Ints, b: Ints) -> Ints:
-    """Return, for each of ``count`` things, the least index of its part; a[k] and b[k] hang together."""
+    """Return, for each of ``count`` things, the least index of its part; a[k] and b[k] are connected."""
     label = np.arange(count)
     while True:
         least = np.minimum(label[a], label[b])
@@ -264,7 +264,7 @@ def connected(count: int, a: Ints, b: Ints) -> Ints:
 
 
 def foot_on(a: Floats, b: Floats, p: Floats) -> tuple[Floats, Floats]:
-    """Return where on the segments from ``a`` to ``b`` the points nearest to ``p`` are, all (n, 2).
+    """Return the places on the segments from ``a`` to ``b`` nearest to ``p``, all (n, 2).
 
     The first array holds shares of the segments, 0 to 1, the second metres from ``p``; both (n,).
     """
@@ -284,7 +284,8 @@ def flags(count: int, indices: Ints) -> NDArray[np.bool_]:
 
 # --- Roads split where they meet ---
 # Roads of one level meet where they cross or touch. Roads of different levels meet only where one of them
-# ends in a point that the other has too, as the end of a bridge does: over and under one another they pass.
+# ends in a point that the other has too, as the end of a bridge does: otherwise they pass over and under one
+# another.
 
 SAME = 1e-3
 """Metres within which two points are one."""
@@ -307,7 +308,7 @@ class _Segments:
 
 
 def noded(roads: Centrelines, ask: CancelCheck = never_cancel) -> Centrelines:
-    """Return ``roads`` as pieces that meet at their ends only; ends that are one have one coordinate.
+    """Return ``roads`` as pieces that meet only at their ends; coincident ends get equal coordinates.
 
     Points that repeat the one before are left out, and so are roads without length. ``ask`` may raise.
     """
@@ -321,7 +322,7 @@ def noded(roads: Centrelines, ask: CancelCheck = never_cancel) -> Centrelines:
 
 def _without_repeats(roads: Centrelines) -> Centrelines:
     owner = np.repeat(np.arange(len(roads)), roads.counts())
-    # One pass leaves nothing: what stands within SAME of a point that goes is near the one before, too.
+    # One pass is enough: a point within SAME of a removed point is also near the one before it.
     keep = np.ones(len(roads.xy), bool)
     keep[1:] = (owner[1:] != owner[:-1]) | (np.hypot(*np.diff(roads.xy, axis=0).T) > SAME)
     counts = np.bincount(owner[keep], minlength=len(roads))
@@ -332,7 +333,7 @@ def _without_repeats(roads: Centrelines) -> Centrelines:
 
 
 def _meetings(roads: Centrelines, ask: CancelCheck) -> tuple[Floats, Floats]:
-    """Return where roads meet or end: the place of each, a vertex's index plus a share, and its point."""
+    """Return where roads meet or end: the position of each, a vertex's index plus a share, and its point."""
     segments = _Segments.of(roads)
     boxes = boxes_of(segments.a, segments.b, SAME)
     i, j = touching(boxes, boxes)
@@ -362,7 +363,7 @@ def _crossings(segments: _Segments, i: Ints, j: Ints) -> tuple[Floats, Floats]:
     w = q - p
     t = (w[:, 0] * s[:, 1] - w[:, 1] * s[:, 0]) / safe
     u = (w[:, 0] * r[:, 1] - w[:, 1] * r[:, 0]) / safe
-    # Nearer to an end than SAME it is a touch, which is found as such.
+    # Nearer to an end than SAME it is a touch, which is found separately.
     t_min, u_min = (SAME / np.maximum(np.hypot(*v.T), SAME) for v in (r, s))
     hit = slanted & (t > t_min) & (t < 1 - t_min) & (u > u_min) & (u < 1 - u_min)
     xy = p[hit] + t[hit, None] * r[hit]
@@ -405,13 +406,13 @@ def _split(roads: Centrelines, place: Floats, xy: Floats) -> Centrelines:
 
 
 def _lasting(at: Floats, label: Ints, points: Floats, road: Ints) -> NDArray[np.bool_]:
-    """Tell which points along the roads stay: no vertex where a meeting is, no meeting twice."""
+    """Return which points along the roads stay: no vertex at a meeting point, no meeting point twice."""
     again = np.zeros(len(at), bool)
     again[1:] = (road[1:] == road[:-1]) & (
         (at[1:] == at[:-1]) | ((label[1:] >= 0) & (label[1:] == label[:-1]))
     )
     kept = np.flatnonzero(~again)
-    # A vertex that stands a hair from a meeting would make a piece without direction.
+    # A vertex very near to a meeting point would make a piece without direction.
     near = np.hypot(*np.diff(points[kept], axis=0).T) <= SAME
     near &= road[kept][1:] == road[kept][:-1]
     bare = label[kept] < 0
@@ -466,7 +467,7 @@ class Network:
         return connected(len(self.nodes), self.tail, self.head)
 
     def arcs(self) -> tuple[Ints, Ints, Ints]:
-        """Return what may be driven: edge, from node, to node; first along the edges, then against them."""
+        """Return the drivable arcs: edge, from node, to node; first along the edges, then against them."""
         there = np.flatnonzero(self.edges.direction != BACKWARD)
         back = np.flatnonzero(self.edges.direction != FORWARD)
         return (
@@ -485,8 +486,8 @@ def network_of(pieces: Centrelines) -> Network:
 
 
 def build_network(roads: Centrelines, ask: CancelCheck = never_cancel) -> Network:
-    """Return the network of ``roads`` as they are: split where they meet, nothing repaired.
+    """Return the network of ``roads``, split where they meet, without repairs.
 
-    What ``ask`` raises between two steps ends the work.
+    An exception of ``ask`` between two steps ends the work.
     """
     return network_of(noded(roads, ask))

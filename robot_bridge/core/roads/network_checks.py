@@ -25,7 +25,7 @@ from .network import (
     touching,
 )
 
-# --- Ends of roads that miss what they were drawn to meet, and roads drawn twice ---
+# --- Road ends that miss their intended junction, and roads drawn twice ---
 
 
 @dataclass(frozen=True)
@@ -49,23 +49,24 @@ class Gap:
 
 @dataclass(frozen=True)
 class Breaks:
-    """What can be mended: edges drawn twice, edges that reach beyond a junction, and gaps."""
+    """Repairable defects: edges drawn twice, edges that reach beyond a junction, and gaps."""
 
     duplicates: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     overshoots: Ints = field(default_factory=lambda: np.empty(0, np.int64))
     gaps: list[Gap] = field(default_factory=list)
 
     def any(self) -> bool:
-        """Tell whether there is anything to mend."""
+        """Return whether there is anything to repair."""
         return bool(self.edges() or self.gaps)
 
     def edges(self) -> list[int]:
-        """Return the edges that are to go."""
+        """Return the edges to remove."""
         return sorted({*self.duplicates.tolist(), *self.overshoots.tolist()})
 
 
 def breaks_of(network: Network, tolerance: float) -> Breaks:
-    """Return what can be mended of ``network``; ends within ``tolerance`` metres of a road meet it."""
+    """Return the repairable defects of ``network``; ends within ``tolerance`` metres of a road should meet
+    it."""
     return Breaks(duplicates(network), overshoots(network, tolerance), gaps(network, tolerance))
 
 
@@ -236,11 +237,11 @@ class _Search:
             self._label[self._open.pop()] = node
 
 
-# --- What is odd in a road network, each with its place and what can be done ---
+# --- Findings on a road network, each with its place and remedy ---
 
 
 class RoadFindingKind(Enum):
-    """What a finding is about."""
+    """The subject of a finding."""
 
     GAP = "gap"
     OVERSHOOT = "overshoot"
@@ -251,14 +252,14 @@ class RoadFindingKind(Enum):
 
 
 REPAIRED = (RoadFindingKind.GAP, RoadFindingKind.OVERSHOOT, RoadFindingKind.DUPLICATE)
-"""What :func:`.network_checks.repaired` mends; the others are for people to decide."""
+"""What :func:`.network_checks.repaired` repairs; the others need a human decision."""
 
 
 @dataclass(frozen=True)
 class RoadFinding:
     """One finding: the place (x, y) in metres and the road it is about, an index of the input.
 
-    ``other`` is the other road where there is one; ``pattern`` says what is odd, with ``{other}`` for it.
+    ``other`` is the other road, if any; ``pattern`` describes the defect, with ``{other}`` for that road.
     """
 
     kind: RoadFindingKind
@@ -270,16 +271,16 @@ class RoadFinding:
 
     @property
     def text(self) -> str:
-        """What is odd, with the other road as a number."""
+        """The description, with the other road as a number."""
         return self.pattern.format(other=self.other)
 
     def in_words(self, names: Sequence[object]) -> str:
-        """Return what is odd, with ``names`` for the roads."""
+        """Return the description, with ``names`` for the roads."""
         return self.pattern.format(other=names[self.other] if self.other >= 0 else "")
 
 
 def find_road_defects(network: Network, tolerance: float) -> list[RoadFinding]:
-    """Return what is odd in ``network``; ends within ``tolerance`` metres of a road were meant to meet it."""
+    """Return the defects of ``network``; ends within ``tolerance`` metres of a road were meant to meet it."""
     breaks = breaks_of(network, tolerance)
     return [
         *findings_of_breaks(network, breaks),
@@ -358,7 +359,7 @@ def _parts(network: Network) -> list[RoadFinding]:
 
 
 def _one_way(network: Network) -> list[RoadFinding]:
-    """Return a finding for each edge of which one cannot come back to where one was, or cannot come to."""
+    """Return a finding for each edge from which there is no way back, or to which there is no way."""
     edge, tail, head = network.arcs()
     strong = strongly_connected_components(len(network.nodes), tail, head)
     inside = np.zeros(len(network), bool)
@@ -374,7 +375,7 @@ def count_by_kind(findings: list[RoadFinding]) -> dict[str, int]:
     return {kind.value: sum(one.kind is kind for one in findings) for kind in RoadFindingKind}
 
 
-# --- A network mended where ends miss their road by little ---
+# --- Repair of a network whose ends miss their road by little ---
 
 _PASSES = 10
 """Each pass may bring ends within reach of others; real data needs two or three."""
@@ -383,10 +384,10 @@ _PASSES = 10
 def repaired_network(
     roads: Centrelines, tolerance: float, ask: CancelCheck = never_cancel
 ) -> tuple[Network, list[RoadFinding]]:
-    """Return the network of ``roads`` with what could be mended mended, and a finding for each repair.
+    """Return the network of ``roads`` with defects repaired where possible, and a finding for each repair.
 
     Ends within ``tolerance`` metres of a road are moved onto it, ends that reach beyond one by less are cut
-    off, and of roads drawn twice the first is kept. What ``ask`` raises between two steps ends the work.
+    off, and of roads drawn twice the first is kept. An exception of ``ask`` between two steps ends the work.
     """
     network = build_network(roads, ask)
     done: list[RoadFinding] = []
@@ -402,7 +403,7 @@ def repaired_network(
 
 
 def _mended(network: Network, breaks: Breaks, ask: CancelCheck) -> tuple[Network, Breaks]:
-    """Return the network after one pass, and which of ``breaks`` were mended in it."""
+    """Return the network after one pass, and which of ``breaks`` were repaired in it."""
     if breaks.edges():
         keep = np.setdiff1d(np.arange(len(network)), breaks.edges())
         return network_of(network.edges.taken(keep)), Breaks(breaks.duplicates, breaks.overshoots, [])
@@ -411,7 +412,7 @@ def _mended(network: Network, breaks: Breaks, ask: CancelCheck) -> tuple[Network
 
 
 def _without_swaps(gaps: list[Gap]) -> list[Gap]:
-    """Return the gaps to close now: of two ends that were drawn to meet only one moves."""
+    """Return the gaps to close now: of two ends meant to meet only one moves."""
     moved: set[int] = set()
     held: set[int] = set()
     now = []
@@ -426,7 +427,7 @@ def _without_swaps(gaps: list[Gap]) -> list[Gap]:
 
 
 def _joined(network: Network, gaps: list[Gap]) -> Centrelines:
-    """Return the edges with the loose ends of ``gaps`` moved, and points where they come to lie."""
+    """Return the edges with the loose ends of ``gaps`` moved, and with points at their new places."""
     edges = network.edges
     xy, counts = edges.xy.copy(), edges.counts().copy()
     after, points = [], []

@@ -12,13 +12,13 @@ from ..errors import RoadInputError
 from .network import Floats, ranges
 
 _STRAIGHT = math.radians(0.5)
-"""Bends below this are none."""
+"""Smaller bends are ignored."""
 _STEP = math.radians(10.0)
 """The greatest turn between two points of an arc."""
 _LEAST_RADIUS = 0.05
-"""Metres below which an arc is a corner, and its many points no help."""
+"""Metres below which an arc is treated as a corner, without arc points."""
 _WOBBLE = 0.05
-"""Metres by which digitised points may be off the line through their neighbours without being bends."""
+"""Metres by which digitised points may be off the line through their neighbours without counting as bends."""
 
 
 @dataclass(frozen=True)
@@ -40,8 +40,8 @@ class Driving:
 class DensePath:
     """``points`` is (n, 2), metres in the site frame.
 
-    ``tight`` holds the corners, (k, 2), where the road's width or its shape allows no arc of the turning
-    radius, ``least_radius`` the radius of the tightest arc (0 for a corner, infinity for a straight line).
+    ``tight`` holds the corners, (k, 2), where the road's width or shape allows no arc of the turning radius,
+    ``least_radius`` the radius of the tightest arc (0 for a corner, infinity for a straight line).
     ``greatest_offset`` is how far at most an arc is off the centreline.
     """
 
@@ -92,7 +92,7 @@ class _Corners:
         return offset
 
     def arcs(self) -> Floats:
-        """Return the points of all arcs, (m, 2), one after the other; of those that are none the corners."""
+        """Return the points of all arcs, (m, 2), one after the other; for missing arcs the corners."""
         arc = self.radius > 0.0
         steps = np.where(arc, np.maximum(np.ceil(self.turn / _STEP), 1.0), 0.0).astype(np.int64)
         at = np.repeat(np.arange(len(steps)), steps + 1)
@@ -118,7 +118,7 @@ def _corners(line: Floats, width: Floats, driving: Driving) -> _Corners:
     bend = (turn > _STRAIGHT) & (turn <= math.pi - _STRAIGHT)
     half = np.where(bend, turn, 1.0) / 2
     room = np.maximum((np.minimum(width[:-1], width[1:]) - driving.robot_width) / 2, 0.0)
-    # Neighbouring corners share the stretch between them; the ends of the path share with nobody.
+    # Neighbouring corners share the stretch between them; the ends of the path share none.
     share = np.full(len(metres), 0.5)
     share[[0, -1]] = 1.0
     tangent = np.minimum((metres * share)[:-1], (metres * share)[1:])
@@ -149,7 +149,8 @@ def _filled(line: Floats, spacing: float) -> Floats:
 def _without_wobble(points: Floats, widths: Floats, driving: Driving) -> tuple[Floats, Floats, float]:
     """Return the line without points that are no bends, and its widths.
 
-    A piece is as wide as the narrowest of what it stands for. The third is by how much points were off.
+    A piece is as wide as the narrowest that it replaces. The third value is the largest offset of dropped
+    points.
     """
     room = float(max((widths.min() - driving.robot_width) / 2, 0.0)) if len(widths) else 0.0
     keep, wobble = _bends(points, min(_WOBBLE, room / 2))
@@ -162,9 +163,9 @@ def _without_wobble(points: Floats, widths: Floats, driving: Driving) -> tuple[F
 
 
 def _bends(points: Floats, slack: float) -> tuple[NDArray[np.bool_], float]:
-    """Return which points are kept, (n,), by Douglas and Peucker (1973), and by how much others are off.
+    """Return which points are kept, (n,), by Douglas and Peucker (1973), and the offset of the others.
 
-    All pieces of one depth are looked at together.
+    All pieces of one depth are processed together.
     """
     keep = np.zeros(len(points), bool)
     keep[[0, -1]] = True

@@ -26,7 +26,7 @@ class Route:
     """Stretch ``k`` runs along edge ``edges[k]`` from station ``begin[k]`` to ``end[k]``, all (n,).
 
     It runs against the edge where ``end`` is less than ``begin``. ``off_start`` and ``off_goal`` are the
-    metres from the places that were asked for to the network; ``engine`` says what found the way.
+    metres from the requested places to the network; ``engine`` names the engine.
     """
 
     network: Network
@@ -54,7 +54,7 @@ class Route:
         return self.seconds_at(np.inf)
 
     def seconds_at(self, speed: float) -> float:
-        """Return the seconds of one that drives at most ``speed`` m/s, and nowhere faster than the road."""
+        """Return the driving time at ``speed`` m/s at most, and nowhere faster than the road allows."""
         return float((self.lengths / np.minimum(self.network.edges.speed[self.edges], speed)).sum())
 
     @property
@@ -90,7 +90,7 @@ class Route:
 
 
 def stretch(line: Floats, begin: float, end: float) -> Floats:
-    """Return ``line``, (n, 2), from station ``begin`` to station ``end``, turned where ``end`` is less."""
+    """Return ``line``, (n, 2), from station ``begin`` to station ``end``, reversed if ``end`` is less."""
     low, high = min(begin, end), max(begin, end)
     stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(line, axis=0).T))])
     inner = line[(stations > low + 1e-9) & (stations < high - 1e-9)]
@@ -99,7 +99,7 @@ def stretch(line: Floats, begin: float, end: float) -> Floats:
     return cut[::-1] if end < begin else cut
 
 
-# --- How a robot comes from where it is onto its route, and from the route to its goal ---
+# --- The legs from a robot's place onto its route, and from the route to its goal ---
 
 Place = tuple[float, float]
 
@@ -107,8 +107,8 @@ Place = tuple[float, float]
 def with_ends(route: Route, start: Place, goal: Place, turning_radius: float) -> tuple[Floats, Floats]:
     """Return the points from ``start`` to ``goal`` and the width of road along each piece.
 
-    Who stands beside the middle of a road joins it aslant, not square: so far ahead that an arc of
-    ``turning_radius`` metres has room.
+    A robot beside the middle of a road joins it at a slant, not at a right angle: far enough ahead for an arc
+    of ``turning_radius`` metres.
     """
     stations = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route.points, axis=0).T))])
     half = (route.widths[0] / 2, route.widths[-1] / 2)
@@ -136,15 +136,15 @@ Stretches = tuple[Ints, Floats, Floats]
 """Edges with the stations between which each is driven."""
 
 Ends = dict[int, tuple[float, float]]
-"""Nodes with what the stretch between them and a place costs, and their station on the edge of the place."""
+"""Nodes with the cost of the stretch between them and a place, and their station on the place's edge."""
 
 _KEPT = 8
-"""How many sets of restrictions are kept ready."""
+"""Number of restriction sets that are cached."""
 
 
 @dataclass(frozen=True)
 class Restrictions:
-    """What a route may use: roads of these surfaces (None: any) that are at least so many metres wide.
+    """Restrictions of a route: allowed surfaces (None: any) and least width of roads in metres.
 
     ``fastest`` asks for the least seconds instead of the least metres.
     """
@@ -154,7 +154,7 @@ class Restrictions:
     least_width: float = 0.0
 
     def fit(self, network: Network) -> NDArray[np.bool_]:
-        """Return which edges of ``network`` may be used as far as they are open, (n,)."""
+        """Return which edges of ``network`` may be used if open, (n,)."""
         fit: NDArray[np.bool_] = network.edges.width >= self.least_width
         if self.surfaces is not None:
             fit &= np.isin(network.edges.surface.astype(str), sorted(self.surfaces))
@@ -163,7 +163,7 @@ class Restrictions:
 
 @dataclass
 class _Ready:
-    """What finds ways under some restrictions, which edges ``fit`` these, and which of them are ``open``."""
+    """The engine for some restrictions, which edges ``fit`` these, and which of them are ``open``."""
 
     engine: Engine
     fit: NDArray[np.bool_]
@@ -173,9 +173,9 @@ class _Ready:
 class Router:
     """Finds routes on one network. Closed edges are closed for every query from then on.
 
-    ``engine`` is the name of one, or makes one on a graph.
+    ``engine`` is the name of one, or a factory on a graph.
 
-    :raises MissingEngineError: when the engine that is asked for by name is not there.
+    :raises MissingEngineError: when the engine requested by name is not available.
     """
 
     def __init__(
@@ -193,17 +193,17 @@ class Router:
 
     @property
     def nearest(self) -> NearestEdge:
-        """What finds the edge nearest to a place, closed or not."""
+        """The search for the edge nearest to a place, closed or not."""
         return self._nearest
 
     @property
     def engines(self) -> EngineFactory:
-        """What makes its engines."""
+        """The factory of its engines."""
         return self._engines
 
     @property
     def engine_name(self) -> str:
-        """What finds the ways, as people are told."""
+        """The engine's name for messages."""
         return self._ready_for(Restrictions()).engine.name
 
     def copy(self) -> Router:
@@ -230,9 +230,9 @@ class Router:
     ) -> Route:
         """Return the best route from the edge nearest to ``start`` to the edge nearest to ``goal``.
 
-        Edges of ``avoid`` are not used, but for the stretches from ``start`` and to ``goal`` on their own.
+        Edges of ``avoid`` are not used, except for the stretches from ``start`` and to ``goal``.
 
-        :raises OffNetworkError: when no road that may be used is within ``reach`` metres of one of them;
+        :raises OffNetworkError: when no usable road is within ``reach`` metres of one of them;
             NoRouteError when no way leads from one to the other.
         """
         restrictions = restrictions or Restrictions()
@@ -293,7 +293,7 @@ class Router:
         return f"has another surface, {str(edges.surface[edge]) or 'none'}"
 
     def _costs(self, restrictions: Restrictions) -> Floats:
-        """Return what each edge costs, whatever is forbidden."""
+        """Return the cost of each edge, ignoring restrictions and closures."""
         lengths = self.network.lengths
         return lengths / self.network.edges.speed if restrictions.fastest else lengths
 
@@ -339,14 +339,15 @@ class Router:
         return _without_nothing(*made)
 
     def _way(self, starts: Ends, goals: Ends, engine: Engine) -> list[int] | None:
-        # To look for what cannot be there takes an engine longer than anything else.
+        # Searching for a way that cannot exist takes an engine longest.
         parts = self.network.parts
         if {int(parts[node]) for node in starts}.isdisjoint(int(parts[node]) for node in goals):
             return None
         return engine.way(_costs_only(starts), _costs_only(goals))
 
     def _ends(self, foothold: Foothold, restrictions: Restrictions, *, leaving: bool) -> Ends:
-        """Return the ends of its edge that lead on from ``foothold``, or from which it is reached."""
+        """Return the ends of its edge that can be reached from ``foothold``, or from which it can be
+        reached."""
         edge, network = foothold.edge, self.network
         length = float(network.lengths[edge])
         direction = int(network.edges.direction[edge])
@@ -357,14 +358,14 @@ class Router:
         ):
             metres = abs(foothold.station - station)
             cost = metres * self._pace(edge, restrictions)
-            # Who stands on a node stands on all its roads.
+            # A place on a node is on all its roads.
             allowed = direction != against or metres <= SAME
             if allowed and (node not in reached or cost < reached[node][0]):
                 reached[node] = cost, station
         return reached
 
     def _pace(self, edge: int, restrictions: Restrictions) -> float:
-        """Return what a metre of ``edge`` costs."""
+        """Return the cost of a metre of ``edge``."""
         return 1.0 / float(self.network.edges.speed[edge]) if restrictions.fastest else 1.0
 
     def _direct(self, begin: Foothold, end: Foothold) -> Stretches | None:
@@ -398,7 +399,7 @@ class Router:
 
 
 def _without_nothing(edge: Ints, begin: Floats, end: Floats) -> Stretches:
-    """Return the stretches that are longer than nothing; one if none is."""
+    """Return the stretches of non-zero length; one if there is none."""
     some = np.flatnonzero(begin != end)
     some = some if len(some) else np.array([0])
     return edge[some], begin[some], end[some]

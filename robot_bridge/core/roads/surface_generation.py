@@ -1,4 +1,4 @@
-"""Surfaces made of centrelines by their widths: strips, joined at corners, dissolved by class."""
+"""Surfaces generated from centrelines and widths: strips, joined at corners, dissolved by class."""
 
 from __future__ import annotations
 
@@ -34,23 +34,23 @@ def widened(lines: Any, width: Floats) -> Any:
     return shapely.buffer(lines, width / 2, cap_style="flat", join_style="mitre", mitre_limit=MITRE_LIMIT)
 
 
-# --- What is missing between strips that end in one point at an angle: the wedge on the outer side ---
+# --- Gaps between strips that end in one point at an angle: the wedge on the outer side ---
 
 MEETING_M = 0.001
 """Ends this near to one another are one point, as in the network."""
 
 _SHARPEST = np.cos(np.radians(100.0))
-"""Roads that part at a sharper turn do not lead on into each other, and their strips overlap anyway."""
+"""Roads at a sharper turn do not continue each other, and their strips overlap anyway."""
 
 _LONGEST_STUB = 1.0
-"""How many widths of a road next to its end are looked at."""
+"""Length at a road's end that is considered, in widths of the road."""
 
 
 def wedges(roads: Centrelines, rank: Sequence[int]) -> tuple[Any, Ints]:
     """Return polygons that fill the corners between roads that end in one point, and the road of each.
 
-    The road is the one whose class has the lower ``rank``, and its class is that of the wedge, which takes
-    nothing from roads of other classes there. The corner is as wide as the narrower of the two.
+    The road is the one whose class has the lower ``rank``, and its class is that of the wedge, which does not
+    cover roads of other classes there. The corner is as wide as the narrower of the two.
     """
     import shapely
 
@@ -106,19 +106,19 @@ def _pairs(node: Ints) -> tuple[Ints, Ints]:
     return one, other
 
 
-# --- Surfaces made of centrelines by their widths, dissolved by class, kept clear of one another ---
+# --- Surfaces from centrelines and widths, dissolved by class, without overlaps ---
 
 PRECEDENCE = ("slippery", "asphalt", "parking pavement")
-"""Which class keeps the ground where several are: what is slippery must never be taken for grip."""
+"""Precedence of classes on overlapping ground: a slippery surface must never count as one with grip."""
 
 SMALLEST_M2, SMALLEST_HOLE_M2 = 0.01, 1.0
-"""Pieces and holes below these are what is left between two outlines that are almost one."""
+"""Smaller pieces and holes are leftovers between almost identical outlines."""
 
 _AT_ONCE = 2000
-"""Strips that are joined together; a cancel is seen between them."""
+"""Strips joined at a time; cancelling is checked between them."""
 
 Progress = Callable[[float], bool]
-"""Told how much is done, 0 to 1; says whether to go on."""
+"""Receives the finished share of the work, 0 to 1; returns whether to continue."""
 
 
 def generate_surfaces(
@@ -131,10 +131,10 @@ def generate_surfaces(
 
     Roads are strips of their widths, ended square, with mitred corners, within a road and where roads end in
     one point. Strips of one class become one surface. Where classes meet, the one that comes first in
-    ``precedence`` keeps the ground; of those that are not in it the one with less ground, after all that are.
+    ``precedence`` keeps the ground; classes not in it come after, the one with less ground first.
 
-    :raises CancelledError: when ``progress`` says so.
-    :raises RoadsError: where shapely is not installed.
+    :raises CancelledError: when ``progress`` returns false.
+    :raises RoadsError: if shapely is not installed.
     """
     shapely = _shapely()
     names = sorted(set(roads.surface.tolist()))
@@ -167,7 +167,7 @@ def polygon_of(rings: Sequence[Any]) -> Any:
 def rings_of(polygon: Any) -> tuple[Any, ...]:
     """Return the rings of a shapely polygon, the outer one first, (n, 2) each."""
     shapely = _shapely()
-    # Not by coords: inside QGIS, whose GEOS is another, shapely 2.2 fails at that now and then.
+    # Not by coords: inside QGIS, which has another GEOS, shapely 2.2 sometimes fails there.
     return tuple(shapely.get_coordinates(ring) for ring in shapely.get_rings(polygon))
 
 
@@ -208,12 +208,12 @@ def _place(name: str, precedence: Sequence[str]) -> int:
 
 
 def _plain(name: str) -> str:
-    """Return the name of a class as it is compared: ``Parking_pavement`` is ``parking pavement``."""
+    """Return the name of a class in normal form: ``Parking_pavement`` is ``parking pavement``."""
     return " ".join(name.replace("_", " ").split()).lower()
 
 
 def _order(wholes: dict[str, Any], precedence: Sequence[str]) -> list[str]:
-    # Ground of which nothing is known says less than any class.
+    # Ground of unknown class ranks below any class.
     return sorted(
         wholes, key=lambda name: (name == "", _place(name, precedence), _shapely().area(wholes[name]), name)
     )

@@ -1,4 +1,4 @@
-"""Index of road surfaces: which surface is at a place, for one place or a million."""
+"""Index of road surfaces: lookup of the surface at one place or at a million."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def surface_edges(surfaces: Sequence[Surface]) -> SurfaceEdges:
 
 
 def areas_of(edges: SurfaceEdges, count: int) -> Floats:
-    """Return the square metres of each of ``count`` surfaces, holes taken off, whichever way they run."""
+    """Return the area in m² of each of ``count`` surfaces without holes, for any direction of rings."""
     areas = np.zeros(count)
     if len(edges):
         low = edges.a.min(axis=0)
@@ -78,22 +78,20 @@ def areas_of(edges: SurfaceEdges, count: int) -> Floats:
     return areas
 
 
-# --- A grid whose cells know the surfaces that cover them and the few edges that pass through them ---
-# Edges are cut where they leave a column of cells. Whether a place is inside a surface is then told within
-# its
-# own cell: by the edges to its right there, and by whether the cell's right side is inside at that height.
-# Both
-# count with the same numbers, so that no place falls between them. Even-odd rule, as for rings that cross
-# themselves.
+# --- A grid whose cells hold the surfaces that cover them and the few edges that pass through them ---
+# Edges are cut at the borders of columns of cells. Whether a place is inside a surface is then decided within
+# its own cell: by the edges to its right there, and by whether the cell's right side is inside at that
+# height. Both use the same numbers, so that no place falls between them. Even-odd rule, as for rings that
+# cross themselves.
 
 _FAR = 1e300
 _EDGE_CELLS, _BOX_CELLS = 6, 16
-"""How many cells an edge and a surface take at most on average: more cost memory, fewer cost comparisons."""
+"""Most cells of an edge and of a surface on average: more cost memory, fewer cost comparisons."""
 
 
 @dataclass(frozen=True)
 class SurfaceGrid:
-    """Square cells of ``side`` metres from ``low``; the numbers of a place never fall from left to right."""
+    """Square cells of ``side`` metres from ``low``; column numbers never decrease from left to right."""
 
     low: Floats
     side: float
@@ -101,7 +99,7 @@ class SurfaceGrid:
     rows: int
 
     def column(self, x: Floats) -> Ints:
-        """Return the column of each of ``x``, metres from ``low``, the outermost ones for what is beyond."""
+        """Return the column of each of ``x``, metres from ``low``, the outermost ones for places beyond."""
         return _number(x, self.side, self.columns)
 
     def row(self, y: Floats) -> Ints:
@@ -116,12 +114,12 @@ def _number(along: Floats, side: float, count: int) -> Ints:
 
 @dataclass(frozen=True)
 class SurfaceCells:
-    """What each cell of ``grid`` knows.
+    """The contents of each cell of ``grid``.
 
-    Entries ``first[c]`` to ``first[c + 1]`` are the surfaces ``owner`` of cell ``c``, those that count first
-    at the front; ``odd`` says whether the cell's right side, high above, is inside. Edges ``begin[e]`` to
-    ``begin[e + 1]`` of entry ``e`` are rows of ``edges``: y_low, y_high, x at y_low, dx/dy, and how many
-    metres along x a place may be from it to be on it; metres from ``grid.low``.
+    Entries ``first[c]`` to ``first[c + 1]`` are the surfaces ``owner`` of cell ``c``, in order of precedence;
+    ``odd`` says whether the cell's right side, high above, is inside. Edges ``begin[e]`` to ``begin[e + 1]``
+    of entry ``e`` are rows of ``edges``: y_low, y_high, x at y_low, dx/dy, and how many metres along x a
+    place may be from it to be on it; metres from ``grid.low``.
     """
 
     grid: SurfaceGrid
@@ -133,7 +131,7 @@ class SurfaceCells:
 
 
 def surface_cells(edges: SurfaceEdges, rank: Ints) -> SurfaceCells:
-    """Return the cells of surfaces of which those with a lower ``rank``, (count,), count first."""
+    """Return the cells of surfaces; a lower ``rank``, (count,), takes precedence."""
     low = np.minimum(edges.a, edges.b).min(axis=0)
     near = 4 * float(np.spacing(max(np.abs(edges.a).max(), np.abs(edges.b).max())))
     a, b = edges.a - low, edges.b - low
@@ -154,7 +152,7 @@ def surface_cells(edges: SurfaceEdges, rank: Ints) -> SurfaceCells:
 
 @dataclass(frozen=True)
 class _Pieces:
-    """What is left of the edges ``of`` within their ``column``, from (x0, y0) to (x1, y1)."""
+    """The pieces of the edges ``of`` within their ``column``, from (x0, y0) to (x1, y1)."""
 
     of: Ints
     column: Ints
@@ -174,7 +172,7 @@ class _Sides:
 
 
 class _Slots:
-    """A number for each surface and each cell that its box takes: column by column, from below."""
+    """A number for each surface and each cell that its box covers: column by column, from below."""
 
     def __init__(self, grid: SurfaceGrid, boxes: Floats) -> None:
         self.grid = grid
@@ -212,7 +210,7 @@ def _boxes(a: Floats, b: Floats, owner: Ints, count: int) -> Floats:
     boxes[:, :2], boxes[:, 2:] = np.inf, -np.inf
     np.minimum.at(boxes[:, :2], owner, np.minimum(a, b))
     np.maximum.at(boxes[:, 2:], owner, np.maximum(a, b))
-    # A surface without edges takes one cell and is nowhere.
+    # A surface without edges gets one cell but contains no place.
     boxes[~np.isfinite(boxes[:, 0])] = 0.0
     return boxes
 
@@ -259,7 +257,7 @@ def _height(a: Floats, b: Floats, of: Ints, x: Floats) -> Floats:
 
 
 def _over_rows(grid: SurfaceGrid, pieces: _Pieces) -> tuple[Ints, Ints]:
-    """Return each piece, as often as it takes rows, and the rows."""
+    """Return each piece once per row that it covers, and the rows."""
     begin = grid.row(np.minimum(pieces.y0, pieces.y1))
     count = grid.row(np.maximum(pieces.y0, pieces.y1)) - begin + 1
     return np.repeat(np.arange(len(begin)), count), ranges(begin, count)
@@ -307,16 +305,16 @@ def _sorted(slots: _Slots, at: Ints, table: Floats, sides: Ints, rank: Ints) -> 
     )
 
 
-# --- Which surface is at a place, for one place or a million ---
+# --- Lookup of the surface at one place or at a million ---
 
 _AT_ONCE = 1 << 16
-"""Places that are told together: what they need in between stays in the processor's caches."""
+"""Places that are processed together: intermediate data stays in the processor's caches."""
 
 NOWHERE = -1
 
 
 class SurfaceIndex:
-    """Tells the surface at places. It does not change, and any thread may ask it.
+    """Finds the surface at places. Immutable and thread-safe.
 
     A place on the edge of a surface or of its hole is on the surface. Where surfaces lie on one another a
     drawn one counts before a generated one, then the smaller before the larger, then the later before the
@@ -343,7 +341,7 @@ class SurfaceIndex:
         x_min, y_min, side, columns, rows, first, owner, odd, begin, edges = self._views
         x -= x_min
         y -= y_min
-        # As Grid, but what is beyond the outermost cells is nowhere; NaN compares false.
+        # As in SurfaceGrid, but places beyond the outermost cells are nowhere; NaN compares false.
         if not (0.0 <= x < side * (columns + 1) and 0.0 <= y < side * (rows + 1)):
             return NOWHERE
         cell = min(int(y // side), rows - 1) * columns + min(int(x // side), columns - 1)
@@ -384,7 +382,7 @@ class SurfaceIndex:
 
 
 def _views(cells: SurfaceCells) -> tuple[Any, ...]:
-    # Through a memoryview a single number costs a third of what it costs through an array.
+    # Reading a single number through a memoryview takes a third of the time through an array.
     columns = (cells.first, cells.owner, cells.odd, cells.begin, cells.edges.ravel())
     views = [np.ascontiguousarray(column).data for column in columns]
     grid = cells.grid
@@ -404,7 +402,7 @@ def _first_cells(cells: SurfaceCells, places: Floats) -> Ints:
     place, entry = np.repeat(at, count), ranges(cells.first[cell], count)
     inside = _inside(cells, entry, x[place], y[place])
     place, entry = place[inside], entry[inside]
-    # Those of one place stand together, the one that counts in front.
+    # Those of one place are adjacent, the decisive one first.
     in_front = np.ones(len(place), bool)
     in_front[1:] = place[1:] != place[:-1]
     found = np.full(len(places), NOWHERE, np.int64)
@@ -413,7 +411,7 @@ def _first_cells(cells: SurfaceCells, places: Floats) -> Ints:
 
 
 def _inside(cells: SurfaceCells, entry: Ints, x: Floats, y: Floats) -> Any:
-    """Tell for each entry whether its surface holds its place (x, y), all (n,)."""
+    """Return for each entry whether its surface holds its place (x, y), all (n,)."""
     count = cells.begin[entry + 1] - cells.begin[entry]
     pair = np.repeat(np.arange(len(entry)), count)
     edges = cells.edges[ranges(cells.begin[entry], count)]

@@ -52,12 +52,12 @@ class Border(NamedTuple):
         return self.x_max, self.y_min
 
     def contains(self, other: Border) -> bool:
-        """Tell whether no part of ``other`` is outside."""
+        """Return whether no part of ``other`` is outside."""
         lower = self.x_min <= other.x_min and self.y_min <= other.y_min
         return lower and self.x_max >= other.x_max and self.y_max >= other.y_max
 
     def holds(self, x: float, y: float) -> bool:
-        """Tell whether (x, y) is not outside."""
+        """Return whether (x, y) is not outside."""
         return self.x_min <= x <= self.x_max and self.y_min <= y <= self.y_max
 
     @property
@@ -67,7 +67,7 @@ class Border(NamedTuple):
 
 
 class EncodedMap(NamedTuple):
-    """A map in the binary format, what it covers, and whether that is the whole site."""
+    """A map in the binary format, its border, and whether that is the whole site."""
 
     content: bytes
     border: Border
@@ -78,7 +78,7 @@ class EncodedMap(NamedTuple):
 class Obstacle:
     """One obstacle with n oriented segments from ``a`` to ``b``; free space lies to the right of a→b.
 
-    ``text`` is how it stood in the file it was read from, so that it is written back byte for byte; a
+    ``text`` is its text in the source file, so that it is written back byte for byte; a
     changed copy, made by ``dataclasses.replace``, has none.
     """
 
@@ -96,15 +96,16 @@ class Obstacle:
     segment_semantics: tuple[str, ...]
     ext: dict[str, str] = field(default_factory=dict)
     segment_ext: tuple[dict[str, str], ...] = ()
-    """n mappings, or nothing when no segment has any."""
+    """n mappings, or empty if no segment has any."""
     text: str | None = field(default=None, init=False, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
 class BuiltObstacles(Sequence[Obstacle]):
-    """K obstacles with n segments in columns, of which :class:`Obstacle` is made when one is asked for.
+    """K obstacles with n segments in columns; each :class:`Obstacle` is created on access.
 
-    A map that is written as soon as it is built needs none of them, and making them is half of its time.
+    A map that is written right after being built needs none of them, and creating them takes half of its
+    time.
     """
 
     ids: Sequence[int]
@@ -112,7 +113,7 @@ class BuiltObstacles(Sequence[Obstacle]):
     semantics: Sequence[str]
     ext: Sequence[dict[str, str]]
     offsets: Sequence[int]
-    """K + 1 rows: obstacle k has those from ``offsets[k]`` to ``offsets[k + 1]``."""
+    """K + 1 rows: obstacle k has rows ``offsets[k]`` to ``offsets[k + 1]``."""
     a: NDArray[Any]
     """(n, 2) float64, metres in the site frame."""
     b: NDArray[Any]
@@ -159,9 +160,9 @@ class BuiltObstacles(Sequence[Obstacle]):
 class RobotMap:
     """A map of ``border`` with its obstacles.
 
-    ``meta`` are its leading lines (version, crs, origin, rotation, id). ``warnings`` say what was odd in
-    what it was read or built from. ``head`` and ``tail`` are what stood before the first obstacle and after
-    the last one in the file it was read from.
+    ``meta`` are its leading lines (version, crs, origin, rotation, id). ``warnings`` report oddities in its
+    source. ``head`` and ``tail`` are the texts before the first obstacle and after the last one in the source
+    file.
     """
 
     border: Border
@@ -173,7 +174,7 @@ class RobotMap:
 
     @property
     def segment_count(self) -> int:
-        """How many segments all obstacles have together."""
+        """Total number of segments."""
         if isinstance(self.obstacles, BuiltObstacles):
             return len(self.obstacles.a)
         return sum(len(obstacle.a) for obstacle in self.obstacles)
@@ -220,7 +221,7 @@ class Window:
 
     @property
     def border(self) -> Border:
-        """Its rectangle, in whole centimetres, as a map says it."""
+        """Its rectangle, in whole centimetres, as written in a map."""
         return Border(
             round(self.x - self.width / 2, 2),
             round(self.y - self.height / 2, 2),

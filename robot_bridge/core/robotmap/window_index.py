@@ -17,27 +17,27 @@ from .model import Border, RobotMap, Window
 from .outlines import Outlines, Segments, oriented_segments, touching_border, validate_outlines
 from .text_format import write_obstacles
 
-# --- Which of many boxes may touch a rectangle: a grid that only knows the cells where something is ---
+# --- Boxes that may touch a rectangle: a sparse grid of non-empty cells ---
 
 _SMALLEST_CELL = 20.0
 """metres; a robot's window is some cells wide, and a cell holds some walls."""
 _GROWTH = 8
-"""How much larger the cells of the next level are."""
+"""Ratio of cell sizes between levels."""
 _LEVELS = 12
 _FARTHEST = 1 << 28
-"""cells from the first; what lies beyond is taken to be there."""
+"""cells from the first; boxes beyond are placed there."""
 _ROW = 4 * _FARTHEST
 _LEVEL = 2 * _FARTHEST * _ROW
 _FITS = 0.999
-"""of a cell; spares the largest boxes from rounding."""
+"""of a cell; a margin for rounding of the largest boxes."""
 _SIZES = _SMALLEST_CELL * float(_GROWTH) ** np.arange(_LEVELS)
 
 
 class GridCells(NamedTuple):
-    """What a grid is made of: the m cells that are not empty, and where their boxes begin.
+    """The data of a grid: the m non-empty cells, and where their boxes begin.
 
-    ``keys`` is (m,) and ``starts`` (m + 1,) int64. ``placed`` boxes are in cells of ``levels``; behind them
-    come those that are larger than any.
+    ``keys`` is (m,) and ``starts`` (m + 1,) int64. ``placed`` boxes are in cells of ``levels``; those larger
+    than any cell follow.
     """
 
     keys: NDArray[Any]
@@ -50,21 +50,21 @@ class GridCells(NamedTuple):
 class BoxGrid:
     """n boxes from ``low`` to ``high``, (n, 2) each, finite metres, each in the cell of its lower corner.
 
-    A box is in the first level whose cells are larger than itself, so a rectangle has to look at no more
-    than one further row and column of cells. It speaks of boxes by their places when they stand cell by cell.
+    A box is in the first level whose cells are larger than itself, so a query for a rectangle visits at most
+    one further row and column of cells. Boxes are identified by their positions in cell order.
     """
 
     def __init__(self, cells: GridCells) -> None:
         self.cells = cells
         self._origin, self._keys, self._starts = cells.origin, cells.keys, cells.starts
         self._count = int(cells.starts[-1])
-        # Boxes larger than any cell are looked at in every query.
+        # Boxes larger than any cell are returned by every query.
         self._always = [slice(cells.placed, self._count)] if cells.placed < self._count else []
         self._levels = [(level * _LEVEL, _SMALLEST_CELL * float(_GROWTH) ** level) for level in cells.levels]
 
     @classmethod
     def of(cls, low: NDArray[Any], high: NDArray[Any]) -> tuple[BoxGrid, NDArray[Any]]:
-        """Return the grid of boxes, and the boxes cell by cell: (n,) int64."""
+        """Return the grid of boxes, and the boxes in cell order: (n,) int64."""
         origin = np.median(low, axis=0).tolist() if len(low) else [0.0, 0.0]
         level = levels_of(low, high)
         keys = cell_keys(low, level, origin)
@@ -74,7 +74,7 @@ class BoxGrid:
         return cls(made), order
 
     def spans(self, border: Border) -> list[slice]:
-        """Return where in ``order`` the boxes are that may touch ``border``."""
+        """Return the slices of ``order`` with boxes that may touch ``border``."""
         x, y = self._origin
         begins: list[int] = []
         ends: list[int] = []
@@ -119,19 +119,20 @@ def levels_of(low: NDArray[Any], high: NDArray[Any]) -> NDArray[Any]:
 
 
 def level_counts(levels: NDArray[Any]) -> NDArray[Any]:
-    """Return how many of ``levels`` are each of those that there are, and at the end beyond them."""
+    """Return the number of boxes per level, and at the end of those beyond all levels."""
     return np.bincount(levels, minlength=_LEVELS + 1)
 
 
 def placed_in(counts: NDArray[Any]) -> tuple[int, tuple[int, ...]]:
-    """Return how many boxes are in cells, and of which levels those are, told by :func:`level_counts`."""
+    """Return how many boxes are in cells, and the levels of these, from the result of
+    :func:`level_counts`."""
     return int(counts[:_LEVELS].sum()), tuple(np.flatnonzero(counts[:_LEVELS]).tolist())
 
 
 def cell_keys(low: NDArray[Any], level: NDArray[Any], origin: Sequence[float]) -> NDArray[Any]:
     """Return the cell of each box by its lower corner and its level: (n,) int64.
 
-    In their order boxes stand cell by cell, and behind all others those that are larger than any cell.
+    Sorted by it, boxes are in cell order, followed by those larger than any cell.
     """
     cell = np.floor((low - origin) / _SIZES[np.minimum(level, _LEVELS - 1)][:, None])
     column, row = cell.clip(-_FARTHEST, _FARTHEST).astype(np.int64).T
@@ -139,7 +140,7 @@ def cell_keys(low: NDArray[Any], level: NDArray[Any], origin: Sequence[float]) -
 
 
 def _ranges(begins: NDArray[Any], ends: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the numbers of each range one after the other, behind which range they are of."""
+    """Return the range of each number, and the numbers of all ranges one after the other."""
     lengths = ends - begins
     of = np.repeat(np.arange(len(begins)), lengths)
     return of, np.arange(len(of)) + (begins - np.cumsum(lengths) + lengths)[of]
@@ -149,11 +150,11 @@ def _within_reach(cell: int) -> int:
     return max(-_FARTHEST, min(_FARTHEST, cell))
 
 
-# --- Windows of many outlines, each found without looking at the others ---
+# --- Windows of many outlines, found by an index ---
 
 
 class OutlineNotes(NamedTuple):
-    """What is said of outlines that are no obstacles: texts, their boxes, and which hold everywhere."""
+    """Notes on outlines that are no obstacles: texts, boxes, and which apply everywhere."""
 
     texts: Sequence[str]
     low: NDArray[Any]
@@ -161,7 +162,7 @@ class OutlineNotes(NamedTuple):
     everywhere: NDArray[Any]
 
     def within(self, border: Border) -> tuple[str, ...]:
-        """Return the notes on what touches ``border``, and on what has no place."""
+        """Return the notes on outlines that touch ``border``, and on those without a place."""
         if not len(self.texts):
             return ()
         kept = self.everywhere | touching_border(self.low, self.high, border)
@@ -171,9 +172,9 @@ class OutlineNotes(NamedTuple):
 class OutlineIndex:
     """K outlines, checked, oriented and rounded once; its maps are those of :func:`~.builder.build_map`.
 
-    It keeps some 28 bytes for each segment. Making it takes as long as a map of everything, and then a
-    window takes as long as what lies in it. ``outlines`` have every ring closed; ``rows``, (n, 7), are their
-    segments cell by cell (see :func:`.builder.rows_of`).
+    It keeps some 28 bytes for each segment. Creating it takes as long as a map of everything; then the time
+    of a window depends on its content. ``outlines`` have every ring closed; ``rows``, (n, 7), are their
+    segments in cell order (see :func:`.builder.rows_of`).
     """
 
     def __init__(self, outlines: Outlines, rows: NDArray[Any], grid: BoxGrid, notes: OutlineNotes) -> None:
@@ -188,7 +189,7 @@ class OutlineIndex:
         found = validate_outlines(outlines)
         segments = oriented_segments(found.outlines, found.usable)
         grid, order = BoxGrid.of(np.minimum(segments.a, segments.b), np.maximum(segments.a, segments.b))
-        # In the grid's order what lies in a window is some long pieces of memory.
+        # In the grid's order the content of a window is a few long pieces of memory.
         rows = rows_of(segments, found.outlines.height)[order]
         row = found.note_row
         notes = OutlineNotes(found.notes, found.low[row], found.high[row], found.note_everywhere)
@@ -198,7 +199,7 @@ class OutlineIndex:
         return len(self.outlines)
 
     def count_near(self, border: Border) -> int:
-        """Return how many segments are in the cells that ``border`` touches: some more than are in it."""
+        """Return how many segments are in the cells that ``border`` touches, somewhat more than inside it."""
         return sum(span.stop - span.start for span in self.grid.spans(border))
 
     def segments_in(self, border: Border) -> Segments:
@@ -213,23 +214,23 @@ class OutlineIndex:
         return map_of(self.outlines, self.segments_in(border), border, meta, self.notes.within(border))
 
 
-# --- The text of a large map part by part, by the groups that its obstacles stand in ---
+# --- The text of a large map in parts, by groups of obstacles ---
 
 _AT_ONCE = 1000
-"""outlines whose obstacles are in memory together."""
+"""outlines whose obstacles are in memory at a time."""
 _WINDOWS, _SIDE = 40, 60.0
-"""Squares, and their metres, by which the size of all is estimated."""
+"""Number and side in metres of sample squares for estimating the total size."""
 
 
 class GroupText(NamedTuple):
-    """The text of obstacles that stand one after the other, and the group that they are of."""
+    """The text of consecutive obstacles, and their group."""
 
     group: str
     text: str
 
 
 def group_texts(outlines: Outlines, border: Border) -> Iterator[GroupText]:
-    """Yield the text of the map of ``border`` after its head, part by part; every ring is closed."""
+    """Yield the text of the map of ``border`` after its head, in parts; every ring must be closed."""
     groups = [group_of(outlines, row) for row in range(len(outlines))]
     names = sorted(set(groups))
     places = {name: place for place, name in enumerate(names)}
@@ -242,12 +243,12 @@ def group_texts(outlines: Outlines, border: Border) -> Iterator[GroupText]:
 
 
 def merged(texts: Iterable[GroupText], more: Iterable[GroupText]) -> Iterator[GroupText]:
-    """Yield both in the order of their groups; of one group ``more`` comes later."""
+    """Yield both in the order of their groups; within a group ``more`` comes later."""
     return heapq.merge(texts, more, key=lambda part: part.group)
 
 
 def size_in_binary(index: OutlineIndex, border: Border) -> int:
-    """Return about how many bytes the map of ``border`` has in codec 1, told by some windows of it."""
+    """Return the approximate bytes of the map of ``border`` in codec 1, estimated from some windows."""
     if not len(index.rows):
         return 0
     rows = index.rows[np.unique(np.linspace(0, len(index.rows) - 1, _WINDOWS).astype(np.int64))]
