@@ -163,7 +163,7 @@ def _without_wobble(points: Floats, widths: Floats, driving: Driving) -> tuple[F
 
 
 def _bends(points: Floats, slack: float) -> tuple[NDArray[np.bool_], float]:
-    """Return which points are kept, (n,), by Douglas and Peucker (1973), and the offset of the others.
+    """Return which points are kept, (n,), by Douglas and Peucker (1973), and the largest offset.
 
     All pieces of one depth are processed together.
     """

@@ -14,14 +14,15 @@ from .columns import LARGEST_TEXT, ReadingLimits
 from .model import RobotMap
 from .text_format import read_text, write_text
 
-# --- The two compressions of the binary format; nothing is unpacked beyond a stated length ---
+# --- The two compressions of the binary format; unpacking is limited to a stated length ---
 
 _LEVEL, _QUICK_LEVEL = 12, 6
 _SMALL = 1 << 20
-"""bytes of a window's text, which a robot waits for: a quarter of the time, for 8 % more bytes at most."""
+"""bytes of text of a window, for which a robot waits: smaller ones take a quarter of the time, for 8 % more
+bytes at most."""
 _LARGEST_WINDOW = 1 << 27
 _DICTIONARY = 1 << 22
-"""bytes that a reader of LZMA keeps in mind."""
+"""bytes of memory of an LZMA reader."""
 
 
 def by_zstd(content: bytes) -> bytes:
@@ -45,7 +46,7 @@ def _level(length: int) -> int:
 
 
 def from_zstd(body: bytes, most: int) -> bytes:
-    """Return what is in ``body``, or the first ``most`` + 1 bytes of it, which shows that it holds too much.
+    """Return the content of ``body``, or its first ``most`` + 1 bytes, which shows that it holds too much.
 
     Raises MapBinaryError for what is no zstd, and MissingCodecError without zstandard.
     """
@@ -63,18 +64,18 @@ def from_zstd(body: bytes, most: int) -> bytes:
 def by_lzma(content: bytes) -> bytes:
     """Return ``content`` as raw LZMA with its end mark; raises MissingCodecError without Python's lzma.
 
-    It adapts with each byte and has no tables to carry: on a window's two kilobytes it is 6 % smaller than
-    zstd at its best.
+    It adapts with each byte and stores no tables: on a window's two kilobytes it is 6 % smaller than zstd at
+    its best.
     """
     lzma = _lzma()
-    # More than the content is only room for the encoder to clear.
+    # A larger dictionary would only cost the encoder time to clear.
     dictionary = min(_DICTIONARY, max(4096, 1 << (len(content) - 1).bit_length()))
     filters = [{**_filter(lzma), "preset": 9 | lzma.PRESET_EXTREME, "dict_size": dictionary}]
     return bytes(lzma.compress(content, format=lzma.FORMAT_RAW, filters=filters))
 
 
 def from_lzma(body: bytes, most: int) -> bytes:
-    """Return what is in ``body``, or the first ``most`` + 1 bytes of it, which shows that it holds too much.
+    """Return the content of ``body``, or its first ``most`` + 1 bytes, which shows that it holds too much.
 
     Raises MapBinaryError for what is no LZMA, ends too early or goes on after its end mark, and
     MissingCodecError without Python's lzma.
@@ -96,7 +97,7 @@ def from_lzma(body: bytes, most: int) -> bytes:
 
 
 def _filter(lzma: Any) -> dict[str, int]:
-    # Numbers of all columns have much the same bytes, wherever they stand.
+    # Numbers of all columns have similar bytes, independent of their position.
     return {"id": lzma.FILTER_LZMA1, "lc": 0, "lp": 0, "pb": 0}
 
 
@@ -122,7 +123,7 @@ def _lzma() -> Any:
     return lzma
 
 
-# --- The binary format, which SetMap carries: an envelope that is checked before its content is believed
+# --- The binary format, which SetMap carries: an envelope that is checked before its content is trusted
 # offset  bytes  what
 # 0       4      magic, ``RMAP``
 # 4       1      version of the envelope, 1
@@ -150,11 +151,11 @@ VERSION = 1
 CODEC_TEXT, CODEC_COLUMNS = 1, 2
 _ENVELOPE = struct.Struct("<4sBBBBQ32s")
 _SPARE = 4096
-"""bytes that the columns may have more than the text: an empty map is mostly their heads."""
+"""bytes that columns may exceed the text by: an empty map consists mostly of their heads."""
 
 
 class _Codec(NamedTuple):
-    """The version of a body's layout, what compresses it, and what returns it up to a length."""
+    """The version of a body's layout, its compressor, and its decompressor with a length limit."""
 
     version: int
     compress: Callable[[bytes], bytes]
@@ -167,8 +168,8 @@ _CODECS = {CODEC_TEXT: _Codec(0, by_zstd, from_zstd), CODEC_COLUMNS: _Codec(2, b
 def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
     """Return a map, or a map's text, in the binary format.
 
-    The default is codec 1: a robot reads it with zstd and what it has for text, and so does every robot made
-    before codec 2. Codec 2 is about a third of that size and is for who asks for it.
+    The default is codec 1: a robot reads it with zstd and its text reader, as does every robot made before
+    codec 2. Codec 2 is about a third of that size and is sent on request.
 
     Raises MapBinaryError for a text that is too long, or that codec 2 cannot give back byte for byte: one
     with comments or with more than centimetres. Raises MissingCodecError without zstandard for codec 1,
@@ -185,7 +186,7 @@ def encode(content: RobotMap | str, codec: int = CODEC_TEXT) -> bytes:
 
 
 def encode_pieces(pieces: Callable[[], Iterable[str]]) -> bytes:
-    """Return the map whose text is all of ``pieces`` in codec 1; they are asked for twice, and not kept.
+    """Return the map with the text ``pieces()`` in codec 1; it is called twice, and nothing is kept.
 
     Raises MapBinaryError and MissingCodecError as :func:`encode`.
     """
@@ -202,8 +203,8 @@ def encode_pieces(pieces: Callable[[], Iterable[str]]) -> bytes:
 def decode(content: bytes, limit: int | None = None) -> RobotMap:
     """Return the map in ``content``.
 
-    Without ``limit`` what it may unpack to goes by its own size, so that a stranger's file of 1 MB costs at
-    most some 1 s and 200 MB. A ``limit`` in bytes of text is for maps of a gateway that is believed.
+    Without ``limit`` the allowed unpacked size depends on its own size, so that an untrusted file of 1 MB
+    costs at most about 1 s and 200 MB. A ``limit`` in bytes of text is for maps of a trusted gateway.
 
     Raises MapBinaryError naming the check that failed, MissingCodecError, or MapTextError for its text.
     """
@@ -214,7 +215,7 @@ def decode(content: bytes, limit: int | None = None) -> RobotMap:
 
 
 def decode_text(content: bytes, limit: int | None = None) -> str:
-    """Return the text in ``content``; ``limit`` and errors as in :func:`decode`, but for MapTextError."""
+    """Return the text in ``content``; ``limit`` and errors as in :func:`decode`, except MapTextError."""
     codec, length, digest, limits = _check_envelope(content, limit)
     if codec == CODEC_TEXT:
         return _text(content, length, digest, limits)
@@ -247,7 +248,7 @@ def _unpacked(content: bytes, length: int, digest: bytes, limits: ReadingLimits)
 
 
 def _columns(robot_map: RobotMap, text: str, length: int) -> bytes:
-    """Return the map in columns, having seen that its text comes back from them."""
+    """Return the map in columns, after checking that its text can be restored from them."""
     body = pack_map(robot_map)
     if len(body) > length + _SPARE:
         raise MapBinaryError("size check: the columns are larger than the text; use codec 1")
@@ -274,7 +275,8 @@ def _check_text(raw: bytes, length: int, digest: bytes) -> None:
 
 
 def _envelope(codec: int, length: int, digest: bytes) -> bytes:
-    """Return what stands before the body of a text of ``length`` bytes, having seen that it may be read."""
+    """Return the envelope for the body of a text of ``length`` bytes, after checking that readers accept
+    it."""
     if length > LARGEST_TEXT:
         raise MapBinaryError(
             f"size check: the text has {length} bytes, a reader accepts {LARGEST_TEXT}; "
@@ -293,7 +295,7 @@ def _utf_8(text: str) -> bytes:
 
 
 def _check_envelope(content: bytes, limit: int | None) -> tuple[int, int, bytes, ReadingLimits]:
-    """Return codec, length and SHA-256 of the text, and what it may cost to read."""
+    """Return codec, length and SHA-256 of the text, and the limits for reading it."""
     if not content.startswith(MAGIC):
         raise MapBinaryError(f"magic check: the bytes begin with {content[:4]!r}, a robot map with {MAGIC!r}")
     if len(content) < _ENVELOPE.size:

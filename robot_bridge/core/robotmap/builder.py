@@ -22,35 +22,36 @@ from .outlines import (
     without_vanished,
 )
 
-# --- Segments cut by a rectangle; arrays throughout ---
+# --- Clipping of segments by a rectangle; vectorised ---
 
 _ON_BORDER = 1e-5
-"""centimetres; how far floating point may put a cut off its border where coordinates are large."""
+"""centimetres; floating-point error of a cut on its border for large coordinates."""
 
 _HEIGHT, _OUTLINE, _NUMBER = 4, 5, 6
 """Columns of a table of segments, after the two ends."""
 _HELD = ((np.int32, 2.0**31 - 1), (np.int64, 2.0**53))
-"""Types of whole numbers, and up to where each holds all of them."""
+"""Integer types of rows, and the largest exact value of each."""
 _WHOLE = np.array([[0.0], [1.0]])
-"""Where a segment that is not cut begins and ends, of its length."""
+"""Begin and end of an uncut segment, as shares of its length."""
 _INWARDS = np.array([[0, 0], [1, -1], [_ON_BORDER, -_ON_BORDER]]).reshape(3, 2, 1, 1)
-"""From the lower and the upper side to themselves, to what lies beside them, and to how far they reach."""
+"""Offsets from the lower and the upper side to themselves, to the next coordinate inside, and to their
+tolerance."""
 
 
 def table_of(segments: Segments) -> NDArray[Any]:
-    """Return ``segments`` as one row of float64 each, (n, 7), so that they are gathered by one call.
+    """Return ``segments`` as one row of float64 each, (n, 7), so that one call gathers them.
 
-    Its columns are a and b in centimetres, then height, outline and number as they are.
+    Its columns are a and b in centimetres, then height, outline and number unchanged.
     """
     ends = np.rint(np.column_stack([segments.a, segments.b]) * 100)
     return np.column_stack([ends, segments.height, segments.outline, segments.number])
 
 
 def rows_of(segments: Segments, heights: NDArray[Any], first: tuple[int, float] = (0, 0)) -> NDArray[Any]:
-    """Return ``segments`` as whole numbers in as few bytes as hold them, (n, 7).
+    """Return ``segments`` as integers of the smallest sufficient type, (n, 7).
 
-    As :func:`table_of`, but for the height: 1 for that of the outline, which ``heights`` has, 0 for none.
-    ``first`` is added to outlines and numbers: how many outlines, and the last number, come before these.
+    As :func:`table_of`, except the height: 1 for that of the outline, in ``heights``, 0 for none. ``first``,
+    the count of earlier outlines and the last number, is added to outlines and numbers.
     """
     table = table_of(segments)
     table[:, _HEIGHT] = segments.height == heights[segments.outline]
@@ -66,23 +67,23 @@ def corners_of_rows(rows: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def table_of_rows(rows: NDArray[Any], heights: NDArray[Any]) -> NDArray[Any]:
-    """Return what :func:`table_of` said of the segments in ``rows``, made by :func:`rows_of`."""
+    """Return the table, as of :func:`table_of`, of the segments in ``rows``, made by :func:`rows_of`."""
     table = rows.astype(np.float64)
     table[:, _HEIGHT] *= heights[rows[:, _OUTLINE].astype(np.int64)]
     return table
 
 
 def clip(segments: Segments, border: Border) -> Segments:
-    """Return what of the segments lies inside ``border``: :func:`clip_table` of all of them."""
+    """Return the parts of the segments inside ``border``: :func:`clip_table` of all of them."""
     return clip_table(table_of(segments), border)
 
 
 def clip_table(table: NDArray[Any], border: Border) -> Segments:
-    """Return what of the segments in ``table`` lies inside ``border``, in the order of their numbers.
+    """Return the parts of the segments in ``table`` inside ``border``, in the order of their numbers.
 
-    Segments are cut one by one (Liang and Barsky, 1984), so no wall is invented along the border. Where one
-    is cut is rounded to centimetres, which the border is in. A window of a city has so few segments that
-    the number of calls is what counts, not the number of segments: all of them go through every step.
+    Segments are cut one by one (Liang and Barsky, 1984), so no wall is invented along the border. Cuts are
+    rounded to centimetres, the unit of the border. A window of a city has so few segments that the number of
+    calls dominates, not that of segments: all of them go through every step.
     """
     sides = np.array([round(100 * side) for side in border], dtype=np.float64).reshape(2, 2, 1)
     # A column each, side by side in memory.
@@ -99,16 +100,16 @@ def clip_table(table: NDArray[Any], border: Border) -> Segments:
 
 
 def _shares(ends: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
-    """Return from where to where of its length each of n segments is inside, (2, n) from 0 to 1.
+    """Return the shares of its length between which each of n segments is inside, (2, n) from 0 to 1.
 
-    One that is outside does not end after it begins. ``ends`` is (2, 2, n) and ``sides`` (2, 2, 1): from
+    For one outside, the end is not after the begin. ``ends`` is (2, 2, n) and ``sides`` (2, 2, 1): from
     and to, then x and y.
     """
     a, shares = ends[0], np.empty((2, ends.shape[2]))
     direction = ends[1] - a
     with np.errstate(divide="ignore", invalid="ignore"):
-        # Of a segment along a side: minus infinity and infinity inside, infinity twice outside, and no number
-        # on the side itself, where the other axis decides.
+        # For a segment along a side: minus infinity and infinity inside, infinity twice outside, and NaN on
+        # the side itself, where the other axis decides.
         low, high = (sides[0] - a) / direction, (sides[1] - a) / direction
     first, last = np.minimum(low, high), np.maximum(low, high)
     np.fmax(first[0], first[1], out=shares[0])
@@ -119,8 +120,8 @@ def _shares(ends: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
 def _crossings(ends: NDArray[Any], shares: NDArray[Any], sides: NDArray[Any]) -> NDArray[Any]:
     """Return the places, (2, 2, n), at those shares of segments, in whole centimetres.
 
-    A coordinate that is near another side of the border and not on it stays off it: rounded onto it, the
-    stub that a segment leaves in a corner would become a wall along the border.
+    A coordinate near another side of the border, but not on it, stays off it: if rounded onto it, the stub of
+    a segment in a corner would become a wall along the border.
     """
     a, limits = ends[0], sides + _INWARDS
     (low, high), beside, reach = limits[0], limits[1], limits[2]
@@ -131,12 +132,12 @@ def _crossings(ends: NDArray[Any], shares: NDArray[Any], sides: NDArray[Any]) ->
     return crossings
 
 
-# --- Builds a robot map from outlines (paper 1, section III.B) ---
+# --- Building a robot map from outlines (paper 1, section III.B) ---
 
 __all__ = ["Window", "build_map"]
 
 Rows = slice | NDArray[Any]
-"""Which segments, in their order."""
+"""Selection of segments, in order."""
 
 _SHAPE_TYPES = {int(one): one for one in ShapeType}
 _WHEN_CUT = {
@@ -151,12 +152,12 @@ def build_map(
     """Return the map of ``outlines`` inside ``window``, or of all of them.
 
     An outline that the window cuts becomes open chains, each an obstacle, marked by the extra ``cut`` where
-    it was a ring. Obstacles are grouped by the first word of their semantics; the id of an outline is its
-    row plus one in every window, each further chain of it has the number of outlines more, so that no id
-    means another outline in another window. ``ext`` names the source. Outlines that are
-    no obstacle (fewer than two different points, a ring that encloses nothing, coordinates that are not
-    finite) are left out and rings that do not close are closed, each with a warning if it lies
-    in the window or nowhere at all. Raises WindowError when there is neither a window nor an outline.
+    it was a ring. Obstacles are grouped by the first word of their semantics; the id of an outline is its row
+    plus one in every window, and each further chain of it adds the number of outlines, so that an id means
+    the same outline in every window. ``ext`` names the source. Outlines that are no obstacle (fewer than two
+    different points, a ring that encloses nothing, coordinates that are not finite) are left out and rings
+    that do not close are closed, each with a warning if it lies in the window or nowhere at all. Raises
+    WindowError when there is neither a window nor an outline.
     """
     found = validate_outlines(outlines)
     if window is None:
@@ -168,7 +169,7 @@ def build_map(
 
 
 class SurroundingOutlines:
-    """Finds what a window lies in as a whole: a map is of walls, and there is nothing in it of such a thing.
+    """Finds obstacles that enclose a whole window, of which a map of walls shows nothing.
 
     Courtyards come after the ring that they are in.
     """
@@ -181,7 +182,7 @@ class SurroundingOutlines:
         self._low, self._high = found.low[self._rings], found.high[self._rings]
 
     def around(self, border: Border) -> list[str]:
-        """Return the sources of the obstacles that all of ``border`` is in."""
+        """Return the sources of the obstacles that enclose all of ``border``."""
         low, high = (border.x_min, border.y_min), (border.x_max, border.y_max)
         near = (self._low < low).all(axis=1) & (self._high > high).all(axis=1)
         return [self._outlines.source[k] for k in self._rings[near].tolist() if self._is_around(k, border)]
@@ -196,7 +197,7 @@ class SurroundingOutlines:
         segments = oriented_segments(own, np.ones(len(own), dtype=bool))
         if len(clip(segments, border).a):
             return False
-        # No wall is inside: what holds its middle holds all of it.
+        # No wall is inside: an obstacle that holds its middle holds all of it.
         x, y = (border.x_min + border.x_max) / 2, (border.y_min + border.y_max) / 2
         across = (segments.a[:, 1] > y) != (segments.b[:, 1] > y)
         a, b = segments.a[across], segments.b[across]
@@ -225,7 +226,7 @@ def _bounds(found: OutlineValidation) -> Border:
     if not found.usable.any():
         raise WindowError("window: there is no obstacle to take the extent from; give a window")
     (x_min, y_min), (x_max, y_max) = found.low[found.usable].min(axis=0), found.high[found.usable].max(axis=0)
-    # A single straight wall has no width; the map still needs a border with an inside.
+    # A single straight wall has no width; but the map needs a border with an inside.
     x_spare, y_spare = max(0.0, 0.5 - (x_max - x_min) / 2), max(0.0, 0.5 - (y_max - y_min) / 2)
     return Window.from_bounds(
         float(x_min - x_spare), float(y_min - y_spare), float(x_max + x_spare), float(y_max + y_spare)
@@ -252,7 +253,7 @@ def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, Rows,
             yield outline[k], own[0], True
             continue
         if meets[k]:
-            # The last run of a ring goes on in the first.
+            # The last run of a ring continues in the first.
             both = (own[-1], own[0])
             round_corner = np.concatenate([np.arange(some.start, some.stop) for some in both])
             yield outline[k], round_corner, False
@@ -264,9 +265,9 @@ def _chains(segments: Segments, outlines: Outlines) -> Iterator[tuple[int, Rows,
 def _meet_where_they_begin(
     segments: Segments, outlines: Outlines, first: NDArray[Any], last: NDArray[Any]
 ) -> NDArray[Any]:
-    """Tell which outlines are rings whose segments, from ``first`` to ``last``, go through their first point.
+    """Return which outlines are rings whose segments, ``first`` to ``last``, pass their first point.
 
-    Not any two cuts that fall on one point: the ring's own first corner.
+    Not any two coincident cuts: the ring's own first corner.
     """
     outline = segments.outline[first]
     corner = np.round(outlines.coordinates[outlines.offsets[outline]], 2)
@@ -279,7 +280,7 @@ def _meet_where_they_begin(
 
 
 def _numbered(chains: Iterable[tuple[int, Rows, bool]], rows: int) -> Iterator[tuple[int, Rows, int, bool]]:
-    """Yield id, segments, outline and whether closed, for each chain; ``rows`` outlines there are."""
+    """Yield id, segments, outline and whether closed, for each chain; ``rows`` is the number of outlines."""
     count: Counter[int] = Counter()
     for outline, indices, closed in chains:
         yield outline + 1 + count[outline] * rows, indices, outline, closed

@@ -15,7 +15,7 @@ from . import findings, obstacle_checks
 from .findings import MapCheckLimits, MapFinding, MapFindingKind, SegmentTable, Severity, place
 from .model import Border, RobotMap, ShapeType
 
-# --- Whether obstacles repeat, cover or cross one another ---
+# --- Obstacles that repeat, cover or cross one another ---
 
 _SHORTEST_OVERLAP = 0.05
 _PARALLEL = 0.95
@@ -25,7 +25,7 @@ _CROSSING, _SAME, _ALONG, _AGAINST = range(4)
 
 @dataclass(frozen=True, eq=False)
 class _Pairs:
-    """m pairs of segments: what each pair does, and two lines each, (m, 2, 2, 2), that show where."""
+    """m pairs of segments: the fault of each pair, and two lines each, (m, 2, 2, 2), that show the place."""
 
     one: NDArray[Any]
     other: NDArray[Any]
@@ -34,9 +34,9 @@ class _Pairs:
 
 
 def meeting_obstacles(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
-    """Yield a finding for each two obstacles that share segments, cover each other or cross.
+    """Yield a finding for each pair of obstacles that share segments, cover each other or cross.
 
-    Touching is no finding. Ramps are none either: walls stand on their outlines.
+    Touching is no finding, nor are ramps: walls stand on their outlines.
     """
     pairs = _meeting(table)
     rows = np.sort(np.stack([table.row[pairs.one], table.row[pairs.other]], axis=1), axis=1)
@@ -202,7 +202,7 @@ def _joined(label: NDArray[Any], one: NDArray[Any], other: NDArray[Any]) -> NDAr
         smaller = label.copy()
         np.minimum.at(smaller, label[one], low)
         np.minimum.at(smaller, label[other], low)
-        # Follow each label to the one that it was given, until that is its own.
+        # Follow each label until it maps to itself.
         while (smaller[smaller] != smaller).any():
             smaller = smaller[smaller]
         if (smaller == label).all():
@@ -249,11 +249,12 @@ class FreeSpaceGrid:
 
 
 def unreachable_pockets(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
-    """Yield a finding for each free area where a robot fits and that it cannot get into.
+    """Yield a finding for each free area that is large enough for a robot but unreachable.
 
     Areas at the border are not judged: the way in may be outside the map. Solid rings are no free space,
-    their courtyards are. The grid has a quarter of the robot's width, so a passage is told from a bottleneck
-    to about that much. A map too large for at least half of its width gets one finding that says so.
+    their courtyards are. The grid has a quarter of the robot's width, so passages and bottlenecks are
+    distinguished with about that precision. A map too large for at least half of its width gets one finding
+    that says so.
     """
     if not len(table.a):
         return
@@ -266,7 +267,7 @@ def unreachable_pockets(table: SegmentTable, limits: MapCheckLimits) -> Iterator
     sizes = np.bincount(label[label >= 0], minlength=count)
     rim = np.concatenate([label[0], label[-1], label[:, 0], label[:, -1]])
     outside = np.unique(rim[rim >= 0])
-    # Where nothing free touches the border the largest area is the one that robots are in.
+    # If nothing free touches the border, robots are assumed in the largest area.
     known = set(outside.tolist()) or ({int(np.argmax(sizes))} if count else set())
     for number, at in enumerate(_boxes(label, count)):
         area = float(sizes[number]) * grid.size**2
@@ -311,7 +312,7 @@ def _boxes(label: NDArray[Any], count: int) -> list[tuple[slice, slice]]:
 
 
 def _walls(table: SegmentTable, grid: FreeSpaceGrid) -> NDArray[Any]:
-    """Return the cells that segments go through; ramps and level risers stop nobody."""
+    """Return the cells that segments pass through; ramps and level risers stop no robot."""
     kind = table.shape_type[table.row]
     stops = (kind != ShapeType.RAMP) & ~((kind == ShapeType.STAIRS) & (table.height <= 0))
     a, b = table.a[stops], table.b[stops]
@@ -408,10 +409,10 @@ CHECKS: tuple[Check, ...] = (
     meeting_obstacles,
     unreachable_pockets,
 )
-"""Every check, the quick ones first; each looks at the whole map and is independent of the others."""
+"""Every check, the quick ones first; each processes the whole map and is independent of the others."""
 
 
 def check_map(robot_map: RobotMap, limits: MapCheckLimits | None = None) -> list[MapFinding]:
-    """Return what is odd in ``robot_map``, in the order of :data:`CHECKS`; nothing is changed or raised."""
+    """Return the findings on ``robot_map``, in the order of :data:`CHECKS`; nothing is changed or raised."""
     table = SegmentTable.of(robot_map)
     return [finding for check in CHECKS for finding in check(table, limits or MapCheckLimits())]

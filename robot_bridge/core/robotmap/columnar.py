@@ -1,6 +1,6 @@
-"""Codec 2: a map in columns of centimetre differences; ``docs/robot-map.md`` says what each item is.
+"""Codec 2: a map in columns of centimetre differences; ``docs/robot-map.md`` describes each item.
 
-It keeps what a map in centimetres says. How a number was spelled, comments and blanks are not kept.
+It keeps the content of a map in centimetres. The spelling of numbers, comments and blanks are not kept.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ _LARGEST_ID = 10**18
 
 
 class _Columns(NamedTuple):
-    """The items of the array; a body is what obstacles that only stand elsewhere have in common."""
+    """The items of the array; a body is shared by obstacles that differ only in their place."""
 
     meta: str
     x_min: int
@@ -113,7 +113,7 @@ def pack_map(robot_map: RobotMap) -> bytes:
 def _bodies(
     obstacles: Sequence[Obstacle], paths: Paths, counts: NDArray[Any]
 ) -> tuple[list[str], dict[str, Any]]:
-    """Return the table of tails, and the items that say of what body each obstacle is and what bodies are."""
+    """Return the table of tails, and the items for the body of each obstacle and for the bodies."""
     tails, tail = distinct_lines([line for o in obstacles for line in _tails(o)])
     height = _centimetres([o.height for o in obstacles], 1)[:, 0]
     kinds = paths.forms * 8 + np.array([int(o.shape_type) for o in obstacles], dtype=np.int64)
@@ -165,7 +165,7 @@ def unpack_map(content: bytes, limits: ReadingLimits) -> RobotMap:
 
 
 class _Bodies(NamedTuple):
-    """What the columns say of bodies, checked, and of what body each obstacle is."""
+    """The bodies in the columns, checked, and the body of each obstacle."""
 
     body: NDArray[Any]
     kinds: NDArray[Any]
@@ -198,7 +198,7 @@ class _Bodies(NamedTuple):
 def _lines(
     columns: _Columns, counts: NDArray[Any], tails: tuple[list[str], NDArray[Any]], limits: ReadingLimits
 ) -> list[str]:
-    """Return what follows the counts of each obstacle, having seen that all labels have room in the text."""
+    """Return the text after the counts of each obstacle, after checking that all labels fit into the text."""
     table = columns.heads.split("\n")
     head = np.cumsum(unpack_numbers(columns.head, columns.obstacles, "head"))
     _check_labels(((table, head), tails), columns, limits)
@@ -234,7 +234,7 @@ def _tails(obstacle: Obstacle) -> Iterator[str]:
 
 
 def _once_where_equal(values: NDArray[Any], counts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the values of obstacles with one value for all segments once, and which have several, (K,).
+    """Return values, once for obstacles with one value for all segments, and which have several, (K,).
 
     Obstacles without segments have no value.
     """
@@ -252,7 +252,7 @@ def _once_where_equal(values: NDArray[Any], counts: NDArray[Any]) -> tuple[NDArr
 def _for_each(
     column: bytes, counts: NDArray[Any], varies: NDArray[Any], name: str, plain: bool
 ) -> NDArray[Any]:
-    """Return a value for each segment, (n,) int64: what :func:`_once_where_equal` was given."""
+    """Return a value for each segment, (n,) int64: the inverse of :func:`_once_where_equal`."""
     repeats = np.where(varies, 1, counts)
     repeats = np.repeat(repeats, np.where(varies, counts, counts > 0))
     values = unpack_numbers(column, len(repeats), name)
@@ -276,7 +276,7 @@ def _checked(items: list[int | str | bytes], limits: ReadingLimits) -> _Columns:
             f"size check: {columns.obstacles} obstacles and {columns.segments} segments are declared, more "
             f"than a text of {limits.text} bytes holds; get the map once more"
         )
-    # Before anything is taken apart: a table has no line that nobody needs, and its lines are read once.
+    # Checked before parsing: a table has no unused line, and its lines are read once.
     _require(columns.heads.count("\n") < max(columns.obstacles, 1), "heads has more lines than obstacles")
     _require(columns.tails.count("\n") < max(columns.segments, 1), "tails has more lines than segments")
     limits.check_counts(
@@ -309,7 +309,7 @@ def _require(fine: bool | np.bool_, problem: str) -> None:
 
 
 class _Parts(NamedTuple):
-    """The columns of all segments, and what each place in the table of tails says."""
+    """The columns of all segments, and the parsed table of tails."""
 
     a: NDArray[Any]
     b: NDArray[Any]
@@ -349,7 +349,7 @@ def _tail_read(line: str) -> tuple[bool, str, dict[str, str]]:
 
 
 def _fields(line: str, count: int) -> list[str]:
-    """Return what stands before the semicolons of ``line``, the last one, the extras, possibly nothing."""
+    """Return the fields before the semicolons of ``line``; the last one, the extras, may be empty."""
     fields = line.split(";")
     _require(len(fields) in (count, count + 1) and not fields[-1], f"{line[:40]!r} has other fields")
     return fields[:count]

@@ -11,14 +11,14 @@ from numpy.typing import NDArray
 
 from ..errors import MapBinaryError, MissingCodecError, installation
 
-# --- How much a binary map may unpack to, by the size of its file: what a stranger's file may cost its reader
+# --- Limits of unpacking a binary map by the size of its file, against malicious files
 # On a common computer a file of up to 1 MB costs less than 1 s and 200 MB; a larger one in proportion. A
 # map of
 # all buildings and walls of Malta, 1.3 MB, has half of the text and two thirds of the parts that it may
 # have.
 
 LARGEST_TEXT = 256 << 20
-"""bytes of text that a reader accepts at most, whatever its file has."""
+"""bytes of text that a reader accepts at most, whatever the size of its file."""
 
 _ONE_FILE = 1_000_000
 """bytes; smaller files may unpack to as much as one of this size."""
@@ -29,24 +29,24 @@ _OBSTACLE_PARTS, _SEGMENT_PARTS = 16, 4
 
 
 class ReadingLimits(NamedTuple):
-    """The most bytes of text, and the most parts: obstacles, segments, lines, extras, by what each costs."""
+    """The most bytes of text, and the most parts: obstacles, segments, lines, extras, weighted by cost."""
 
     text: int
     parts: float
 
     @classmethod
     def of_file(cls, size: int) -> ReadingLimits:
-        """Return the limits for a file of ``size`` bytes that comes from anybody."""
+        """Return the limits for an untrusted file of ``size`` bytes."""
         size = max(size, _ONE_FILE)
         return cls(min(LARGEST_TEXT, _TEXT_PER_BYTE * size), _PARTS_PER_BYTE * size)
 
     @classmethod
     def of_text(cls, length: int) -> ReadingLimits:
-        """Return the limits for a text of at most ``length`` bytes that comes from who may be believed."""
+        """Return the limits for a text of at most ``length`` bytes from a trusted source."""
         return cls(length, float("inf"))
 
     def check_text(self, text: str) -> None:
-        """Raise MapBinaryError when ``text`` has too many parts; nothing is taken apart for that."""
+        """Raise MapBinaryError when ``text`` has too many parts; without parsing it."""
         obstacles = text.count("obstacle;")
         lines = text.count("\n") - 4 * obstacles
         self._check(_OBSTACLE_PARTS * obstacles + lines + text.count("=") + text.count(","))
@@ -63,7 +63,7 @@ class ReadingLimits(NamedTuple):
             )
 
 
-# --- CBOR of one flat array, read without believing it: the little of RFC 8949 that a map needs ---
+# --- CBOR of one flat array, read defensively: the subset of RFC 8949 that a map needs ---
 
 _UNSIGNED, _NEGATIVE, _BYTES, _TEXT, _ARRAY = 0, 1, 2, 3, 4
 _LENGTH_BYTES = {24: 1, 25: 2, 26: 4, 27: 8}
@@ -90,7 +90,7 @@ def cbor_loads(content: bytes, count: int) -> list[int | str | bytes]:
 
 
 def _check(content: bytes, count: int) -> None:
-    """Go over the heads of the items, so that no length is believed that is not there."""
+    """Check the heads of the items against the actual length."""
     kind, length, position = _head(content, 0)
     if kind != _ARRAY or length != count:
         raise MapBinaryError(f"CBOR check: an array of {count} items should be there; get the map once more")
@@ -133,13 +133,13 @@ def _cbor2() -> Any:
 # --- Columns of whole numbers as bytes: differences of one sign, in few bytes, ready to be compressed ---
 
 _WIDTHS = (1, 2, 4, 8)
-"""bytes of one number where all have as many; the first byte of such a column."""
+"""bytes per number in a column of fixed width; also the first byte of such a column."""
 _VARIABLE = 0
-"""The first byte of a column whose numbers have as many bytes as each needs."""
+"""The first byte of a column with variable-length numbers."""
 _MOST_BYTES = 9
 """of one number; 63 bits."""
 _FEW_BYTES = 1.5
-"""of a number, on average: where planes and variable lengths become equally large once compressed."""
+"""per number, on average: where planes and variable lengths compress to equal sizes."""
 
 
 def differences(values: NDArray[Any]) -> NDArray[Any]:
@@ -148,13 +148,13 @@ def differences(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def pack_numbers(values: NDArray[Any]) -> bytes:
-    """Return ``values``, (n,) int64 of at most 62 bits: nothing where all are 0, else a byte and the numbers.
+    """Return ``values``, (n,) int64 of at most 62 bits: empty if all are 0, else a byte and the numbers.
 
     A number v is written as 2v, or as -2v - 1 where it is negative, so that small ones have few bytes
     whatever their sign. Either each has the number of bytes that the first byte says and they stand in
-    planes: the lowest byte of each, then the next byte of each, ...; or the first byte is 0, and each is
-    in bytes of seven bits, the lowest first, all but the last of them with 128 added (LEB128). Numbers that
-    need few bytes are compressed better in the second way, large ones in the first.
+    planes: the lowest byte of each, then the next byte of each, ...; or the first byte is 0, and each is in
+    bytes of seven bits, the lowest first, all but the last of them with 128 added (LEB128). Small numbers
+    compress better in the second form, large ones in the first.
     """
     if not values.any():
         return b""
@@ -202,7 +202,7 @@ def _variable(unsigned: NDArray[Any]) -> bytes:
 
 
 def _from_variable(numbers: NDArray[Any], count: int) -> NDArray[Any] | None:
-    # What follows takes many times the room of a column, whose length must have been seen to fit before.
+    # The following needs many times the memory of a column, whose length must have been checked before.
     if not count <= len(numbers) <= _MOST_BYTES * count:
         return None
     ends = np.flatnonzero(numbers < 128)
@@ -220,10 +220,10 @@ def _from_variable(numbers: NDArray[Any], count: int) -> NDArray[Any] | None:
     return unsigned
 
 
-# --- Segments as one path of points for each obstacle; a point that two segments share is there once ---
+# --- Segments as one path of points for each obstacle; points shared by two segments occur once ---
 
 RING, CHAIN, LOOSE = 0, 1, 2
-"""How the segments of an obstacle hang together: round to the first point, one after another, not at all."""
+"""How the segments of an obstacle are connected: in a ring, in a chain, not at all."""
 
 
 class Paths(NamedTuple):
@@ -267,7 +267,7 @@ def step_counts(forms: NDArray[Any], counts: NDArray[Any]) -> NDArray[Any]:
 
 
 def segments_of(paths: Paths, counts: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return ``a`` and ``b``, (n, 2) int64: what :func:`paths_of` was given."""
+    """Return ``a`` and ``b``, (n, 2) int64: the inverse of :func:`paths_of`."""
     filled = counts > 0
     forms, starts, lengths = (
         paths.forms[filled],
@@ -289,7 +289,7 @@ def segments_of(paths: Paths, counts: NDArray[Any]) -> tuple[NDArray[Any], NDArr
     return points[begins], points[follows]
 
 
-# --- What obstacles have in common that differ only in where they stand, such as benches of one kind ---
+# --- Bodies shared by obstacles that differ only in their place, such as benches of one kind ---
 
 
 def first_of_each_kind(
@@ -317,14 +317,14 @@ def body_rows(which: NDArray[Any], lengths: NDArray[Any]) -> NDArray[Any]:
 
 
 def kind_offsets(kind: NDArray[Any]) -> NDArray[Any]:
-    """Return 0 for the first of each kind, else how many kinds back from the newest one it is, (n,) int64."""
+    """Return 0 for the first of each kind, else the distance back from the newest kind, (n,) int64."""
     newest = np.maximum.accumulate(np.concatenate([[-1], kind]))[:-1] + 1
     back: NDArray[Any] = newest - kind
     return back
 
 
 def kinds_of_offsets(back: NDArray[Any]) -> NDArray[Any]:
-    """Return the kind of each: what :func:`kind_offsets` was given."""
+    """Return the kind of each: the inverse of :func:`kind_offsets`."""
     kind: NDArray[Any] = np.cumsum(back == 0) - np.maximum(back, 1)
     return kind
 
@@ -336,7 +336,7 @@ def _pieces(column: NDArray[Any], lengths: NDArray[Any]) -> list[bytes]:
     return [content[start:end] for start, end in zip([0, *ends[:-1]], ends, strict=True)] if ends else []
 
 
-# --- What stands after the counts of an obstacle's line, without repeating it for every obstacle ---
+# --- The text after the counts of an obstacle's line, stored once for equal ones ---
 
 # The number in src=walls:1204 differs from obstacle to obstacle while all else stays, and so does the second
 # one in src=walls:1204+3. No written label holds the characters that stand for them.
@@ -345,7 +345,7 @@ _ALONE, _WITH_OTHERS = "\x01", "\x02"
 
 
 class Heads(NamedTuple):
-    """Lines with marks where their numbers were, and the numbers as differences from what is expected.
+    """Lines with marks in place of their numbers, and the numbers as differences from predictions.
 
     ``numbers``, (m,) int64, are those of the m lines with a mark; ``others``, (p,), those of the p lines with
     the second one, which may be 0 and is not written then.
@@ -357,7 +357,7 @@ class Heads(NamedTuple):
 
 
 def distinct_lines(lines: Sequence[str]) -> tuple[list[str], NDArray[Any]]:
-    """Return the different ones among ``lines`` in order of appearance, and the place of each, (n,) int64."""
+    """Return the distinct ``lines`` in order of appearance, and the index of each line, (n,) int64."""
     places: dict[str, int] = {}
     column = np.array([places.setdefault(line, len(places)) for line in lines], dtype=np.int64)
     return list(places), column
@@ -366,8 +366,8 @@ def distinct_lines(lines: Sequence[str]) -> tuple[list[str], NDArray[Any]]:
 def without_numbers(lines: Sequence[str], counts: NDArray[Any]) -> Heads:
     """Return ``lines`` of obstacles with ``counts`` segments each, (n,) int64, without their numbers.
 
-    The number of others is expected to be that of the segments less one, and a number to follow all that
-    the line before it stands for.
+    The number of others is predicted as that of the segments less one, and a number as following all those
+    covered by the line before it.
     """
     found = [_NUMBER.search(line) for line in lines]
     bare = [_marked(line, match, _ALONE) if match else line for line, match in zip(lines, found, strict=True)]
@@ -382,7 +382,7 @@ def without_numbers(lines: Sequence[str], counts: NDArray[Any]) -> Heads:
 
 
 def with_numbers(heads: Heads, counts: NDArray[Any]) -> list[str]:
-    """Return the lines that :func:`without_numbers` was given; ``counts`` as there."""
+    """Return the lines: the inverse of :func:`without_numbers`; ``counts`` as there."""
     with_others = _marks(heads.lines, _WITH_OTHERS)
     marked = _marks(heads.lines, _ALONE) | with_others
     others = np.zeros(len(heads.lines), dtype=np.int64)

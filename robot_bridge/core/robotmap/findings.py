@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from .model import Obstacle, RobotMap
 from .outlines import is_closed
 
-# --- What a check of a robot map says: where something is wrong, how badly, and what to do ---
+# --- Findings of a check of a robot map: place, severity, and remedy ---
 
 
 class Severity(str, Enum):
-    """``ERROR``: a robot is misled. ``WARNING``: probably not meant. ``INFO``: worth knowing."""
+    """``ERROR``: a robot is misled. ``WARNING``: probably unintended. ``INFO``: worth knowing."""
 
     ERROR = "error"
     WARNING = "warning"
@@ -25,7 +25,7 @@ class Severity(str, Enum):
 
 
 class MapFindingKind(str, Enum):
-    """What is wrong; the value is what users read and filter by."""
+    """Kinds of findings; the value is shown to users, who filter by it."""
 
     ORIENTATION = "orientation"
     GAP = "gap"
@@ -41,21 +41,21 @@ class MapFindingKind(str, Enum):
 
 @dataclass(frozen=True)
 class MapCheckLimits:
-    """What the checks take for meant; metres and m²."""
+    """Thresholds of the checks; metres and m²."""
 
     gap: float = 0.10
-    """A line that ends at most so far from another obstacle was meant to reach it."""
+    """A line that ends within this distance of another obstacle was meant to reach it."""
     sliver: float = 0.05
-    """A ring narrower than this, on average, is no obstacle but the remains of one."""
+    """A ring narrower than this, on average, is no obstacle but a remnant of one."""
     robot_width: float = 0.60
-    """A robot passes where this much is free."""
+    """A robot passes through gaps of this width."""
     pocket: float = 1.0
     """The smallest unreachable free area worth a finding."""
 
 
 @dataclass(frozen=True, eq=False)
 class MapFinding:
-    """One thing that is odd. ``obstacle`` is the id of the one to change, None where none can be named."""
+    """One finding. ``obstacle`` is the id of the one to change, None if none can be named."""
 
     kind: MapFindingKind
     severity: Severity
@@ -65,10 +65,10 @@ class MapFinding:
     """(m, 2, 2) float64, the lines that show the place, metres in the site frame; m is at least 1."""
 
 
-# --- All segments of a robot map in one set of arrays, as the checks look at them ---
+# --- All segments of a robot map in one set of arrays, for the checks ---
 
 SAME_PLACE = 0.005
-"""metres; a map is in centimetres, so two points nearer than this are one."""
+"""metres; a map is in centimetres, so points nearer than this coincide."""
 
 TOUCHING = 0.015
 """metres; corners rounded to centimetres may be this far off the wall that they touch."""
@@ -118,7 +118,7 @@ class SegmentTable:
 
     @property
     def closed(self) -> NDArray[Any]:
-        """(K,) bool, true for obstacles that say they are rings."""
+        """(K,) bool, true for obstacles declared as rings."""
         return is_closed(self.shape_type)
 
     def lines(self, chosen: NDArray[Any]) -> NDArray[Any]:
@@ -126,12 +126,12 @@ class SegmentTable:
         return np.stack([self.a[chosen], self.b[chosen]], axis=1)
 
     def of_obstacle(self, row: int) -> slice:
-        """Return where the segments of an obstacle stand."""
+        """Return the slice of an obstacle's segments."""
         return slice(int(self.offsets[row]), int(self.offsets[row + 1]))
 
 
 def place(point: NDArray[Any]) -> str:
-    """Return ``point`` as it stands in messages."""
+    """Return ``point`` as text for messages."""
     return f"({point[0]:.2f}, {point[1]:.2f})"
 
 
@@ -141,10 +141,10 @@ def mark(point: NDArray[Any], size: float = 0.25) -> NDArray[Any]:
     return np.array([[[x - size, y], [x + size, y]], [[x, y - size], [x, y + size]]])
 
 
-# --- Which of many rectangles touch each other, by a sweep along the longer side of their extent ---
+# --- Touching pairs among many rectangles, by a sweep along the longer side of their extent ---
 
 _AT_ONCE = 1_000_000
-"""How many pairs are looked at together: bounds the memory."""
+"""Pairs processed together: bounds the memory."""
 
 
 def overlapping_boxes(low: NDArray[Any], high: NDArray[Any]) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:

@@ -1,4 +1,4 @@
-"""Nav2's maps read: the YAML beside an image, and what the pixels of that say.
+"""Reader of Nav2's maps: the YAML beside an image, and the meaning of its pixels.
 
 The rules are those of nav2_map_server (map_io.cpp): the darker a pixel, the more occupied, unless ``negate``
 is set; the first row of the image is the highest; ``origin`` is x, y and yaw of the lower left corner of the
@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..errors import NavigationMapError, in_one_line, installation
 
 LARGEST_MAP = 64_000_000
-"""cells that a map may have, as those have that are written."""
+"""cells that a map may have, the same limit as for writing."""
 LARGEST_YAML = 65_536
 """characters of the YAML: it holds eight short lines."""
 MODES = "trinary", "scale", "raw"
@@ -33,7 +33,7 @@ _PLACE = re.compile(r"# (crs|origin|rotation) (\S+)")
 class Nav2Map:
     """The YAML of a map: ``image`` is its file, ``resolution`` metres, ``origin`` x, y in metres and yaw.
 
-    ``meta`` are crs, origin and rotation of the site, where its leading comments say them.
+    ``meta`` are crs, origin and rotation of the site, if its leading comments state them.
     """
 
     image: str
@@ -56,7 +56,7 @@ class Nav2Map:
 
 
 def read_yaml(text: str) -> Nav2Map:
-    """Return what the YAML of a map says; raises NavigationMapError, naming the key."""
+    """Return the parsed YAML of a map; raises NavigationMapError, naming the key."""
     values = _values(text)
     mode = values.get("mode", "trinary")
     if mode not in MODES:
@@ -89,13 +89,13 @@ def check_size(columns: int, rows: int) -> None:
 def cells_of(bands: NDArray[np.uint8], described: Nav2Map, *, alpha: bool = False) -> NDArray[np.int16]:
     """Return -1 (unknown) or 0 to 100 (occupied) for each pixel, (rows, columns), first row highest.
 
-    ``bands`` are (bands, rows, columns) of 0 to 255; with ``alpha`` the last is opacity. A pixel that can be
-    seen through is unknown in mode scale, and the lighter for it in mode trinary, as it is to Nav2.
+    ``bands`` are (bands, rows, columns) of 0 to 255; with ``alpha`` the last is opacity. A transparent pixel
+    is unknown in mode scale, and accordingly lighter in mode trinary, as in Nav2.
     """
     colours = bands[:-1] if alpha else bands
     opacity = bands[-1] if alpha else None
     shades = bands if alpha and described.mode == "trinary" else colours
-    # By the sum of the bands, of which there are few, and not by pixel: a city has tens of millions.
+    # By the sum of the bands, which has few values, not by pixel: a city has tens of millions.
     total = shades.sum(axis=0, dtype=np.uint16)
     most = 255 * len(shades)
     table = _of_shade(np.arange(most + 1) / most, described)
@@ -129,7 +129,7 @@ def _values(text: str) -> dict[str, Any]:
             f"the Python package PyYAML is missing: install it {installation('PyYAML')}"
         ) from None
     try:
-        # Not libyaml's loader: brackets that are nested deep enough end its process.
+        # Not libyaml's loader: deeply nested brackets crash its process.
         values = yaml.load(text, yaml.SafeLoader)
     except (yaml.YAMLError, RecursionError, ValueError) as error:
         raise NavigationMapError(f"it is no YAML: {in_one_line(error)[:200]}") from None
@@ -161,7 +161,7 @@ def _origin(values: Mapping[str, Any]) -> tuple[float, float, float]:
 
 
 def _place(text: str) -> dict[str, str]:
-    """Return crs, origin and rotation of the site as leading comments say them, where they name a CRS."""
+    """Return crs, origin and rotation of the site from the leading comments, if they name a CRS."""
     found = {}
     for line in text.splitlines():
         if not line.startswith("#"):

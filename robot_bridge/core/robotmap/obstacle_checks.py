@@ -15,7 +15,7 @@ from . import findings
 from .findings import MapCheckLimits, MapFinding, MapFindingKind, SegmentTable, Severity, mark, place
 from .model import ShapeType
 
-# --- Checks that look at one obstacle or one segment at a time: ids, border, heights, lengths ---
+# --- Checks of one obstacle or one segment at a time: ids, border, heights, lengths ---
 
 
 def repeated_ids(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
@@ -101,18 +101,18 @@ def _by_obstacle(table: SegmentTable, odd: NDArray[Any]) -> Iterator[tuple[int, 
 
 
 def _of_all(table: SegmentTable, rows: list[int]) -> NDArray[Any]:
-    """Return the segments of all obstacles in ``rows``; where they have none, a cross in the middle."""
+    """Return the segments of all obstacles in ``rows``; without any, a cross in the middle."""
     lines = table.lines(np.isin(table.row, rows))
     border = table.robot_map.border
     middle = np.array([(border.x_min + border.x_max) / 2, (border.y_min + border.y_max) / 2])
     return lines if len(lines) else mark(middle)
 
 
-# --- Whether the segments of an obstacle follow one another, and whether lines end where they should ---
+# --- Checks of chains: gaps between segments, and lines that end short of another obstacle ---
 
 
 def broken_chains(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
-    """Yield a finding for each place where an outline breaks off, and for segments turned round in one."""
+    """Yield a finding for each place where an outline breaks off, and for reversed segments in one."""
     before, after = _joints(table)
     broken = _apart(table.b[before], table.a[after])
     head_on = broken & (before != after)
@@ -135,7 +135,7 @@ def broken_chains(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFi
 def near_misses(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
     """Yield a finding for each end of a line that stops just short of another obstacle.
 
-    Where the border cuts a line is no such end.
+    Ends cut by the border do not count.
     """
     points, rows = _loose_ends(table)
     number, segment, distance = _distances(table, points, rows, limits.gap)
@@ -189,7 +189,7 @@ def _apart(one: NDArray[Any], other: NDArray[Any]) -> NDArray[Any]:
 
 
 def _most_frequent(segments: NDArray[Any]) -> NDArray[Any]:
-    """Return the values that occur most often: a segment turned round in a chain has two bad joints."""
+    """Return the values that occur most often: a reversed segment in a chain has two bad joints."""
     values, counts = np.unique(segments, return_counts=True)
     most: NDArray[Any] = values[counts == counts.max()]
     return most
@@ -239,10 +239,10 @@ def _nearest_points(points: NDArray[Any], table: SegmentTable, segments: NDArray
     return nearest
 
 
-# --- Whether closed outlines run the right way round, enclose something, and do not lie in one another
+# --- Checks of rings: direction, enclosed area, and nesting
 
 _STEP_IN = 0.02
-"""metres from an edge to a point that is surely on one side of it."""
+"""metres from an edge to a point that is safely on one side of it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -270,7 +270,7 @@ class _Rings:
 
 
 def wrong_rings(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:
-    """Yield a finding for each ring that is thin, runs the wrong way round, or lies inside a solid one.
+    """Yield a finding for each ring that is thin, has the wrong direction, or lies inside a solid one.
 
     Solid rings run counter-clockwise. A clockwise one is a courtyard, and that lies in a solid one.
     """
@@ -324,7 +324,7 @@ def _inside(table: SegmentTable, row: int, outer: int) -> MapFinding:
 
 
 def _cut_sources(table: SegmentTable) -> set[str]:
-    """Return the sources of the outlines that the border cuts; an empty one where none is stated."""
+    """Return the sources of the outlines that the border cuts; an empty one if none is stated."""
     border = table.robot_map.border
     sources = set()
     for row in np.flatnonzero(~table.closed & (np.diff(table.offsets) > 0)):
@@ -402,7 +402,7 @@ def _holds(table: SegmentTable, row: int, point: NDArray[Any]) -> bool:
     return bool((crosses & right).sum() % 2)
 
 
-# --- Whether flights of stairs run the way the paper has them ---
+# --- Checks of the direction of stairs ---
 
 
 def turned_risers(table: SegmentTable, limits: MapCheckLimits) -> Iterator[MapFinding]:

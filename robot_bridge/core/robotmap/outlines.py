@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from .model import Border, ShapeType
 
-# --- Obstacle outlines as plain arrays: what every source of geometry is turned into before a map is built
+# --- Obstacle outlines as plain arrays: the common input of the map builder
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Outlines:
     courtyard: NDArray[Any]
     """(K,) bool, true where the free space is inside the ring."""
     height: NDArray[Any]
-    """(K,) float64, metres above the ground; 0 where the obstacle has none (ramps)."""
+    """(K,) float64, metres above the ground; 0 if the obstacle has none (ramps)."""
     outdoor: NDArray[Any]
     """(K,) bool."""
     semantics: Sequence[str]
@@ -41,9 +41,9 @@ class Outlines:
     source: Sequence[str]
     """K names of where the outline comes from, such as ``buildings:12``; used in warnings and in ``ext``."""
     base: NDArray[Any] | None = None
-    """(K,) float64, metres above the ground where the obstacle begins; nothing where all stand on it."""
+    """(K,) float64, metres above the ground where the obstacle begins; None if all stand on it."""
     ext: Sequence[Mapping[str, str]] | None = None
-    """K mappings of what else an obstacle has to say, such as a ramp's normal; or nothing."""
+    """K mappings of further properties of an obstacle, such as a ramp's normal; or None."""
 
     def __len__(self) -> int:
         return len(self.shape_type)
@@ -151,7 +151,7 @@ class Outlines:
 
 @dataclass(frozen=True)
 class OutlineRow:
-    """One outline on its way into :class:`Outlines`; ``points`` is (n, 2), metres, site frame."""
+    """One outline as input of :class:`Outlines`; ``points`` is (n, 2), metres, site frame."""
 
     points: NDArray[Any]
     shape_type: ShapeType
@@ -164,7 +164,7 @@ class OutlineRow:
     ext: Mapping[str, str] = field(default_factory=dict)
 
 
-# --- Outlines turned into oriented segments; arrays throughout ---
+# --- Conversion of outlines to oriented segments; vectorised ---
 
 CLOSED_TYPES = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE, ShapeType.RAMP)
 _IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in range(len(ShapeType) + 1)])
@@ -174,9 +174,9 @@ _IS_CLOSED = np.array([t in [int(closed) for closed in CLOSED_TYPES] for t in ra
 class Segments:
     """n oriented segments in the order of their outlines.
 
-    ``outline`` is the row each belongs to. ``number`` rises; a segment that begins where the one before it
-    in its outline ends has the next number, any other one a number beyond that. ``cut``, (2, n) bool, tells
-    which are cut where they begin, and which where they end.
+    ``outline`` is the row each belongs to. ``number`` increases; a segment that continues the one before it
+    in its outline has the next number, any other one a larger number. ``cut``, (2, n) bool, flags those cut
+    at their beginning, and at their end.
     """
 
     a: NDArray[Any]
@@ -197,12 +197,12 @@ class Segments:
 def uncut(
     a: NDArray[Any], b: NDArray[Any], height: NDArray[Any], outline: NDArray[Any], joined: NDArray[Any]
 ) -> Segments:
-    """Return segments that nothing has cut; ``joined`` tells which go on where the one before them ends."""
+    """Return uncut segments; ``joined`` flags those that continue the one before them."""
     return Segments(a, b, height, outline, np.cumsum(2 - joined), np.zeros((2, len(a)), dtype=bool))
 
 
 def is_closed(shape_type: NDArray[Any]) -> NDArray[Any]:
-    """Tell which shape types, (K,), are rings."""
+    """Return which shape types, (K,), are rings."""
     closed: NDArray[Any] = _IS_CLOSED.take(shape_type, mode="clip")
     return closed
 
@@ -255,7 +255,7 @@ def oriented_segments(outlines: Outlines, usable: NDArray[Any]) -> Segments:
 def _seen_from_above(
     outlines: Outlines, a: NDArray[Any], b: NDArray[Any], outline: NDArray[Any]
 ) -> NDArray[Any]:
-    """Tell which segments are risers with the way up on their right."""
+    """Return which segments are risers with the way up on their right."""
     stairs = outlines.shape_type[outline] == ShapeType.STAIRS
     first, last = outlines.offsets[outline], outlines.offsets[outline + 1] - 1
     points = outlines.coordinates
@@ -285,14 +285,14 @@ def without_vanished(segments: Segments) -> Segments:
     """Return the segments that have a length in centimetres."""
     a, b = segments.a, segments.b
     kept = (a != b).any(axis=1)
-    # A chain goes on across a segment that vanished: the run it belongs to is what counts.
+    # A chain continues across a vanished segment: its run decides.
     run = np.cumsum(~segments.joined)[kept]
     joined = np.zeros(len(run), dtype=bool)
     joined[1:] = run[1:] == run[:-1]
     return uncut(a[kept], b[kept], segments.height[kept], segments.outline[kept], joined)
 
 
-# --- Which outlines can be obstacles, and what is said of those that cannot ---
+# --- Validation of outlines, and notes on those that cannot be obstacles ---
 
 SMALLEST_AREA = 1e-4
 """m² below which a ring encloses nothing at the precision of a map."""
@@ -300,11 +300,11 @@ SMALLEST_AREA = 1e-4
 
 @dataclass(frozen=True)
 class OutlineValidation:
-    """K outlines whose rings close, which of them can be obstacles, and what is said of them.
+    """K outlines whose rings close, which of them can be obstacles, and notes on them.
 
     ``low`` and ``high``, (K, 2), are the corners of their bounding boxes. Note k is about outline
-    ``note_row[k]``; ``note_everywhere`` marks those of outlines that have no place. Notes stand by what is
-    wrong: the first ``note_counts[0]`` are of the first kind, and so on.
+    ``note_row[k]``; ``note_everywhere`` marks those of outlines without a place. Notes are ordered by kind of
+    fault: the first ``note_counts[0]`` are of the first kind, and so on.
     """
 
     outlines: Outlines
@@ -317,7 +317,7 @@ class OutlineValidation:
     note_counts: tuple[int, ...]
 
     def near(self, border: Border) -> NDArray[Any]:
-        """Tell which outlines' bounding boxes touch the border's rectangle, (K,) bool."""
+        """Return which outlines' bounding boxes touch the border's rectangle, (K,) bool."""
         return touching_border(self.low, self.high, border)
 
     def notes_on(self, near: NDArray[Any]) -> tuple[str, ...]:
@@ -327,7 +327,7 @@ class OutlineValidation:
 
 
 def validate_outlines(outlines: Outlines) -> OutlineValidation:
-    """Return ``outlines`` with every ring closed, and what is wrong with which."""
+    """Return ``outlines`` with every ring closed, and their faults."""
     outlines, closed = _closed_rings(outlines)
     low, high = _boxes(outlines.coordinates, outlines)
     lengths = np.diff(outlines.offsets)
@@ -359,14 +359,14 @@ def validate_outlines(outlines: Outlines) -> OutlineValidation:
 
 
 def touching_border(low: NDArray[Any], high: NDArray[Any], border: Border) -> NDArray[Any]:
-    """Tell which boxes, from ``low`` to ``high``, (n, 2) each, touch the border's rectangle, (n,) bool."""
+    """Return which boxes, ``low`` to ``high``, (n, 2) each, touch the border's rectangle, (n,) bool."""
     corner_low, corner_high = (border.x_min, border.y_min), (border.x_max, border.y_max)
     touches: NDArray[Any] = np.all((high >= corner_low) & (low <= corner_high), axis=1)
     return touches
 
 
 def _closed_rings(outlines: Outlines) -> tuple[Outlines, NDArray[Any]]:
-    """Return the outlines with each ring closed by its first point, and the rows of those that were not."""
+    """Return the outlines with each ring closed by its first point, and the rows of unclosed ones."""
     lengths = np.diff(outlines.offsets)
     ring = np.flatnonzero(is_closed(outlines.shape_type) & (lengths >= 3))
     first, last = outlines.offsets[ring], outlines.offsets[ring + 1] - 1

@@ -23,7 +23,7 @@ SAGITTA = 0.02
 def ramp_normal(points: NDArray[Any]) -> str:
     """Return the upward unit normal of a ramp's surface for the extra ``n``, such as ``0,-0.0995,0.995``.
 
-    ``points`` is its outline, (n, 3) metres, not necessarily quite flat (Newell's method, Sutherland et al.
+    ``points`` is its outline, (n, 3) metres, not necessarily planar (Newell's method, Sutherland et al.
     1974). Raises ShapingError for points that span no surface, or an upright one.
     """
     points = np.asarray(points, dtype=np.float64)
@@ -40,7 +40,7 @@ def ramp_normal(points: NDArray[Any]) -> str:
     return ",".join(f"{round(v / math.copysign(length, z), 4) + 0.0:g}" for v in (x, y, z))
 
 
-# --- Small closed shapes that stand for things drawn as points: by name, or by kind and size ---
+# --- Small closed shapes for objects drawn as points: by name, or by kind and size ---
 
 NAMED: Mapping[str, str] = MappingProxyType(
     {
@@ -55,10 +55,10 @@ NAMED: Mapping[str, str] = MappingProxyType(
         "tree": "circle 0.4",
     }
 )
-"""Things of the street, the size of a common one in metres each; a name stands wherever its shape may."""
+"""Street furniture with common sizes in metres; a name may be used wherever its shape may."""
 
 _SMALLEST, _LARGEST = 0.01, 100.0
-"""metres; a map is in centimetres, and what is larger than furniture has an outline of its own."""
+"""metres; a map is in centimetres, and objects larger than furniture have outlines of their own."""
 _CORNERS = 8
 _MOST_CORNERS = 64
 
@@ -77,7 +77,7 @@ class Template:
     def at(self, x: float, y: float, turned: float = 0.0) -> NDArray[Any]:
         """Return the ring, (n, 2), at (x, y), turned by radians to the left.
 
-        Raises ShapingError for what is not finite.
+        Raises ShapingError for values that are not finite.
         """
         if not all(map(math.isfinite, (x, y, turned))):
             raise ShapingError("a template needs a finite place and a finite angle; correct them")
@@ -89,10 +89,9 @@ class Template:
 def template(text: str) -> Template:
     """Return what ``text`` names, such as ``bench``, ``circle 0.6``, ``circle 3 16`` or ``rectangle 2 0.5``.
 
-    A circle's number is how far it is across in metres, its second one how many corners it has (8 where
-    none is given); the disc lies within the ring, so that a robot that keeps off the ring keeps off the
-    thing. A rectangle's numbers are its width along x and its depth along y. Raises ShapingError for
-    anything else.
+    A circle's first number is its diameter in metres, its second one the number of corners (8 by default);
+    the disc lies within the ring, so that a robot that avoids the ring avoids the object. A rectangle's
+    numbers are its width along x and its depth along y. Raises ShapingError for anything else.
     """
     kind, *numbers = NAMED.get(text.strip(), text).split() or [""]
     if kind not in _KINDS:

@@ -15,18 +15,18 @@ from ..errors import MapCancelledError, MissingGeometryError, ShapingError, inst
 from .model import ShapeType
 from .outlines import CLOSED_TYPES, OutlineRow, Outlines
 
-# --- How far long work is, told to whoever waits for it, who may end it midway ---
+# --- Progress and cancellation of long work ---
 
 Item = TypeVar("Item")
 
 _EVERY = 100
-"""After how many items it is asked whether the work is still wanted."""
+"""Items between checks for cancellation."""
 
 
 class ProgressMonitor:
-    """Tells ``progress`` how much of the work is done, 0 to 1, and asks ``cancelled`` whether to end it.
+    """Reports the finished share of the work, 0 to 1, to ``progress``, and polls ``cancelled``.
 
-    Either may be nothing.
+    Either may be None.
     """
 
     def __init__(
@@ -37,21 +37,21 @@ class ProgressMonitor:
         self._progress, self._cancelled = progress, cancelled
 
     def at(self, share: float) -> None:
-        """Tell that ``share`` of the work is done; raises CancelledError when it is no longer wanted."""
+        """Report that ``share`` of the work is done; raises CancelledError when it was cancelled."""
         if self._cancelled is not None and self._cancelled():
             raise MapCancelledError("the work was cancelled; nothing of it is kept")
         if self._progress is not None:
             self._progress(share)
 
     def over(self, items: Sequence[Item]) -> Iterator[Item]:
-        """Yield ``items``, telling how far it is on the way; raises CancelledError as :meth:`at`."""
+        """Yield ``items`` and report progress on the way; raises CancelledError as :meth:`at`."""
         for k, item in enumerate(items):
             if k % _EVERY == 0:
                 self.at(k / len(items))
             yield item
 
     def part(self, start: float, end: float) -> ProgressMonitor:
-        """Return the watch over that part of the work, ``start`` and ``end`` from 0 to 1."""
+        """Return the monitor of a part of the work, ``start`` and ``end`` from 0 to 1."""
         tell = self._progress
         if tell is None:
             return ProgressMonitor(None, self._cancelled)
@@ -81,12 +81,11 @@ class _Part(NamedTuple):
 
 
 def chained(rows: Sequence[OutlineRow], watch: ProgressMonitor = UNMONITORED) -> list[OutlineRow]:
-    """Return ``rows`` with lines joined where exactly two of a kind meet, to the centimetre.
+    """Return ``rows`` with lines joined wherever exactly two of a kind meet, to the centimetre.
 
-    Of a kind are lines that are alike in everything but points and source. A chain runs in the direction of
-    its first line and stands in its place; its source is that of the first line and how many others are in
-    it, ``walls:3+7``. Lines have no free side, so some are turned round. Raises CancelledError when ``watch``
-    says so.
+    Lines are of a kind if they agree in everything but points and source. A chain has the direction and
+    position of its first line; its source is that of the first line plus the number of others, ``walls:3+7``.
+    Lines have no free side, so some are reversed. Raises CancelledError as ``watch`` does.
     """
     kinds: dict[Any, list[int]] = defaultdict(list)
     for k, row in enumerate(rows):
@@ -110,7 +109,7 @@ def _kind(row: OutlineRow) -> Any:
 
 
 def _partners(rows: Sequence[OutlineRow], members: Sequence[int]) -> Mapping[_End, _End]:
-    """Return for each end that meets exactly one other line's end, that end."""
+    """Map each end that meets exactly one other line's end to that end."""
     nodes: dict[tuple[float, float], list[_End]] = defaultdict(list)
     for k in members:
         for last in (False, True):
@@ -135,7 +134,7 @@ def _chain(k: int, partners: Mapping[_End, _End]) -> list[_Part]:
 
 
 def _followed(end: _End, partners: Mapping[_End, _End]) -> tuple[list[_End], bool]:
-    """Return at which ends the lines beyond ``end`` are entered, and whether they come back to its line."""
+    """Return the ends at which the lines beyond ``end`` are entered, and whether they return to its line."""
     start = end.row
     entered: list[_End] = []
     while end in partners:
@@ -158,26 +157,26 @@ def _joined(rows: Sequence[OutlineRow], chain: Sequence[_Part], first: int) -> O
     )
 
 
-# --- Walls that no robot outside can meet: between buildings that touch, and inside buildings ---
+# --- Walls that no robot outside can reach: between adjacent buildings, and inside buildings ---
 
 _GRID = 0.01
-"""metres; corners nearer than a map tells apart are the same when buildings are put together."""
+"""metres; corners nearer than a map's resolution are merged when buildings are united."""
 _ALONG = 0.05
-"""metres; a line this near to a building's wall is that wall once more."""
+"""metres; a line this near to a building's wall duplicates that wall."""
 _BARRIER = 0.5
-"""metres above the ground: what ends lower, such as a kerb, or begins higher, such as a roof, hides nothing
-that stands on it or below it, for robots come there."""
+"""metres above the ground: obstacles that end lower, such as a kerb, or begin higher, such as a roof, hide
+nothing on or below them, as robots get there."""
 
 
 def without_shared_walls(
     rows: Sequence[OutlineRow], watch: ProgressMonitor = UNMONITORED
 ) -> list[OutlineRow]:
-    """Return ``rows`` without what polygons that touch have between or inside each other.
+    """Return ``rows`` without walls between or inside touching polygons.
 
-    Each polygon keeps what of its outline lies on the outside of them all, with its height and source: a ring
-    where that is whole, else open chains with free space to their right. Polygons that touch none are as they
-    were, and so are all that are no sound polygon. Raises MissingGeometryError without shapely,
-    CancelledError when ``watch`` says so.
+    Each polygon keeps the part of its outline on the outside of them all, with its height and source: a ring
+    if that is complete, else open chains with free space to their right. Polygons that touch none stay
+    unchanged, and so do invalid ones. Raises MissingGeometryError without shapely, CancelledError as
+    ``watch`` does.
     """
     shapely = shapely_module()
     watch.at(0.0)
@@ -208,8 +207,8 @@ def without_hidden_lines(
 ) -> list[OutlineRow]:
     """Return ``rows`` with only those parts of lines that lie outside of all polygons and not along them.
 
-    A line runs along a polygon within 5 cm of it. Raises MissingGeometryError without shapely,
-    CancelledError when ``watch`` says so.
+    A line runs along a polygon within 5 cm of it. Raises MissingGeometryError without shapely, CancelledError
+    as ``watch`` does.
     """
     shapely = shapely_module()
     solid = shapely.buffer([shape for _, shape in _polygons(rows)], _ALONG, join_style="mitre")
@@ -229,7 +228,7 @@ def without_hidden_lines(
 
 
 def shapely_module() -> Any:
-    """Return shapely; raises MissingGeometryError where it is not installed."""
+    """Return shapely; raises MissingGeometryError if it is not installed."""
     try:
         import shapely
     except ImportError:
@@ -241,7 +240,7 @@ def shapely_module() -> Any:
 
 
 def _polygons(rows: Sequence[OutlineRow]) -> Iterator[tuple[list[int], Any]]:
-    """Yield the rows of each sound polygon that no robot comes into, its shell first, and the polygon."""
+    """Yield the rows of each valid polygon that robots cannot enter, its shell first, and the polygon."""
     shapely = shapely_module()
     group: list[int] = []
     for k, row in enumerate(rows):
@@ -305,14 +304,14 @@ def _stretch(row: OutlineRow, points: NDArray[Any], closed: bool, courtyard: boo
     return replace(row, points=points, shape_type=row.shape_type if closed else opened, courtyard=courtyard)
 
 
-# --- Outlines with fewer corners, never farther from the drawn ones than is said, never crossing themselves
+# --- Outlines with fewer corners, within a tolerance of the drawn ones, never crossing themselves
 
 
 def simplified(row: OutlineRow, tolerance: float) -> OutlineRow:
     """Return ``row`` with corners left out (Douglas and Peucker, 1973), within ``tolerance`` metres of it.
 
     An outline that would cross itself, vanish or end up farther off (GEOS may move the corner where a ring
-    begins beyond the tolerance) stays as it is, and so do stairs and what is no sound line.
+    begins beyond the tolerance) stays unchanged, and so do stairs and invalid lines.
     Raises MissingGeometryError without shapely.
     """
     shapely = shapely_module()
@@ -376,7 +375,7 @@ def _is_valid(points: NDArray[Any], closed: bool) -> bool:
     return bool(shapely.LineString(points).is_simple)
 
 
-# --- What is asked of outlines before a map is built of them; each thing by itself and off unless asked for
+# --- Options for reducing outlines before a map is built; each is independent and off by default
 
 _STEP_SLACK = 1e-6
 """of a height step; 0.3 m is three steps of 0.1 m, not four."""
@@ -385,11 +384,11 @@ _DRIVEN_ON = (ShapeType.STAIRS, ShapeType.RAMP)
 
 @dataclass(frozen=True)
 class Shaping:
-    """How outlines are reduced to what a robot needs; all lengths in metres, 0 or nothing is off."""
+    """Options for reducing outlines to what a robot needs; lengths in metres, 0 or None is off."""
 
     plane: tuple[float, float] | None = None
-    """The heights above the ground between which the robot is. What ends below or begins above is left out,
-    but for stairs and ramps."""
+    """The robot's lowest and highest point above the ground. Obstacles that end below or begin above are left
+    out, except stairs and ramps."""
     height_step: float = 0.0
     """Heights are rounded up to a multiple of it."""
     dissolve: bool = False
@@ -397,7 +396,7 @@ class Shaping:
     chain: bool = False
     """Lines that meet end to end and agree in all but their source become one."""
     tolerance: float = 0.0
-    """How far a simplified outline may be from the one it stands for."""
+    """Largest distance of a simplified outline from its original."""
     shortest: float = 0.0
     """Corners nearer than this to the one before are left out."""
 
@@ -415,11 +414,11 @@ def shaped(
     progress: Callable[[float], None] | None = None,
     cancelled: Callable[[], bool] | None = None,
 ) -> Outlines:
-    """Return ``outlines`` as ``shaping`` asks for.
+    """Return ``outlines`` reduced by ``shaping``.
 
-    ``progress`` is told how much is done, 0 to 1; ``cancelled`` is asked again and again whether to end.
-    Outlines that are broken stay as they are; the builder names them. Raises MissingGeometryError where
-    shapely is needed and missing, CancelledError when ``cancelled`` said so.
+    ``progress`` receives the finished share, 0 to 1; ``cancelled`` is polled and returns whether to end.
+    Invalid outlines stay unchanged; the builder reports them. Raises MissingGeometryError if shapely is
+    needed and missing, CancelledError when ``cancelled`` returned true.
     """
     stages, watch = _stages(shaping), ProgressMonitor(progress, cancelled)
     rows: Sequence[OutlineRow] = outlines.rows()
@@ -433,7 +432,7 @@ Stage = Callable[[Sequence[OutlineRow], ProgressMonitor], Sequence[OutlineRow]]
 
 
 def _stages(shaping: Shaping) -> list[Stage]:
-    """Return the work to do, in its order."""
+    """Return the stages of the work in order."""
     plane, step = shaping.plane, shaping.height_step
     shortest, tolerance = shaping.shortest, shaping.tolerance
     stages: list[Stage] = []
@@ -449,7 +448,7 @@ def _stages(shaping: Shaping) -> list[Stage]:
         stages.append(without_hidden_lines)
     if shaping.chain:
         stages.append(chained)
-    # After chaining: what is left of a polygon's outline has a free side and may not be turned round.
+    # After chaining: the remaining pieces of a polygon's outline have a free side and must not be reversed.
     if shaping.dissolve:
         stages.append(without_shared_walls)
     if shortest:
@@ -460,7 +459,7 @@ def _stages(shaping: Shaping) -> list[Stage]:
 
 
 def _in_plane(row: OutlineRow, low: float, high: float) -> bool:
-    """Tell whether a robot between ``low`` and ``high`` meets it; what has no finite height is met."""
+    """Return whether a robot between ``low`` and ``high`` meets it; non-finite heights count as met."""
     if row.shape_type in _DRIVEN_ON:
         return True
     return not (row.base >= high or row.base + row.height <= low)

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from ..errors import MapTextError, RobotMapError, counted
 from .model import Border, BuiltObstacles, Obstacle, RobotMap, ShapeType
 
-# --- Labels inside the text format: characters that mean something there are written ``\HH`` or ``\uHHHH``
+# --- Labels inside the text format: special characters are written ``\HH`` or ``\uHHHH``
 
 # The C1 controls and the line and paragraph separators end a line for some readers; lone surrogates are no
-# UTF-8; blanks at either end are taken for indentation.
+# UTF-8; blanks at either end would be read as indentation.
 _ALWAYS = r"[\x00-\x1f\x7f-\x9f\u2028\u2029\ud800-\udfff\\;%#]|^ | $"
 _RESERVED = re.compile(_ALWAYS)
 _RESERVED_IN_KEY = re.compile(rf"{_ALWAYS}|[=,]")
@@ -27,27 +27,27 @@ _ESCAPED = re.compile(r"\\(?:([0-9a-f]{2})|u([0-9a-f]{4}))")
 
 
 def escape(text: str) -> str:
-    """Return labels separated by commas as they are written."""
+    """Return labels separated by commas in written form."""
     return _RESERVED.sub(_code, text)
 
 
 def escape_key(text: str) -> str:
-    """Return a key of ``ext`` as it is written: commas and equal signs mean something there."""
+    """Return a key of ``ext`` in written form: commas and equal signs are special there."""
     return _RESERVED_IN_KEY.sub(_code, text)
 
 
 def escape_value(text: str) -> str:
-    """Return a value of ``ext`` as it is written: it may hold commas, as the normal ``n=0,0.08,1`` does."""
+    """Return a value of ``ext`` in written form: it may hold commas, as in the normal ``n=0,0.08,1``."""
     return _RESERVED_IN_VALUE.sub(_code, text)
 
 
 def unescape(text: str) -> str:
-    """Return what a written label says."""
+    """Return the label of a written form."""
     return _ESCAPED.sub(lambda match: chr(int(match[1] or match[2], 16)), text)
 
 
 def write_ext(ext: Mapping[str, str]) -> str:
-    """Return extras as they are written after the semantics, ``key=value,...;``, or nothing."""
+    """Return extras as written after the semantics, ``key=value,...;``, or an empty text."""
     if not ext:
         return ""
     return ",".join(f"{escape_key(key)}={escape_value(value)}" for key, value in ext.items()) + ";"
@@ -71,9 +71,9 @@ def _code(match: re.Match[str]) -> str:
     return f"\\{code:02x}" if code < 0x100 else f"\\u{code:04x}"
 
 
-# --- Reading the text format, line by line, keeping how everything was written ---
+# --- Reading the text format line by line, preserving the original spelling ---
 
-# A digit can be matched in one way only: with two, a number of n digits that ends wrongly costs n² steps.
+# A digit can be matched in one way only: with two, a malformed number of n digits would cost n² steps.
 _DECIMAL = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?"
 _NUMBER = re.compile(_DECIMAL, re.ASCII)
 _SEGMENT = re.compile(
@@ -81,7 +81,7 @@ _SEGMENT = re.compile(
 )
 """The four lines of a segment without blanks, comments and extras, as writers make them."""
 _MOST_FIELDS = 5
-"""of a line; what has more is refused without being taken apart further."""
+"""of a line; one with more is refused without further parsing."""
 _INTEGER = re.compile(r"[+-]?\d{1,18}", re.ASCII)
 _META = re.compile(r"%\s*(\S+)(?:\s+(.*))?")
 _BLANKS = " \t\r\n"
@@ -95,10 +95,10 @@ def read_text(text: str) -> RobotMap:
 
 
 class _Reader:
-    """Goes through the lines once. Lines that are empty or only a comment are passed over and kept."""
+    """Reads the lines once. Empty lines and comment lines are skipped and kept."""
 
     def __init__(self, text: str) -> None:
-        # Not splitlines: a label may hold one of the other characters that it takes for line ends.
+        # Not splitlines: a label may hold one of the other characters that it treats as line ends.
         self._lines: list[str] = re.findall(r"[^\n]*\n|[^\n]+", text)
         self._next = 0
         self._place = "the head of the map"
@@ -183,7 +183,7 @@ class _Reader:
         return segments
 
     def _plain_segment(self) -> Segment | None:
-        """Return the next segment if it stands in four lines as writers make them, read in one step."""
+        """Return the next segment if it has the four plain lines of writers, read in one step."""
         match = _SEGMENT.fullmatch("".join(self._lines[self._next : self._next + 4]))
         if match is None:
             return None
@@ -218,7 +218,7 @@ class _Reader:
         return value
 
     def _fields(self, expected: str) -> tuple[int, list[str]]:
-        """Return the next line's number and what stands before each of its semicolons."""
+        """Return the next line's number and the fields before its semicolons."""
         number, content = self._line(expected)
         fields = [value.strip(_BLANKS) for value in content.split(";", _MOST_FIELDS + 1)]
         if fields.pop() and len(fields) <= _MOST_FIELDS:
@@ -241,14 +241,14 @@ class _Reader:
         return number, self._content(number)
 
     def _skip_comments(self) -> int:
-        """Return the number of the next line that says something, and go there."""
+        """Advance to the next line with content, and return its number."""
         number = self._next
         while number < len(self._lines) and not self._content(number):
             number += 1
         return number
 
     def _content(self, number: int) -> str:
-        """Return what a line says apart from its comment."""
+        """Return a line without its comment."""
         return self._lines[number].partition("%")[0].strip(_BLANKS)
 
     def _at_obstacle_or_end(self) -> bool:
@@ -262,7 +262,7 @@ class _Reader:
         )
 
     def _fail_at(self, number: int, expected: str, found: str) -> NoReturn:
-        # A last line without a line break is half a line, not a wrong one.
+        # A last line without a line break is a truncated line, not a wrong one.
         if number == len(self._lines) - 1 and not self._lines[number].endswith("\n"):
             self._fail_cut_off(expected)
         raise MapTextError(f"line {number + 1}: in {self._place}, expected {expected}, found {found[:80]!r}")
@@ -276,7 +276,7 @@ class _Reader:
 
 
 def _column(values: list[Any], dtype: type) -> NDArray[Any]:
-    """Return an array that cannot be written to: the obstacle is written back as it was read."""
+    """Return a read-only array: the obstacle is written back as it was read."""
     column: NDArray[Any] = np.array(values, dtype=dtype)
     column.flags.writeable = False
     return column
@@ -322,27 +322,27 @@ def _parsed_obstacle(
 __all__ = ["read_text", "write_obstacles", "write_text"]
 
 _OBSTACLES = 256
-"""obstacles whose segments are turned into texts together."""
+"""obstacles whose segments are formatted together."""
 _BLOCK = 4096
-"""segments that are turned into Python's numbers at once, which take five times their room."""
+"""segments converted to Python numbers at once, which take five times their memory."""
 _PLAIN_FROM, _PLAIN_BELOW = 1e-4, 1e16
 """Between these Python writes a number without an exponent."""
 _MOST_CENTIMETRES = 1e13
-"""Below this a number of centimetres is told from the next one by two decimals of metres."""
+"""Below this, two decimals of metres distinguish consecutive centimetres."""
 _HUNDREDTHS = [f"{hundredths / 100:g}"[1:] + ";" for hundredths in range(100)]
-"""What stands behind the whole metres."""
+"""The decimals after the whole metres."""
 
 
 def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
     """Return a map as text.
 
-    What was read from a text is written back byte for byte. ``strict`` writes what Fig. 2 has and nothing
-    else: no leading lines, no ``ext``, no comments. Raises RobotMapError for a number that is not finite and
-    for a leading line whose key is not one word.
+    Obstacles read from a text are written back byte for byte. ``strict`` writes only what Fig. 2 has: no
+    leading lines, no ``ext``, no comments. Raises RobotMapError for a number that is not finite and for a
+    leading line whose key is not one word.
     """
     parts = ["".join(_head(robot_map, strict)) if strict or robot_map.head is None else robot_map.head]
     for text in _texts(robot_map.obstacles, strict):
-        # A text may end without a line break, and an obstacle read there may come to stand elsewhere.
+        # A text may end without a line break, and an obstacle read there may be written elsewhere.
         if not parts[-1].endswith("\n"):
             parts.append("\n")
         parts.append(text)
@@ -350,7 +350,7 @@ def write_text(robot_map: RobotMap, *, strict: bool = False) -> str:
 
 
 def write_obstacles(obstacles: Sequence[Obstacle]) -> str:
-    """Return what :func:`write_text` writes of obstacles that were built and not read."""
+    """Return the text that :func:`write_text` writes for obstacles that were built, not read."""
     return "".join(_texts(obstacles, strict=False))
 
 
@@ -381,7 +381,7 @@ def _head(robot_map: RobotMap, strict: bool) -> Iterator[str]:
 
 
 def _texts(obstacles: Sequence[Obstacle], strict: bool) -> Iterator[str]:
-    """Yield each obstacle as it was read, or as it is written."""
+    """Yield the text of each obstacle, original or newly written."""
     if isinstance(obstacles, BuiltObstacles):
         yield from _built_texts(obstacles, strict)
         return
@@ -394,7 +394,7 @@ def _texts(obstacles: Sequence[Obstacle], strict: bool) -> Iterator[str]:
 
 
 def _obstacle_lines(obstacle: Obstacle, numbers: Iterator[str], strict: bool) -> Iterator[str]:
-    """Yield an obstacle's lines; ``numbers`` gives what stands before the labels of each of its segments."""
+    """Yield an obstacle's lines; ``numbers`` yields the text before the labels of each of its segments."""
     ext = {} if strict else obstacle.ext
     count = len(obstacle.a)
     yield _obstacle_head(obstacle.id, obstacle.shape_type, count, obstacle.semantics, ext)
@@ -409,7 +409,7 @@ def _obstacle_lines(obstacle: Obstacle, numbers: Iterator[str], strict: bool) ->
 
 
 def _built_texts(built: BuiltObstacles, strict: bool) -> Iterator[str]:
-    """Yield each obstacle as it is written."""
+    """Yield the text of each obstacle."""
     values = np.column_stack([built.a, built.b, built.height])
     numbers = zip(_all_number_lines(values), built.outdoor.tolist(), strict=True)
     lines = (f"{number}{'01'[outdoor]};;\n#\n" for number, outdoor in numbers)
@@ -425,7 +425,7 @@ def _obstacle_head(id: int, shape_type: ShapeType, count: int, semantics: str, e
 
 
 def _numbers(obstacles: Sequence[Obstacle]) -> Iterator[str]:
-    """Yield the two ends and the height of each segment of ``obstacles``, as they are written."""
+    """Yield the text of the two ends and the height of each segment of ``obstacles``."""
     if not obstacles:
         return
     ends = [np.concatenate(side) for side in zip(*((one.a, one.b) for one in obstacles), strict=True)]
@@ -433,7 +433,7 @@ def _numbers(obstacles: Sequence[Obstacle]) -> Iterator[str]:
 
 
 def _all_number_lines(values: NDArray[Any]) -> Iterator[str]:
-    """Yield a text for each row of ``values``, (n, 5), made of a block of them at once."""
+    """Yield a text for each row of ``values``, (n, 5), block by block."""
     for begin in range(0, len(values), _BLOCK):
         yield from _number_lines(values[begin : begin + _BLOCK])
 
@@ -452,7 +452,7 @@ def _number_lines(values: NDArray[Any]) -> Iterator[str]:
         for (ax, ay, bx, by, height), (i, j, k, m, n) in rows:
             yield f"{ax}{ends[i]}{ay}{ends[j]}\n{bx}{ends[k]}{by}{ends[m]}\n{height}{ends[n]}"
         return
-    # A sum with zero has no sign of its own, as -0.0 has.
+    # Adding zero removes the sign of -0.0.
     for ax, ay, bx, by, height in (values + 0.0).tolist():
         yield f"{ax};{ay};\n{bx};{by};\n{height};".replace(".0;", ";")
 

@@ -1,1 +1,1 @@
-"""A robot map as other robots and people read it: Nav2 grids and masks, GeoJSON, GeoPackage, SVG."""
+"""Exports of robot maps: Nav2 grids and masks, GeoJSON, GeoPackage, SVG."""

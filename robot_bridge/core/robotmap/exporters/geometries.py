@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from ..model import CUT, Border, Obstacle, RobotMap, ShapeType
 
-# --- The segments of an obstacle as the lines that they form ---
+# --- The segments of an obstacle joined to lines ---
 
 Points = NDArray[Any]
 
@@ -32,7 +32,7 @@ def lines_of(obstacle: Obstacle) -> list[Points]:
 
 
 def is_ring(line: Points) -> bool:
-    """Tell whether a line ends where it began and may enclose something."""
+    """Return whether a line ends where it began and may enclose something."""
     return len(line) > 3 and bool((line[0] == line[-1]).all())
 
 
@@ -43,7 +43,7 @@ def signed_area(ring: Points) -> float:
 
 
 def flanks_of(obstacle: Obstacle) -> tuple[Points, Points]:
-    """Return the sides of a flight of stairs as segments a→b, (2 n - 2, 2) each, from riser to riser."""
+    """Return the flanks of a flight of stairs as segments a→b, (2 n - 2, 2) each, from riser to riser."""
     return (
         np.concatenate([obstacle.a[:-1], obstacle.b[:-1]]),
         np.concatenate([obstacle.a[1:], obstacle.b[1:]]),
@@ -57,7 +57,7 @@ def treads_of(obstacle: Obstacle) -> list[Points]:
     return [ring if signed_area(ring) >= 0 else ring[::-1] for ring in rings]
 
 
-# --- What obstacles enclose: rings as they are, and rings that the map's border cut, closed along the border
+# --- Areas of obstacles: rings, and rings cut by the map's border, closed along it
 
 _WHOLE = (ShapeType.CLOSED_POLYGON, ShapeType.CLOSED_CURVE)
 _CUT = (ShapeType.OPEN_POLYGON, ShapeType.OPEN_CURVE)
@@ -69,7 +69,7 @@ _ON_BORDER = 0.006
 class Solid:
     """One ring, (n, 2) metres in the site frame: counter-clockwise round an obstacle, clockwise a courtyard.
 
-    ``obstacle`` is one that it belongs to. ``cut`` tells that parts of it are the border's and no walls.
+    ``obstacle`` is one that it belongs to. ``cut`` says that parts of it are the border, not walls.
     """
 
     ring: Points
@@ -78,12 +78,12 @@ class Solid:
 
 
 def solids_of(robot_map: RobotMap) -> tuple[list[Solid], list[str]]:
-    """Return the rings of a map, and a warning for each obstacle that should be one and is not.
+    """Return the rings of a map, and a warning for each obstacle that should be a ring and is not.
 
     A ring that the border cut is written as open chains, as a wall is, and marked by the extra ``cut``;
-    chains of one source belong together. A map without extras cannot say it, for which there is a warning
-    where it matters. Of an obstacle that is all around the map there is nothing but its courtyards: the
-    border stands for its outer ring. Ramps are driven on and enclose nothing.
+    chains of one source belong together. A map without extras lacks this mark; then there is a warning if it
+    matters. An obstacle all around the map has only its courtyards on it: the border replaces its outer ring.
+    Ramps are driven on and enclose nothing.
     """
     solids, warnings = [], []
     for obstacle in robot_map.obstacles:
@@ -117,7 +117,7 @@ def edges_of(rings: Sequence[Points]) -> tuple[NDArray[Any], NDArray[Any]]:
 
 
 def first_label(obstacle: Obstacle) -> str:
-    """Return the first word of an obstacle's semantics, which says what kind of thing it is."""
+    """Return the first word of an obstacle's semantics, its kind."""
     return obstacle.semantics.partition(",")[0]
 
 
@@ -135,7 +135,7 @@ def _cut_groups(robot_map: RobotMap) -> dict[tuple[str, str], list[Chain]]:
 
 
 def _unmarked(robot_map: RobotMap, labels: set[str]) -> list[str]:
-    """Return a warning when chains look as if they were parts of cut rings with one of ``labels``."""
+    """Return a warning when chains look like parts of cut rings with one of ``labels``."""
     alike = [
         obstacle.id
         for obstacle in robot_map.obstacles
@@ -152,7 +152,7 @@ def _unmarked(robot_map: RobotMap, labels: set[str]) -> list[str]:
 
 
 def _closed_along(border: Border, chains: list[Chain]) -> list[Solid]:
-    """Return the rings that chains form with the border between them; none when they do not fit together.
+    """Return the rings formed by chains and the border between them; none when they do not fit together.
 
     From the end of each chain the border is followed counter-clockwise to the next beginning (Weiler and
     Atherton's clipping, 1977): an outline has its inside on the left.
@@ -179,7 +179,7 @@ def _closed_along(border: Border, chains: list[Chain]) -> list[Solid]:
 
 
 def _around(border: Border, solids: Sequence[Solid]) -> list[Solid]:
-    """Return the border as a ring for each source of which there are courtyards and no ring around them."""
+    """Return the border as a ring for each source that has courtyards but no ring around them."""
     hosts: dict[tuple[str, str], list[Points]] = defaultdict(list)
     for solid in solids:
         if signed_area(solid.ring) > 0:
@@ -187,7 +187,7 @@ def _around(border: Border, solids: Sequence[Solid]) -> list[Solid]:
     found = {}
     for solid in solids:
         key = _identity(solid.obstacle)
-        # Rings of other programs' maps have no source, and may run either way.
+        # Rings in maps of other programs have no source, and may have either direction.
         if (
             key[1]
             and signed_area(solid.ring) < 0
@@ -215,7 +215,7 @@ def _along(border: Border, point: Points) -> float:
         (abs(y - border.y_max), width + height + border.x_max - x),
         (abs(x - border.x_min), 2 * width + height + border.y_max - y),
     )
-    # In millimetres, so that two ends in one place are in one place.
+    # In millimetres, so that two coincident ends compare equal.
     return round(min(sides)[1], 3) % (2 * width + 2 * height)
 
 
@@ -250,7 +250,7 @@ def _unclosed(group: list[Chain]) -> str:
     return f"{name} is cut by the border and its parts do not fit together: its inside is written as free"
 
 
-# --- A robot map as geometries with attributes, for formats that people's programs read ---
+# --- A robot map as geometries with attributes, for GIS formats ---
 
 GeometryKind = Literal["Polygon", "MultiLineString", "LineString"]
 
@@ -272,10 +272,10 @@ class MapShape:
 def obstacle_shapes(robot_map: RobotMap) -> list[MapShape]:
     """Return a shape for each obstacle: a polygon where its segments close, else lines.
 
-    A courtyard becomes a hole of the obstacle round it that has the same source; where there is none it
-    remains a polygon of its own, marked ``courtyard``. Attributes: ``id``, ``shape_type`` and its name
-    ``shape``, ``semantics``, ``height_m`` of the highest segment, ``outdoor`` (of all segments),
-    ``segments``, ``courtyards`` (ids of those that are holes), ``courtyard``, ``source`` and ``ext``.
+    A courtyard becomes a hole of the obstacle round it that has the same source; without one it remains a
+    polygon of its own, marked ``courtyard``. Attributes: ``id``, ``shape_type`` and its name ``shape``,
+    ``semantics``, ``height_m`` of the highest segment, ``outdoor`` (of all segments), ``segments``,
+    ``courtyards`` (ids of those that are holes), ``courtyard``, ``source`` and ``ext``.
     """
     outer, courtyards, lines = _sorted_out(robot_map.obstacles)
     holes: dict[int, list[tuple[Points, Obstacle]]] = {}
@@ -329,7 +329,7 @@ Ring = tuple[Points, Obstacle]
 def _sorted_out(
     obstacles: Iterable[Obstacle],
 ) -> tuple[list[Ring], list[Ring], list[tuple[list[Points], Obstacle]]]:
-    """Return outer rings, courtyards, and the lines of everything that does not close."""
+    """Return outer rings, courtyards, and the lines of all unclosed obstacles."""
     outer: list[Ring] = []
     courtyards: list[Ring] = []
     lines: list[tuple[list[Points], Obstacle]] = []
@@ -359,7 +359,7 @@ def _identity(obstacle: Obstacle) -> tuple[str, str]:
 
 
 def _holds(outer: Points, ring: Points) -> bool:
-    """Tell whether the middle of the ring's first side is in ``outer``: its corners may touch."""
+    """Return whether the middle of the ring's first side is in ``outer``: its corners may touch."""
     if (ring.min(axis=0) < outer.min(axis=0)).any() or (ring.max(axis=0) > outer.max(axis=0)).any():
         return False
     x, y = (ring[0] + ring[1]) / 2

@@ -16,10 +16,10 @@ from ...errors import ExportGridError, MaskAreaError
 from ..model import Border, Obstacle, RobotMap, ShapeType
 from .geometries import Points, edges_of, flanks_of, signed_area, solids_of
 
-# --- The cells of a grid: where they are, and how many there may be ---
+# --- The cells of a grid: their places, and their largest number ---
 
 LARGEST_GRID = 64_000_000
-"""cells that a grid may have unless told otherwise: 400 m x 400 m at 5 cm, about 64 MB for a robot."""
+"""cells that a grid may have by default: 400 m x 400 m at 5 cm, about 64 MB for a robot."""
 
 _WHOLE = 1e-6
 """cells; a border this much wider than a whole number of cells has no further cell."""
@@ -29,8 +29,8 @@ _WHOLE = 1e-6
 class RasterGrid:
     """Square cells of ``resolution`` metres; (x_min, y_min) is the lower left corner of cell (0, 0).
 
-    Row 0 is the lowest, as in a ROS OccupancyGrid; images, whose first row is the highest, are turned round
-    where they are written.
+    Row 0 is the lowest, as in a ROS OccupancyGrid; images, whose first row is the highest, are flipped when
+    written.
     """
 
     x_min: float
@@ -68,24 +68,24 @@ def _rounded_up(length: float) -> float:
     return round(math.ceil(length / step + 1e-9) * step, 12)
 
 
-# --- Lines and areas on a grid, array by array: which cells a line touches, which centres a ring encloses
+# --- Lines and areas on a grid, vectorised: cells touched by lines, cell centres enclosed by rings
 
 CellArray = NDArray[Any]
 
 _NOISE_DIGITS = 6
-"""Digits of a cell that count; what follows is floating point's, not the point's."""
+"""Significant digits of a cell; further digits are floating-point noise."""
 
 _FAR = 1e9
-"""cells; a file may hold any number, and integers do not hold all of them."""
+"""cells; a file may hold numbers beyond the range of integers."""
 
 _BAND_CELLS = 1 << 21
-"""cells that are summed up at once, so that memory stays far below that of whole grids of integers."""
+"""cells that are summed at once, so that memory stays far below that of whole grids of integers."""
 
 
 def touched_cells(grid: RasterGrid, a: NDArray[Any], b: NDArray[Any]) -> CellArray:
     """Return (rows, columns) bool, true for each cell that one of the segments a→b, (n, 2) metres, touches.
 
-    Cells of one line share edges, never only corners, so nothing slips through a thin wall. A line along the
+    Consecutive cells of a line share edges, never only corners, so thin walls have no gaps. A line along the
     edge of two cells belongs to the upper or right one, on the far border of the grid to the last one.
     """
     lower, upper = _in_cells(grid, a, b)
@@ -121,7 +121,7 @@ def enclosed_cells(grid: RasterGrid, a: NDArray[Any], b: NDArray[Any]) -> CellAr
     segment, row = _rows_of(first, last, np.ones(len(first), dtype=bool))
     x = np.round(_x_at(lower[segment], upper[segment], row + 0.5), _NOISE_DIGITS)
     column = np.clip(np.ceil(x - 0.5).astype(np.int64), 0, grid.columns)
-    # What runs down has its inside on the right of the sheet, where the row goes on.
+    # A downward segment has the inside on its right side of the sheet, where the row continues.
     return _summed(grid, row, column, np.sign(a[segment, 1] - b[segment, 1]))
 
 
@@ -143,7 +143,7 @@ def _floor(values: NDArray[Any], count: int) -> NDArray[Any]:
 def _rows_of(
     first: NDArray[Any], last: NDArray[Any], inside: NDArray[Any]
 ) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the segment and the row of each pair of the two."""
+    """Return the segment and the row of each such pair."""
     count = np.where(inside, np.maximum(last - first + 1, 0), 0)
     segment = np.repeat(np.arange(len(count)), count)
     begin = np.cumsum(count) - count
@@ -179,7 +179,7 @@ def _bands(grid: RasterGrid) -> Iterator[tuple[int, int]]:
         yield low, min(low + height, grid.rows)
 
 
-# --- A robot map as an occupancy grid, the map that Nav2 and AMCL read ---
+# --- A robot map as an occupancy grid, as read by Nav2 and AMCL ---
 
 FREE, OCCUPIED, UNKNOWN = 0, 100, -1
 """Values of nav_msgs/OccupancyGrid."""
@@ -207,11 +207,11 @@ def occupancy_of(
     """Return the grid of a map, with the site frame as its frame.
 
     Every cell that a segment touches is occupied. Cells whose centre lies in an obstacle are unknown: the map
-    says where its wall is and nothing of what is behind, and a laser scan matched against a solid block would
-    fit as well a metre too deep. The wall has no gap, so a planner enters neither way; ``inside="occupied"``
-    fills it for those that want it. Courtyards and everything else within the border are free, cells whose
-    centre lies beyond the border unknown. Segments lower than ``drives_over`` metres and ramps are no
-    obstacle; stairs are, with their flanks.
+    has its wall and nothing behind it, and a laser scan matched against a solid block would fit equally well
+    a metre too deep. The wall has no gap, so a planner enters neither way; ``inside="occupied"`` fills it on
+    request. Courtyards and everything else within the border are free, cells whose centre lies beyond the
+    border unknown. Segments lower than ``drives_over`` metres and ramps are no obstacles; stairs are, with
+    their flanks.
 
     :raises ExportGridError: when the resolution is no length or the grid would have more than ``limit``
     cells.
@@ -227,7 +227,7 @@ def occupancy_of(
 
 
 def _walls(robot_map: RobotMap, drives_over: float) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return the segments that stand in the way, a→b, (n, 2) each."""
+    """Return the blocking segments, a→b, (n, 2) each."""
     starts, ends = [np.empty((0, 2))], [np.empty((0, 2))]
     for obstacle in robot_map.obstacles:
         stands = ~_driven_over(obstacle, drives_over)
@@ -241,7 +241,7 @@ def _walls(robot_map: RobotMap, drives_over: float) -> tuple[NDArray[Any], NDArr
 
 
 def _driven_over(obstacle: Obstacle, drives_over: float) -> NDArray[Any]:
-    """Tell which segments a robot drives over; a flight of stairs is judged by its highest riser."""
+    """Return which segments a robot drives over; a flight of stairs is judged by its highest riser."""
     if obstacle.shape_type is ShapeType.RAMP:
         return np.ones(len(obstacle.a), dtype=bool)
     if obstacle.shape_type is ShapeType.STAIRS:
@@ -258,13 +258,13 @@ def _forget_beyond(robot_map: RobotMap, grid: RasterGrid, cells: NDArray[Any]) -
     cells[y > robot_map.border.y_max] = UNKNOWN
 
 
-# --- The two files of a Nav2 map: a PGM image and the YAML that says how to read it ---
+# --- The two files of a Nav2 map: a PGM image and its YAML description ---
 # The rules are those of nav2_map_server (map_io.cpp): the darker a pixel, the more occupied; the first row
 # of
 # the image is the highest; ``origin`` is the lower left corner of the lower left pixel.
 
 FREE_PIXEL, UNKNOWN_PIXEL, OCCUPIED_PIXEL = 254, 205, 0
-"""What map_saver writes."""
+"""The pixel values of map_saver."""
 
 OCCUPIED_THRESHOLD, FREE_THRESHOLD = 0.65, 0.196
 """205 is occupied by 50/255 = 0.19608: above 0.196, so unknown, and below the 0.25 that map_saver writes into
@@ -317,7 +317,7 @@ def _yaml(
 
 
 def _comment(text: str) -> str:
-    """Return one line of comment; control characters are no YAML even there."""
+    """Return one line of comment; YAML forbids control characters even there."""
     return "# " + "".join(letter if letter.isprintable() else " " for letter in text).strip()
 
 
@@ -331,10 +331,10 @@ def _number(value: float) -> str:
     return np.format_float_positional(value, trim="0")
 
 
-# --- Masks for Nav2's costmap filters: where robots must not drive, and how fast they may ---
+# --- Masks for Nav2's costmap filters: keepouts and speed limits ---
 
 NO_LIMIT = 0
-"""What SpeedFilter takes for no limit; it refuses unknown cells."""
+"""The value that SpeedFilter treats as no limit; it refuses unknown cells."""
 
 _STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0)
 
@@ -363,7 +363,7 @@ class SpeedMask:
 def keepout_mask(grid: RasterGrid, areas: Sequence[MaskArea]) -> NDArray[Any]:
     """Return (rows, columns) int8, OCCUPIED in each cell that an area touches and FREE elsewhere.
 
-    KeepoutFilter leaves free cells as the costmap has them. Raises MaskAreaError.
+    KeepoutFilter leaves free cells unchanged in the costmap. Raises MaskAreaError.
     """
     cells = np.full((grid.rows, grid.columns), FREE, dtype=np.int8)
     cells[_covered(grid, areas)] = OCCUPIED
@@ -371,10 +371,10 @@ def keepout_mask(grid: RasterGrid, areas: Sequence[MaskArea]) -> NDArray[Any]:
 
 
 def speed_mask(grid: RasterGrid, areas: Sequence[MaskArea]) -> SpeedMask:
-    """Return the mask of speed limits, in steps that are never above the limit that was asked.
+    """Return the mask of speed limits, rounded down to steps.
 
     Where areas overlap the lower speed holds; a cell on an edge belongs to both sides. Raises MaskAreaError
-    for a speed that is not above 0 and for one that is too low beside the highest to be told from 0.
+    for a speed that is not above 0, and for one too low relative to the highest to differ from 0.
     """
     for area in areas:
         if not math.isfinite(area.speed) or area.speed <= 0:
@@ -413,7 +413,7 @@ def filter_parameters(kind: int, mask: str, multiplier: float = 1.0) -> bytes:
 
 
 def _covered(grid: RasterGrid, areas: Sequence[MaskArea]) -> NDArray[Any]:
-    """Tell which cells an area touches, also with less than their centre."""
+    """Return which cells an area touches, even without their centre."""
     rings = [ring for area in areas for ring in _oriented(area)]
     edges = edges_of(rings)
     covered: NDArray[Any] = enclosed_cells(grid, *edges) | touched_cells(grid, *edges)

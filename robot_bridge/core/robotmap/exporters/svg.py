@@ -16,7 +16,7 @@ from ...errors import counted
 from ..model import Border, Obstacle, RobotMap, ShapeType
 from .geometries import MapShape, Points, Solid, first_label, lines_of, obstacle_shapes, solids_of
 
-# --- Which colour an obstacle has in a picture, by what its label says it is ---
+# --- Colours of obstacles in a picture, by label ---
 
 FACE, GRID_LINE, INK, QUIET = "#f5f2ec", "#ffffff", "#2f2a26", "#847c74"
 
@@ -62,7 +62,7 @@ def colours_of_labels(obstacles: Iterable[Obstacle]) -> dict[str, Colours]:
 
 
 def colours_of(shape_type: int, semantics: str, by_label: Mapping[str, Colours]) -> Colours:
-    """Return the colours of an obstacle: what stairs and ramps are is said by their shape type."""
+    """Return the colours of an obstacle: those of stairs and ramps depend on their shape type."""
     if shape_type == ShapeType.STAIRS:
         return STAIRS
     if shape_type == ShapeType.RAMP:
@@ -81,11 +81,11 @@ def _known(label: str) -> Colours | None:
     return next((colours for words, colours in _KNOWN if any(word in text for word in words)), None)
 
 
-# --- Where in a polygon there is room for a word ---
+# --- Place for a label in a polygon ---
 
 _STEPS = 24
 _AS_GOOD = 0.85
-"""Part of the best distance that is good enough for a place nearer to the middle."""
+"""Share of the best distance that is enough for a place nearer to the middle."""
 
 
 class LabelPosition(NamedTuple):
@@ -98,9 +98,9 @@ class LabelPosition(NamedTuple):
 
 
 def label_position(rings: Sequence[NDArray[Any]]) -> LabelPosition:
-    """Return a place in a polygon, whose rings are (n, 2) and closed, far from its sides.
+    """Return a place far from the sides of a polygon, whose rings are (n, 2) and closed.
 
-    A grid of points is looked through, so a polygon that is narrow everywhere may give a distance of 0.
+    Only a grid of points is searched, so a polygon that is narrow everywhere may give a distance of 0.
     """
     low, high = rings[0].min(axis=0), rings[0].max(axis=0)
     steps = (np.arange(_STEPS + 1) + 0.5) / (_STEPS + 1)
@@ -122,7 +122,7 @@ def label_position(rings: Sequence[NDArray[Any]]) -> LabelPosition:
     return LabelPosition(float(x[best, 0]), float(y[best, 0]), float(away[best]), float(beside))
 
 
-# --- The sheet that a picture of a map is drawn on: where metres come to lie, and what stands round the map
+# --- The sheet of a picture of a map: transform from metres, and the margins around the map
 
 _LEFT, _TOP, _RIGHT, _BOTTOM = 62.0, 66.0, 210.0, 40.0
 _SMALLEST_SIDE = 300.0
@@ -176,7 +176,7 @@ class Sheet:
             yield self._line([(self.border.x_min, y), (self.border.x_max, y)])
 
     def surround(self, title: str, subtitle: str) -> Iterator[str]:
-        """Yield what covers the margins: paper, frame, the grid's metres and the title."""
+        """Yield the content of the margins: paper, frame, the grid's metres and the title."""
         right, bottom = _LEFT + self.map_width, _TOP + self.map_height
         yield (
             f'<path d="M0 0H{self.width}V{self.height}H0ZM{_LEFT} {_TOP}V{bottom:.1f}H{right:.1f}V{_TOP}Z" '
@@ -237,7 +237,7 @@ class Sheet:
 def svg_text(
     x: float, y: float, words: str, size: float, colour: str, anchor: str, bold: bool = False, halo: str = ""
 ) -> str:
-    """Return a line of text; what XML cannot hold is left out."""
+    """Return a line of text without characters that XML cannot hold."""
     shown = escape("".join(letter for letter in words if letter.isprintable()))
     weight = ' font-weight="bold"' if bold else ""
     place = f'x="{x:.1f}" y="{y:.1f}" {FONT} font-size="{size:g}" text-anchor="{anchor}"{weight}'
@@ -271,14 +271,15 @@ _SHADOW = np.array([0.16, -0.12])
 """metres to the right and up for each metre of height."""
 
 _LOWEST_SHADOW, _HIGHEST_SHADOW = 0.5, 30.0
-"""metres: what is lower has no shadow, what is higher none that is longer."""
+"""metres: lower obstacles have no shadow, higher ones no longer shadow."""
 
 
 def svg_of(robot_map: RobotMap, title: str = "", size: float = 1000.0) -> bytes:
     """Return the picture of a map: its longer side is ``size`` pixels, plus margins.
 
     Areas are coloured by the first label and darker where they are higher, with a shadow as long as they are
-    high; heights and names stand where there is room. Grid north comes from the leading line ``rotation``.
+    high; heights and names are drawn where there is room. Grid north comes from the leading line
+    ``rotation``.
     """
     sheet = Sheet.of(robot_map.border, size)
     by_label = colours_of_labels(robot_map.obstacles)
@@ -326,7 +327,7 @@ def _cut_areas(sheet: Sheet, solids: list[Solid], by_label: Mapping[str, Colours
 
 def _areas(sheet: Sheet, shapes: list[MapShape], by_label: Mapping[str, Colours]) -> Iterator[str]:
     areas = [shape for shape in shapes if shape.kind == "Polygon"]
-    # Grounds come first, so that they do not cover what stands on them.
+    # Grounds come first, so that they do not cover the obstacles on them.
     for shape in sorted(areas, key=lambda area: not _is_ground(area)):
         shape_type = shape.attributes["shape_type"]
         colours = colours_of(shape_type, shape.attributes["semantics"], by_label)
@@ -401,8 +402,8 @@ def _subtitle(robot_map: RobotMap) -> str:
 
 
 def _north(robot_map: RobotMap) -> float | None:
-    """Return the angle of grid north clockwise from the site's y axis, radians; None when it is not known."""
-    # A CRS of a site's own has a name instead of a code, and its y axis may point anywhere.
+    """Return the angle of grid north clockwise from the site's y axis, radians; None if unknown."""
+    # A local CRS of a site has a name instead of a code, and its y axis may point anywhere.
     if not re.fullmatch(r"\w+:\w+", robot_map.meta.get("crs", "")):
         return None
     try:

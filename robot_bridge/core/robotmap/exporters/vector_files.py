@@ -23,7 +23,7 @@ ToLonLat = Callable[[Points], NDArray[Any]]
 """From (n, 2) metres in the site frame to (n, 2) longitudes and latitudes, WGS 84 degrees."""
 
 _DIGITS = 8
-"""A millimetre: the map's centimetres survive the way there and back."""
+"""A millimetre: the map's centimetres survive a round trip."""
 
 
 def geojson_of(
@@ -31,8 +31,8 @@ def geojson_of(
 ) -> bytes:
     """Return a FeatureCollection of ``shapes``; outer rings run counter-clockwise, holes clockwise.
 
-    ``meta`` becomes the member ``robot_map``, which readers that do not know it pass over. Raises
-    GeoreferenceError when a position is none on the earth, or the map lies across the antimeridian.
+    ``meta`` becomes the member ``robot_map``, which other readers ignore. Raises GeoreferenceError when a
+    position is not on the earth, or the map lies across the antimeridian.
     """
     placed = _placed(shapes, to_lonlat)
     content: dict[str, Any] = {"type": "FeatureCollection"}
@@ -46,7 +46,7 @@ def geojson_of(
         for shape, parts in zip(shapes, placed, strict=True)
     ]
     text = json.dumps(content, ensure_ascii=False, allow_nan=False, separators=(",", ":"))
-    # A feature a line: programs do not care, and people and their diffs do.
+    # One feature per line, for readable diffs.
     return (text.replace(',{"type":"Feature"', ',\n{"type":"Feature"') + "\n").encode()
 
 
@@ -98,7 +98,7 @@ _WKB_KIND = {"LineString": 2, "Polygon": 3, "MultiLineString": 5}
 
 
 def geopackage_layers(robot_map: RobotMap) -> dict[str, list[MapShape]]:
-    """Return the shapes of each layer that has any; in a layer all have one kind and the same attributes."""
+    """Return the shapes of each non-empty layer; within a layer all have one kind and the same attributes."""
     shapes = obstacle_shapes(robot_map)
     layers = {
         "obstacle_areas": [shape for shape in shapes if shape.kind == "Polygon"],
@@ -178,7 +178,7 @@ def _points(points: Points) -> bytes:
 
 def _check_pyogrio() -> None:
     try:
-        import pyogrio  # noqa: F401 - only whether it is there
+        import pyogrio  # noqa: F401 - only checks whether it is installed
     except ImportError:
         raise MissingExportPackageError(
             "GeoPackage needs the Python package pyogrio, which is not installed here; install it "
