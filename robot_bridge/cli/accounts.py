@@ -1,4 +1,4 @@
-"""``robot-bridge robots``, ``operators``, ``links`` and ``sessions``: who may connect, and who does."""
+"""``robot-bridge robots``, ``operators``, ``links`` and ``sessions``: accounts and connections."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ..gateway.storage.roles.choice import has_accounts, role_manager_on
 from .audit import act_audited, after_days, local_time, read_database
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 
-# --- The password of an account that a command makes: out of a file, or a random one that is shown once
+# --- The password of a new account: from a file, or a random one that is shown once
 
 RANDOM_BYTES = 24
 
@@ -38,7 +38,7 @@ def new_password(file: Path | None) -> str:
     return secrets.token_urlsafe(RANDOM_BYTES) if file is None else read_password(file)
 
 
-# --- The two commands that operators and robots have in common: a new token, and none any more ---
+# --- The two commands shared by operators and robots: issue a token, and revoke it ---
 
 Name = Annotated[str, typer.Argument(help="Its name, as it stands in every log.")]
 Expires = Annotated[float | None, typer.Option(help="Days until the token expires.", min=0.0)]
@@ -49,7 +49,7 @@ def issuing(
 ) -> Callable[..., None]:
     """Return the command ``action`` that prints a new token of an account of ``kind``.
 
-    ``issue(connection, name, now, until)`` makes it in place of the old one, times in seconds since 1970.
+    ``issue(connection, name, now, until)`` replaces the old one, times in seconds since 1970.
     """
 
     def command(
@@ -71,7 +71,7 @@ def issuing(
 def revoking(
     kind: str, action: str, revoke: Callable[[Connection, str, float], object], renewing: str
 ) -> Callable[..., None]:
-    """Return the command ``action`` that takes an account's token away; ``renewing`` gives a new one.
+    """Return the command ``action`` that revokes an account's token; ``renewing`` issues a new one.
 
     ``revoke(connection, name, now)`` does it, now in seconds since 1970.
     """
@@ -93,7 +93,7 @@ def show_token(token: str, of: str) -> None:
 
 
 def state_of(token: accounts.Grant | None) -> str:
-    """Return in words how a token stands."""
+    """Return the state of a token in words."""
     if token is None:
         return "no token"
     if token.revoked_at is not None:
@@ -103,7 +103,7 @@ def state_of(token: accounts.Grant | None) -> str:
     return f"{'expired' if fault else 'valid'}{expires}, last used {local_time(token.used_at)}"
 
 
-# --- Operators: who may connect to the desk, and what they may do ---
+# --- Operators: accounts for the desk, and their roles ---
 
 operators = typer.Typer(help="Accounts of operators: their roles and tokens.", no_args_is_help=True)
 
@@ -170,7 +170,7 @@ def list_operators(
         typer.echo(f"{operator.name}\t{operator.role.value}\t{state_of(operator.token)}")
 
 
-# --- Links: which adapters may connect, and the robots that each may speak for ---
+# --- Links: accounts of adapters, and the robots that each may speak for ---
 
 links = typer.Typer(help="Accounts of links, which speak for many robots.", no_args_is_help=True)
 
@@ -233,7 +233,7 @@ def list_links(database: DatabaseOption = DEFAULT, database_password_file: Passw
         typer.echo(f"{link.name}\t{' '.join(link.robots)}\t{state_of(link.token)}")
 
 
-# --- Sessions: which operators are connected ---
+# --- Sessions: connected operators ---
 
 sessions = typer.Typer(help="Connections of operators to the desk.", no_args_is_help=True)
 

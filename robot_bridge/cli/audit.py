@@ -1,4 +1,4 @@
-"""``robot-bridge audit``: who did what; and the entries that other commands make."""
+"""``robot-bridge audit``: prints the audit log; and adds the entries of other commands."""
 
 from __future__ import annotations
 
@@ -23,22 +23,22 @@ from ..gateway.storage import revisions
 from ..gateway.storage.database import Database, run_once
 from .options import DEFAULT, DatabaseOption, PasswordFileOption, database_address
 
-# --- What the command line does to accounts and to the database is written into the audit log ---
+# --- Audit log entries for changes of accounts and of the database by the command line ---
 
 T = TypeVar("T")
 
 
 def read_database(address: URL, work: Callable[[Connection], T]) -> T:
-    """Return what ``work`` finds in the database at ``address``."""
+    """Return the result of ``work`` on the database at ``address``."""
     return asyncio.run(_run(address, work))
 
 
 def act_audited(
     address: URL, action: str, subject: str, detail: str | None, work: Callable[[Connection], T]
 ) -> T:
-    """Do ``work`` and note ``action`` on ``subject`` in one transaction.
+    """Do ``work`` and record ``action`` on ``subject`` in one transaction.
 
-    What is refused is noted too, and raised again.
+    Refusals are recorded too, and raised again.
     """
 
     def noted(connection: Connection) -> T:
@@ -56,16 +56,16 @@ def act_audited(
 
 @contextlib.contextmanager
 def audited(address: URL, action: str, subject: str, detail: str | None = None) -> Iterator[None]:
-    """Note ``action`` on ``subject`` once the work inside is done, or was refused.
+    """Record ``action`` on ``subject`` once the work inside is done, or was refused.
 
-    For work that is no transaction. What is done stays done where the log cannot be written; that is said on
+    For work that is no transaction. The work stays done if the log cannot be written; that is reported on
     standard error.
     """
     try:
         yield
     except BridgeError as error:
         reason = str(error)
-        with contextlib.suppress(BridgeError):  # what keeps the log from being written is said already
+        with contextlib.suppress(BridgeError):  # the reason is reported already
             run_once(address, _note_if_there, action, subject, False, reason)
         raise
     try:
@@ -75,7 +75,7 @@ def audited(address: URL, action: str, subject: str, detail: str | None = None) 
 
 
 def local_time(seconds: float | None) -> str:
-    """Return a time as people of this computer read it, ``-`` for none."""
+    """Return a time in this computer's time zone as text, ``-`` for none."""
     if seconds is None:
         return "-"
     return datetime.fromtimestamp(seconds).astimezone().isoformat(" ", "seconds")
@@ -110,13 +110,13 @@ def _note_if_there(connection: Connection, action: str, subject: str, done: bool
 
 
 def system_account() -> str:
-    """Return the account of this computer that runs the command, and behind sudo whose it is."""
+    """Return the account of this computer that runs the command, and the one behind sudo."""
     uid = os.getuid()
     try:
         name = pwd.getpwuid(uid).pw_name
     except KeyError:
         name = f"account {uid}"
-    # Only root is believed: everybody else can write into the environment what they like.
+    # Only root is trusted: everybody else can set the environment freely.
     behind = os.environ.get("SUDO_USER") if uid == 0 else None
     return f"{name} (sudo by {behind})" if behind and behind != name else name
 
@@ -152,12 +152,12 @@ def audit(
             "done" if entry.done else "refused",
             entry.detail or "",
         )
-        # A line break in what somebody sent must not look like an entry of its own.
+        # A line break in a received text must not look like an entry of its own.
         typer.echo("\t".join("".join(c if c.isprintable() else "?" for c in text) for text in row))
 
 
 def _known(connection: Connection) -> list[str]:
-    """Return who has an account, and who stands in the log without one, sorted."""
+    """Return the names of accounts, and of log entries without an account, sorted."""
     owners = [grant.owner for grant in grants(connection)]
     return sorted({*owners, *audit_log.accounts_in_log(connection)})
 

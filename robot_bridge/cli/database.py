@@ -1,4 +1,4 @@
-"""``robot-bridge database``: make the tables, bring them up to date, back them up, report their state."""
+"""``robot-bridge database``: create, upgrade and back up the tables, report their state."""
 
 from __future__ import annotations
 
@@ -165,7 +165,7 @@ def _without_views(connection: Connection) -> None:
     map_views_on(connection).remove()
 
 
-# --- ``robot-bridge database``: make the tables, bring them up to date, say how they are ---
+# --- ``robot-bridge database``: create and upgrade the tables, report their state ---
 
 T = TypeVar("T")
 
@@ -222,7 +222,7 @@ def check(database: DatabaseOption = DEFAULT, database_password_file: PasswordFi
 
 
 async def _upgrade(address: URL) -> str:
-    """Upgrade while no gateway runs; return the revision that was there."""
+    """Upgrade while no gateway runs; return the previous revision."""
     async with no_gateway(address, "robot-bridge database upgrade"):
         found = await asyncio.to_thread(_run, address, _upgrade_tables)
         if has_accounts(address.drivername):
@@ -233,13 +233,13 @@ async def _upgrade(address: URL) -> str:
 
 
 def _upgrade_tables(connection: Connection) -> str:
-    """Upgrade the tables; views, which keep columns from being changed, are made again behind that."""
+    """Upgrade the tables; views, which block changes of columns, are recreated afterwards."""
     with views_made_again(connection):
         return revisions.upgrade(connection)
 
 
 def _there(address: URL) -> URL:
-    """Return ``address``; SQLite would make a file that is missing. Raises StoreError."""
+    """Return ``address`` if it exists, as SQLite would create a missing file. Raises StoreError."""
     file = address.database if address.drivername == SQLite.name else None
     if file and not file.startswith("file:") and not Path(file).is_file():
         raise StoreError(

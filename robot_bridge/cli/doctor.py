@@ -1,4 +1,4 @@
-"""``robot-bridge doctor``: everything that a gateway needs on this computer, checked, with what to do."""
+"""``robot-bridge doctor``: checks of everything that a gateway needs on this computer, with remedies."""
 
 from __future__ import annotations
 
@@ -35,17 +35,17 @@ if TYPE_CHECKING:
     from ..gateway.app import GatewaySettings
 
 LEAST_FREE, FEW_FREE = 100e6, 1e9
-"""Bytes free on the disk below which nothing is sure to be stored, and below which somebody has to act."""
+"""Free bytes on the disk below which storing may fail, and below which somebody must act."""
 MOST_OFF_S = 2.0
 """Seconds that this computer's clock may be off the database's."""
 ANSWER_WITHIN = 5.0
-"""Seconds for a gateway that runs, and for a program of the system, to answer."""
+"""Seconds for a running gateway, and for a program of the system, to answer."""
 HEALTH_PAGE = JsonBounds(depth=8, length=1 << 20, values=10_000)
-"""What the page of a gateway may hold that is asked how it is."""
+"""Limits of a gateway's health page."""
 
 
 class Level(StrEnum):
-    """How a check ended; with a fault the gateway does not start, or does not do its work."""
+    """The result of a check; with a fault the gateway does not start, or does not work."""
 
     OK = "ok"
     WARNING = "warning"
@@ -53,7 +53,7 @@ class Level(StrEnum):
 
 
 class Finding(NamedTuple):
-    """What a check found, one line; where it is not well, it says what to do."""
+    """The finding of a check in one line; with the remedy unless all is well."""
 
     level: Level
     subject: str
@@ -91,10 +91,10 @@ def doctor(
 
     Give it the options of serve. It changes nothing; status 1 says that the gateway cannot do its work.
     """
-    # What is found is said once.
+    # Each finding is printed once.
     set_up_log("text", "error")
     worst = Level.OK
-    # A site in a database is fetched, and not to where a gateway keeps its copy.
+    # A site in a database is fetched, but not to the place of a gateway's copy.
     with TemporaryDirectory(prefix="robot-bridge-") as folder:
         state = Path(folder) if is_database_address(site) else None
         given = (database, database_password_file, host, port, certificate, key)
@@ -108,7 +108,7 @@ def doctor(
 
 
 def findings(settings: GatewaySettings) -> Iterator[Finding]:
-    """Yield what each check finds; none keeps another from its turn."""
+    """Yield the findings of each check; no check prevents another."""
     checks: dict[str, Callable[[GatewaySettings], Iterator[Finding]]] = {
         "site": _check_site,
         "database": _check_database,
@@ -172,7 +172,7 @@ def _check_database(settings: GatewaySettings) -> Iterator[Finding]:
 
 
 def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
-    """Of a fleet that several serve: whether each of them lives, and by the same version and clock."""
+    """Check, for several gateways, that each is alive, with the same version and clock."""
     from ..gateway.monitoring import gateway_version
     from ..gateway.storage.database import run_once
     from ..gateway.storage.repositories import gateways
@@ -184,7 +184,7 @@ def _check_gateways(settings: GatewaySettings) -> Iterator[Finding]:
     try:
         found = run_once(settings.database, gateways.read_members, SYSTEM_CLOCK)
     except StoreError:
-        # Which the check of the database says.
+        # The check of the database reports this.
         return
     own = gateway_version()
     for one in found.members:
@@ -254,7 +254,7 @@ def _check_reach(settings: GatewaySettings) -> Iterator[Finding]:
     if is_loopback(settings.host):
         yield Finding(Level.OK, "reach", f"{settings.host}: nobody beyond this computer")
         return
-    # Without TLS no database has to be asked who has an account.
+    # Without TLS the database need not be queried for accounts.
     check_reach(settings.host, tls=settings.tls is not None, accounts=True)
     file = sqlite_path_in(settings.database)
     is_new = file is not None and not file.is_file()
@@ -280,7 +280,7 @@ def _check_clock(settings: GatewaySettings) -> Iterator[Finding]:
     program = shutil.which("timedatectl")
     command = [program or "", "show", "--property=NTPSynchronized", "--value"]
     try:
-        # Where no systemd runs it fails, and nobody knows.
+        # Without systemd it fails, and the state is unknown.
         done = subprocess.run(  # nosec B603 # our own words, no shell
             command, capture_output=True, text=True, check=False, timeout=ANSWER_WITHIN
         )
@@ -317,7 +317,7 @@ def _check_gateway(settings: GatewaySettings) -> Iterator[Finding]:
     where = f"{host}:{settings.port}"
     connect: Callable[..., http.client.HTTPConnection] = http.client.HTTPConnection
     if settings.tls is not None:
-        # It is this computer that is connection; whether others can trust the certificate is checked above.
+        # It is this computer that is contacted; whether others can trust the certificate is checked above.
         connect = partial(http.client.HTTPSConnection, context=ssl._create_unverified_context())  # nosec B323 # itself
     connection = connect(host, settings.port, timeout=ANSWER_WITHIN)
     try:

@@ -112,7 +112,7 @@ def experiment(
 
 
 def _settings_file(name: str) -> Path:
-    """Return the settings of an experiment; raises BridgeError for a name that is none."""
+    """Return the settings of an experiment; raises BridgeError for an unknown name."""
     from ..reference_robot.localisation import experiment as drives
 
     file = Path(name) if name.endswith(".toml") else drives.EXPERIMENTS / f"{name}.toml"
@@ -125,7 +125,7 @@ def _settings_file(name: str) -> Path:
 
 
 def _served(site: Path, name: str, database: str | None, output: Path | None) -> ServedDrives:
-    """Return where the drives of an experiment are made and stored."""
+    """Return how the drives of an experiment are made and stored."""
     from .served_experiment import ServedDrives
 
     if database is None and output is None:

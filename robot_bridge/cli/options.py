@@ -13,7 +13,7 @@ import typer
 
 from ..core.errors import BridgeError
 
-# --- The options by which every command is told its database ---
+# --- The options of every command for its database ---
 
 if TYPE_CHECKING:
     from sqlalchemy import URL
@@ -48,7 +48,7 @@ BusPasswordFileOption = Annotated[
     ),
 ]
 UntilStdinCloses = Annotated[bool, typer.Option("--until-stdin-closes", hidden=True)]
-"""For who starts a program that must not outlive it, however it ends."""
+"""For a parent whose child program must not outlive it, however it ends."""
 
 
 SiteOption = Annotated[
@@ -62,19 +62,20 @@ SiteOption = Annotated[
 
 
 def database_address(database: str, password_file: Path | None) -> URL:
-    """Return the address that the two options give; raises StoreError."""
+    """Return the address from the two options; raises StoreError."""
     from ..gateway.storage.database import read_address
 
     return read_address(database, password_file)
 
 
-# --- A site that is published in a database instead of a folder ---
+# --- A site published in a database instead of a folder ---
 
 
 def site_copy(site: str, state: Path | None) -> SiteCopy | None:
-    """Return the copy of a site that is in a database, as new as it can be; None for one in a folder.
+    """Return the newest available copy of a site in a database; None for a site in a folder.
 
-    :raises BridgeError: where it cannot be fetched and no copy is here. :raises SiteError: for its address.
+    :raises BridgeError: if it cannot be fetched and there is no local copy. :raises SiteError: for its
+        address.
     """
     from ..core.sites.site_database import is_database_address, read_site_address
 
@@ -89,9 +90,9 @@ def site_copy(site: str, state: Path | None) -> SiteCopy | None:
 
 @contextmanager
 def site_folder(site: str) -> Iterator[Path]:
-    """Yield the folder of a site; one that is in a database is fetched for the moment.
+    """Yield the folder of a site; one in a database is fetched temporarily.
 
-    :raises BridgeError: where it cannot be fetched. :raises SiteError: for its address.
+    :raises BridgeError: if it cannot be fetched. :raises SiteError: for its address.
     """
     with TemporaryDirectory(prefix="robot-bridge-") as state:
         copy = site_copy(site, Path(state))
@@ -99,7 +100,7 @@ def site_folder(site: str) -> Iterator[Path]:
 
 
 def site_settings(site: str) -> SiteSettings:
-    """Return the settings of a site; raises as :func:`site_folder`, and SiteError for what is no site."""
+    """Return the settings of a site; raises as :func:`site_folder`, and SiteError if it is no site."""
     from ..core.sites.settings import SETTINGS_FILE, read_settings
 
     with site_folder(site) as folder:
@@ -112,7 +113,7 @@ def site_settings(site: str) -> SiteSettings:
 def time_span(since: str | None, until: str | None) -> tuple[float | None, float | None]:
     """Return ``--since`` and ``--until`` as seconds since 1970.
 
-    :raises BridgeError: for what is no time, and where nothing lies between the two.
+    :raises BridgeError: for an invalid time, and for an empty span.
     """
     first, last = seconds_of("--since", since), seconds_of("--until", until)
     if first is not None and last is not None and first > last:

@@ -48,7 +48,7 @@ NAMES = ("placement", *TEXTS[:6], TIMES[0], *NUMBERS, TIMES[1], TEXTS[6])
 def cone_rows(placed: Sequence[PlacementReport], frame: SiteFrame) -> list[Row]:
     """Return a row for each cone: metres in the site frame, easting and northing in its CRS, times in UTC.
 
-    ``dx`` and ``dy`` are how far the cone stands off its plan along the axes of the site frame.
+    ``dx`` and ``dy`` are the cone's deviation from its plan along the axes of the site frame.
     """
     points = frame.to_crs([(one.x, one.y) for one in placed])
     planned = frame.to_crs([(one.planned_x, one.planned_y) for one in placed])
@@ -85,7 +85,7 @@ def _time(seconds: float | None) -> datetime | None:
     return None if seconds is None else datetime.fromtimestamp(seconds, UTC)
 
 
-# --- Placed cones into a file: CSV, or a GeoPackage for GIS ---
+# --- Export of placed cones: CSV, or a GeoPackage for GIS ---
 # Layers of the GeoPackage, in the site's CRS: ``placed`` and ``planned`` (points), ``deviations`` (lines
 # from the plan to the cone).
 
@@ -97,7 +97,7 @@ _LAYERS: dict[str, tuple[str, Callable[[Row], bytes]]] = {
 
 
 def write_placed_cones(found: Sequence[Row], frame: SiteFrame, file: Path) -> None:
-    """Write ``file``, whole or not at all; its suffix, ``.csv`` or ``.gpkg``, says as what.
+    """Write ``file`` atomically; its suffix, ``.csv`` or ``.gpkg``, selects the format.
 
     :raises BridgeError: when it cannot be written.
     """
@@ -159,7 +159,7 @@ def _line(row: Row) -> bytes:
     return struct.pack("<BII4d", 1, 2, 2, *ends)
 
 
-# --- ``robot-bridge placements``: where cones were put down, out of the database ---
+# --- ``robot-bridge placements``: placed cones from the database ---
 
 app = typer.Typer(help="Where cones were put down.", no_args_is_help=True)
 
@@ -226,7 +226,7 @@ def export(
 
 
 async def _check_named(database: Database, query: GetPlacements) -> None:
-    """Raise BridgeError for a layout, plan or robot of which no cone is stored, as for a misspelt one."""
+    """Raise BridgeError for a layout, plan or robot without stored cones, such as a misspelt one."""
     for kind in ("layout", "plan", "robot"):
         name = getattr(query, kind)
         if name is None or await database.run(stored.has_any, kind, name):
@@ -239,7 +239,7 @@ async def _check_named(database: Database, query: GetPlacements) -> None:
 
 
 async def _all(database: Database, query: GetPlacements) -> list[PlacementReport]:
-    """Return every page, in the order in which the cones were put down."""
+    """Return all pages, in the order of placing."""
     found: list[PlacementReport] = []
     while page := await database.run(stored.newest_placed_cones, query):
         found += page

@@ -32,7 +32,7 @@ ALIVE_INTERVAL = 1.0
 
 
 class Localisation(str, Enum):
-    """How the simulated robot knows where it is."""
+    """How the simulated robot determines its position."""
 
     EXACT = "exact"
     FILTER = "filter"
@@ -127,7 +127,7 @@ def robot(
 
 
 class RobotLink(RequestSink, Protocol):
-    """Carries the agent's requests out and the server's answers in."""
+    """Sends the agent's requests and delivers the server's answers."""
 
     async def run(self, agent: Agent) -> None:
         """Carry messages until cancelled."""
@@ -138,14 +138,14 @@ def _link(name: str, url: str | None, database: URL | None, credentials: ClientC
     if url is not None:
         return RobotWebSocketLink(url, name, credentials)
     assert database is not None
-    # SQLAlchemy takes as long to load as all the rest, and robots on WebSocket need none.
+    # SQLAlchemy takes as long to load as all the rest, and robots on WebSocket do not need it.
     from ..reference_robot.sql_link import RobotSqlLink
 
     return RobotSqlLink(database, name)
 
 
 async def _run(link: RobotLink, settings: AgentSettings, stop: asyncio.Event) -> None:
-    """Run a robot in real time until ``stop`` is set; it says Stopped before it leaves."""
+    """Run a robot in real time until ``stop`` is set; it sends Stopped before it disconnects."""
     agent = Agent(settings, link)
     tasks = [
         asyncio.create_task(work) for work in (link.run(agent), _live(agent), _say_alive(agent), stop.wait())
@@ -187,7 +187,7 @@ def _localised(
     gps: bool,
     seed: int,
 ) -> Iterator[SimulatedVehicle]:
-    """Give a body that finds itself, with a thread of its own for the filter."""
+    """Yield a body that localises itself, with a thread of its own for the filter."""
     from ..core.sites.site import read_site
     from ..reference_robot.localisation.settings import LocalisedRobotSettings as SensorSettings
     from ..reference_robot.localisation.simulation import localised_robot, read_robot_settings

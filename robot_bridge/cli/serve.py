@@ -32,7 +32,7 @@ log = logging.getLogger(__name__)
 HOST, PORT = "127.0.0.1", 8765
 SWITCH_INTERVAL_S = 0.0005
 LAST_MOMENT = 4.7
-"""seconds after which a gateway that was told to end does so whatever it waits for."""
+"""seconds after which a gateway that must end does so, whatever it waits for."""
 
 Loop = Literal["auto", "uvloop", "asyncio"]
 
@@ -107,9 +107,9 @@ def serve(
     What is not given is taken from table gateway of site.toml. SIGHUP reads the site anew.
     """
     gc.disable()
-    from ..gateway import app  # noqa: F401 # loaded here, before what is loaded is frozen
+    from ..gateway import app  # noqa: F401 # loaded here, before loaded objects are frozen
 
-    # All of that stays. To look again and again for what does not took a seventh of the start.
+    # All of it is permanent. Repeated garbage collection took a seventh of the start.
     gc.freeze()
     gc.enable()
     # Each write to a connection lets the database's thread have a turn, which is as long as this (5 ms unless
@@ -119,7 +119,7 @@ def serve(
     settings = gateway_settings(site, state, database, database_password_file, host, port, certificate, key)
     cluster = cluster_settings(settings.site, gateway_name, bus, bus_password_file, public_address)
     settings = replace(settings, site_as_given=site_as_given, cluster=cluster)
-    # pyogrio imports it where it is installed, for a way of reading that a gateway has no use for: 29 MB.
+    # pyogrio imports it if installed, for a way of reading that a gateway does not use: 29 MB.
     sys.modules.setdefault("pyarrow", None)  # type: ignore[arg-type] # as Python documents it
     with asyncio.Runner(loop_factory=_loop_factory(loop)) as runner:
         runner.run(_serve(settings, until_stdin_closes))
@@ -135,9 +135,9 @@ def gateway_settings(
     certificate: Path | None,
     key: Path | None,
 ) -> GatewaySettings:
-    """Return what a gateway is started with; what is not given is taken from the site's settings.
+    """Return the settings of a gateway; missing options are taken from the site's settings.
 
-    :raises BridgeError: for settings, an address or files that cannot be.
+    :raises BridgeError: for invalid settings, addresses or files.
     """
     from ..core.sites.settings import SETTINGS_FILE, read_settings
     from ..core.sites.settings_tables import GatewayOptions
@@ -146,7 +146,7 @@ def gateway_settings(
 
     copy = options.site_copy(site, state)
     folder = Path(site) if copy is None else copy.folder
-    # A folder that is not there is named by whoever reads the whole site.
+    # A missing folder is reported when the whole site is read.
     given = read_settings(folder / SETTINGS_FILE).gateway if folder.is_dir() else GatewayOptions()
     files = (certificate or _beside(folder, given.certificate), key or _beside(folder, given.key))
     return GatewaySettings(
@@ -163,7 +163,7 @@ def gateway_settings(
 def cluster_settings(
     site: Path, name: str, bus: str, password_file: Path | None, public_address: str = ""
 ) -> ClusterSettings | None:
-    """Return how a gateway is one of several, None for one that has its database alone.
+    """Return the settings of a gateway among several, None for one that has its database alone.
 
     :raises BridgeError: for a password that cannot be read, and for a bus or an address without a name.
     """
@@ -214,12 +214,13 @@ def _started(address: str) -> None:
 
 
 def _say(line: str) -> None:
-    """Print ``line``. A full disk, or a reader that is gone, is no reason to end a gateway."""
+    """Print ``line``. Errors, such as a full disk or a closed pipe, are ignored: they must not end a
+    gateway."""
     try:
         print(line, flush=True)
     except OSError as error:
         log.warning("standard output cannot be written: %s", error.strerror)
-        # What is left of it would be tried again when the process ends, and make that a failure.
+        # The rest would be written again at exit, which would then fail.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

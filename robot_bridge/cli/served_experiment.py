@@ -1,4 +1,4 @@
-"""An experiment at a real gateway: robots over WebSocket, sent by an operator, in time that runs faster."""
+"""An experiment at a real gateway: robots over WebSocket, sent by an operator, in accelerated time."""
 
 from __future__ import annotations
 
@@ -45,18 +45,18 @@ ASIDE = 1.5
 STORED = 60.0
 """seconds of a robot's time for its observations to be stored."""
 LOCATED = 300.0, 5.0
-"""seconds of a robot's time to be let in, sent its map and know its place on it, and the pace meanwhile."""
+"""seconds of a robot's time to be admitted, get its map and localise itself, and the pace meanwhile."""
 
 
 @dataclass(frozen=True)
 class ServedDrives:
-    """How drives are made at a gateway: on which ``database``, all ``at_once`` or one after the other.
+    """Options of drives at a gateway: on which ``database``, all ``at_once`` or one after the other.
 
-    ``pace`` is how many times as fast as the clock time is to run, at most; ``people`` walk along the route.
-    With a ``window`` robots are sent maps of so many metres a side, and not that of the site. With ``accept``
-    an operator accepts all that a robot reported of its map, and it drives once more in the same world; then
-    all of it is rejected again, so that the next one begins with the map of the site. With a ``reporter`` it
-    is what another robot reported, set to that, on a drive of its own in the same world.
+    ``pace`` is the largest speed-up over real time; ``people`` walk along the route. With a ``window`` robots
+    are sent maps with sides of so many metres instead of that of the site. With ``accept`` an operator
+    accepts all reports of a robot on its map, and it drives once more in the same world; then all are
+    rejected again, so that the next one begins with the map of the site. With a ``reporter`` the reports come
+    from another robot with these settings, on a drive of its own in the same world.
     """
 
     site: Path
@@ -74,12 +74,12 @@ class ServedDrives:
 def drive_at_gateway(
     drives: ServedDrives, robot_map: RobotMap, settings: ExperimentSettings, seeds: Sequence[int]
 ) -> list[Record]:
-    """Return what came of a drive for each seed, of a robot that a gateway of its own sends round.
+    """Return the record of a drive for each seed, of a robot that a gateway of its own sends round.
 
-    ``robot_map`` is what the world is made of; robots are sent the map of ``drives.site``. With
+    The world is made from ``robot_map``; robots are sent the map of ``drives.site``. With
     ``drives.accept`` there are two records a seed, before and after the operator's review.
 
-    :raises BridgeError: for settings that no robot at a gateway can drive by, and what the gateway refuses.
+    :raises BridgeError: for settings that do not work at a gateway, and for refusals of the gateway.
     """
     if settings.carried is not None or settings.start == "unknown" or settings.steered_by != "belief":
         raise BridgeError(
@@ -141,7 +141,7 @@ async def _all_drives(
 async def _drive_reviewed(
     drives: ServedDrives, robot_map: RobotMap, settings: ExperimentSettings, seed: int, address: str
 ) -> list[Record]:
-    """Return another drive of the robot of ``seed``, with what was reported in its world on the map."""
+    """Return another drive of the robot of ``seed``, with the reports from its world on the map."""
     reporting = drives
     if drives.reporter is not None:
         reporting = replace(drives, name=f"{drives.name}-reporter")
@@ -156,7 +156,7 @@ async def _drive_reviewed(
 
 
 async def _review(address: str, robot: str, *, accept: bool) -> int:
-    """Accept what ``robot`` reported and nobody reviewed, or reject what was accepted; return how much."""
+    """Accept unreviewed reports of ``robot``, or reject accepted ones; return their number."""
     state = ObservationState.PENDING if accept else ObservationState.ACCEPTED
     async with connect(f"{address}/desk") as wire:
         desk = _Desk(wire)
@@ -197,7 +197,7 @@ async def _drive_together(
                 robot.begin()
             longest = experiment.PATIENCE * robots[0].length / settings.speed + 60.0
             await _step_until(robots, people, drives.pace, lambda robot: robot.is_done, longest)
-            # What they saw is to be stored before they are gone.
+            # Their observations must be stored before they disconnect.
             await _step_until(robots, people, pace, lambda robot: robot.has_reported, STORED)
     finally:
         for link in links:
@@ -213,7 +213,8 @@ async def _step_until(
     condition: Callable[[_Robot], bool],
     seconds: float,
 ) -> None:
-    """Let time pass until a condition holds for all; raises BridgeError after as many ``seconds`` of it."""
+    """Let time pass until a condition holds for all; raises BridgeError after ``seconds`` of simulated
+    time."""
     passed = 0.0
     while not all(condition(robot) for robot in robots):
         begin = time.monotonic()
@@ -224,12 +225,12 @@ async def _step_until(
         if passed > seconds:
             late = next(robot for robot in robots if not condition(robot))
             raise BridgeError(f"robot {late.name}: not done after {passed:.0f} s; {late.state()}")
-        # The gateway and its links have their turn.
+        # Let the gateway and its links run.
         await asyncio.sleep(max(0.0, STEER_EVERY / pace - (time.monotonic() - begin)))
 
 
 class _Desk:
-    """An operator's connection: asks, and leaves what is told unasked aside."""
+    """An operator's connection: sends requests, and ignores notifications."""
 
     def __init__(self, wire: ClientConnection) -> None:
         self._wire = wire
@@ -248,7 +249,7 @@ class _Desk:
 
 
 class _CountingAgent(Agent):
-    """An agent that counts the maps it is sent."""
+    """An agent that counts the maps it receives."""
 
     maps = map_bytes = 0
 
@@ -260,7 +261,7 @@ class _CountingAgent(Agent):
 
 
 class _TimedExecutor(simulation.InlineExecutor):
-    """Works at once, and remembers how much processor time the newest work took."""
+    """Works synchronously, and remembers the processor time of the newest work."""
 
     seconds = 0.0
 
@@ -276,7 +277,7 @@ def _robot_name(drives: ServedDrives, seed: int) -> str:
 
 
 class _Robot:
-    """One robot, what drives it, and what is noted of it."""
+    """One robot, its driver, and its recorded data."""
 
     def __init__(
         self,
@@ -322,16 +323,16 @@ class _Robot:
 
     @property
     def is_located(self) -> bool:
-        """Tell whether it has a map and knows its place on it."""
+        """Return whether it has a map and knows its place on it."""
         return self.body.hindrance is None
 
     @property
     def has_reported(self) -> bool:
-        """Tell whether the gateway has acknowledged all that it observed."""
+        """Return whether the gateway has acknowledged all its observations."""
         return not self.link.unacknowledged_observations
 
     def state(self) -> str:
-        """Return where it is and what it says, for a message."""
+        """Return its position and status, for a message."""
         x, y, _ = self.body.truth
         return f"it is at ({x:.1f}, {y:.1f}), status: {self.body.hindrance or self.body.remark}"
 
@@ -343,18 +344,18 @@ class _Robot:
         return {"command": command, "robot": self.name, "op": "SetPath", "params": points}
 
     def begin(self) -> None:
-        """Note what it does from now on."""
+        """Start recording."""
         self._begun = True
 
     def step(self, dt: float) -> None:
-        """Let time pass, and note where it is after each scan."""
+        """Let time pass, and record its position after each scan."""
         self.agent.step(dt)
         if self._begun and not self.is_done and self.body.readings > self._readings:
             self._readings = self.body.readings
             self._note()
 
     def record(self) -> Record:
-        """Return what was noted."""
+        """Return the record."""
         columns = [np.array(column) for column in zip(*self._rows, strict=True)]
         return replace(
             Record(self._seed, None, *columns, goal=experiment.goal_of(self._settings)),

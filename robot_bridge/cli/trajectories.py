@@ -1,4 +1,4 @@
-"""``robot-bridge trajectories``: where robots have been, out of the database and into it."""
+"""``robot-bridge trajectories``: export and import of positions of robots."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def _fixes(track: Track, name: str, frame: LinkFrame, shift: float) -> Iterator[
 
 
 def _named(tracks: Sequence[Track], choices: Sequence[str], file: Path) -> list[tuple[Track, str]]:
-    """Return the tracks that are wanted, with the names of their robots."""
+    """Return the chosen tracks, with the names of their robots."""
     known = {track.robot: track for track in tracks}
     if len(choices) == 1 and "=" not in choices[0]:
         if len(tracks) > 1:
@@ -156,7 +156,7 @@ def _tell_remarks(recording: Recording) -> None:
         typer.echo(f"{recording.file}: {counted(recording.remarks.count, 'row')} left out", err=True)
 
 
-# --- ``robot-bridge trajectories``: where robots have been, out of the database ---
+# --- ``robot-bridge trajectories``: positions of robots from the database ---
 
 app = typer.Typer(help="Where robots have been.", no_args_is_help=True)
 

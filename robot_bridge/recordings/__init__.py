@@ -1,1 +1,1 @@
-"""Recorded drives out of files: CSV, GPX, our own trajectories and ROS bags, in one form."""
+"""Recorded drives from files: CSV, GPX, our own trajectories and ROS bags, in a common form."""

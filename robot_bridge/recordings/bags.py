@@ -1,4 +1,4 @@
-"""Positions out of ROS bags: MCAP, ROS 1 bags (format 2.0), rosbag2 in SQLite."""
+"""Positions from ROS bags: MCAP, ROS 1 bags (format 2.0), rosbag2 in SQLite."""
 
 from __future__ import annotations
 
@@ -19,16 +19,16 @@ from typing import IO, Any, NamedTuple
 from ..core.messages.base import COORDINATE
 from . import tracks
 
-# --- A message as a bag holds it, and the bounds of all bags ---
+# --- A message in a bag, and the limits of all bags ---
 
 LARGEST_RECORD = 1 << 28
-"""bytes of a record that is taken into memory, as it stands in the file and unpacked."""
+"""bytes of a record in memory, both packed and unpacked."""
 
 
 class Message(NamedTuple):
     """``data`` as it was sent, of type ``kind`` (``nav_msgs/Odometry``), ``t`` seconds since 1970.
 
-    ``is_ros1`` tells how it is encoded.
+    ``is_ros1`` says how it is encoded.
     """
 
     number: int
@@ -40,7 +40,7 @@ class Message(NamedTuple):
 
 
 class CutOffError(Exception):
-    """A bag that ends, or makes no sense any more, in the middle; the text says what is wrong."""
+    """A bag that is truncated or damaged in the middle; the text says what is wrong."""
 
 
 def exactly(file: IO[bytes], count: int) -> bytes:
@@ -54,13 +54,13 @@ def exactly(file: IO[bytes], count: int) -> bytes:
 
 
 def plain(kind: str) -> str:
-    """Return the name of a type without the ``msg`` that ROS 2 puts into it."""
+    """Return the name of a type without ROS 2's ``msg`` in it."""
     return kind.replace("/msg/", "/")
 
 
 def unpacked_by_lz4(packed: bytes, size: int) -> bytes:
-    """Return at most ``size`` bytes of what is packed as an LZ4 frame; raises CutOffError."""
-    # rosbags brings the package, and without it no bag is read.
+    """Return at most ``size`` bytes unpacked from an LZ4 frame; raises CutOffError."""
+    # The package comes with rosbags, without which no bag is read.
     import lz4.frame
 
     try:
@@ -78,7 +78,7 @@ _READ = (_SCHEMA, _CHANNEL, _MESSAGE, _CHUNK)
 
 
 def mcap_messages(file: Path) -> Iterator[Message]:
-    """Yield all messages; raises CutOffError where they end too early, and OSError."""
+    """Yield all messages; raises CutOffError if they end too early, and OSError."""
     with file.open("rb") as content:
         if exactly(content, len(MCAP_MAGIC)) != MCAP_MAGIC:
             raise CutOffError("it is no MCAP")
@@ -143,7 +143,7 @@ def _unpacked_by_zstd(packed: bytes, size: int) -> bytes:
     import zstandard
 
     try:
-        # What the frame says of its own length goes before any bound.
+        # A length stated in the frame takes precedence over any bound.
         if zstandard.frame_content_size(packed) > size:
             raise CutOffError("a chunk is longer than it says")
         return zstandard.ZstdDecompressor().decompress(packed, max_output_size=size)
@@ -157,7 +157,7 @@ def _u16(record: bytes, at: int) -> int:
 
 
 def _text(record: bytes, at: int) -> tuple[str, int]:
-    """Return a text and where it ends."""
+    """Return a text and the position after it."""
     (length,) = struct.unpack_from("<I", record, at)
     return record[at + 4 : at + 4 + length].decode("utf-8"), at + 4 + length
 
@@ -170,7 +170,7 @@ _LONGEST_HEADER = 1 << 20
 
 
 def rosbag1_messages(file: Path) -> Iterator[Message]:
-    """Yield all messages; raises CutOffError where they end too early, and OSError."""
+    """Yield all messages; raises CutOffError if they end too early, and OSError."""
     with file.open("rb") as content:
         if exactly(content, len(ROSBAG1_MAGIC)) != ROSBAG1_MAGIC:
             raise CutOffError("it is no ROS 1 bag of format 2.0")
@@ -241,7 +241,7 @@ def _fields(header: bytes) -> dict[bytes, bytes]:
 
 _MAGIC = b"SQLite format 3\0"
 _HEADER = struct.Struct(">16xH10xI")
-"""The size of a page (1 for 65 536) and how many there are."""
+"""The size of a page (1 for 65 536) and the number of pages."""
 
 
 def sqlite_messages(file: Path) -> Iterator[Message]:
@@ -270,7 +270,7 @@ def _rows(file: Path) -> Iterator[Message]:
 
 
 def _missing_bytes(file: Path) -> int:
-    """Return by how much the file is shorter than it says."""
+    """Return the bytes missing by the file's own header."""
     with file.open("rb") as content:
         header = content.read(_HEADER.size)
     if len(header) < _HEADER.size or not header.startswith(_MAGIC):
@@ -282,7 +282,7 @@ def _missing_bytes(file: Path) -> int:
 
 @contextmanager
 def _filled_up(file: Path, missing: int) -> Iterator[Path]:
-    """Give the file; one that is cut off as a copy with noughts behind, since SQLite reads no shorter one."""
+    """Yield the file; if truncated, a copy padded with zeros, since SQLite refuses shorter ones."""
     if not missing:
         yield file
         return
@@ -294,12 +294,12 @@ def _filled_up(file: Path, missing: int) -> Iterator[Path]:
         yield copy
 
 
-# --- Positions of the messages in bags: which topic is which robot's, and what its messages say ---
+# --- Positions from the messages in bags: topics of robots, and the content of their messages ---
 
 EARTH = "sensor_msgs/NavSatFix"
 KINDS = ("nav_msgs/Odometry", "geometry_msgs/PoseStamped", "geometry_msgs/PoseWithCovarianceStamped", EARTH)
 LARGEST = 1 << 16
-"""bytes of a message that tells a position."""
+"""bytes of a message with a position."""
 _FILES: dict[str, Callable[[Path], Iterator[Message]]] = {
     ".mcap": mcap_messages,
     ".db3": sqlite_messages,
@@ -307,17 +307,17 @@ _FILES: dict[str, Callable[[Path], Iterator[Message]]] = {
 }
 _NO_FIX = -1
 _UNIT = 0.1
-"""How far a quaternion may be from length 1."""
+"""Tolerance of a quaternion's length about 1."""
 
 
 def read_bag(bag: Path, topics: Sequence[str], remarks: tracks.Remarks) -> tracks.Source:
     """Return the positions in a bag, a file or the folder of a rosbag2.
 
-    ``topics`` are patterns of those that are read, none for all that tell positions. Times are those at which
-    messages were recorded.
+    ``topics`` are patterns of those to read, none for all with positions. Times are those at which messages
+    were recorded.
 
-    :raises RecordingError: for a bag without positions, for two topics of one robot, for degrees beside
-        metres, and where the package rosbags is missing.
+    :raises RecordingError: for a bag without positions, for two topics of one robot, for degrees mixed with
+        metres, and if the package rosbags is missing.
     """
     found = _BagReading(bag, topics, remarks).samples()
     first = next(found, None)

@@ -1,4 +1,4 @@
-"""CSV tables of positions: columns by their names, one row a position or columns for each robot."""
+"""CSV tables of positions: columns by name, one row per position or columns per robot."""
 
 from __future__ import annotations
 
@@ -14,19 +14,19 @@ from typing import IO
 
 from . import tracks
 
-# --- Which columns of a table hold what: one row a position, or columns for each robot ---
+# --- Columns of a table: one row per position, or columns per robot ---
 
 KNOWN = ("time", "robot", "x", "y", "lat", "lon", "theta", "v")
-"""What a column may hold; each is looked for under this name unless the settings say another."""
+"""Kinds of columns; each has this name unless the settings give another."""
 ROBOT = "{robot}"
-"""What stands for the robot's name in the names of columns of which each robot has its own."""
+"""Placeholder of the robot's name in the names of columns per robot."""
 THETA_UNITS = ("rad", "deg", "compass")
 """``compass`` is degrees clockwise from north, the others are counter-clockwise from the x axis."""
 
 
 @dataclass(frozen=True)
 class TableForm:
-    """``columns`` are names of columns by what they hold, where they are called otherwise than that."""
+    """``columns`` are names of columns by kind, if they differ from the kind."""
 
     columns: Mapping[str, str]
     delimiter: str = ","
@@ -34,7 +34,7 @@ class TableForm:
     theta_unit: str = "rad"
 
     def check(self) -> None:
-        """Raise RecordingError, beginning with the key, for what cannot be."""
+        """Raise RecordingError, beginning with the key, for invalid values."""
         for key in self.columns:
             if key not in KNOWN:
                 raise tracks.RecordingError(f"columns.{key} is not known; known are {', '.join(KNOWN)}")
@@ -59,9 +59,9 @@ class TableForm:
 
 @dataclass(frozen=True)
 class RobotColumns:
-    """Where in a row the position of a robot stands: numbers of columns, None for what is not there.
+    """Indices of the columns with the position of a robot, None for missing ones.
 
-    ``name`` is the robot's name, None where it stands in column ``robot``.
+    ``name`` is the robot's name, None if it is in column ``robot``.
     """
 
     name: str | None
@@ -75,11 +75,11 @@ class RobotColumns:
 
 
 def robot_columns(head: Sequence[str], form: TableForm, alone: str) -> list[RobotColumns]:
-    """Return where each robot's position stands in the rows below ``head``.
+    """Return the columns of each robot's position in the rows below ``head``.
 
-    A table without a column for the robot is one robot's, called ``alone``.
+    A table without a column for the robot belongs to one robot, named ``alone``.
 
-    :raises RecordingError: for columns that are not there, with those that are.
+    :raises RecordingError: for missing columns, listing the existing ones.
     """
     columns, given = dict(form.columns), form.columns
     is_earth = "lat" in given or "lon" in given or ("x" not in given and "x" not in head and "lat" in head)
@@ -129,19 +129,19 @@ def _there(head: Sequence[str]) -> str:
     return f"there are {names}{', …' if len(head) > 30 else ''}"
 
 
-# --- Positions out of CSV, also compressed: one row a position (long), or columns for each robot (wide)
+# --- Positions from CSV, also compressed: one row per position (long), or columns per robot (wide)
 
 LONGEST_LINE = 1 << 20
 """characters."""
 LONGEST_NAME = 128
 MOST_ROWS = 2 * tracks.MOST_SAMPLES
-"""rows that are gone through, empty ones and such that cannot be used among them."""
+"""rows that are read, including empty and unusable ones."""
 
 
 def read_csv(file: Path, form: TableForm, remarks: tracks.Remarks) -> tracks.Source:
-    """Return the positions in a table; rows that cannot be used are noted in ``remarks``.
+    """Return the positions in a table; unusable rows are recorded in ``remarks``.
 
-    :raises RecordingError: for a file that cannot be opened, and columns that do not fit.
+    :raises RecordingError: for a file that cannot be opened, and columns that do not match.
     """
     rows = _rows(file, form.delimiter, remarks)
     head = [name.strip() for _, name_row in [next(rows, (0, []))] for name in name_row]
@@ -172,12 +172,12 @@ class _Table:
         self._robots, self._remarks = robots, remarks
 
     def samples(self, rows: Iterator[tuple[int, list[str]]]) -> Iterator[tracks.Sample]:
-        """Yield the positions of rows; those that cannot be used are noted."""
+        """Yield the positions of rows; unusable ones are recorded."""
         for row, cells in rows:
             if not cells:
                 continue
             if len(cells) != len(self._head):
-                # A last row that the recording did not finish has too few.
+                # An unfinished last row of a recording has too few.
                 what = f"{len(cells)} columns stand there, and row 1 names {len(self._head)}"
                 self._remarks.add(f"{self._file}: row {row}", what)
                 continue
@@ -223,7 +223,7 @@ class _Table:
 def _rows(
     file: Path, delimiter: str, remarks: tracks.Remarks, most: int = MOST_ROWS
 ) -> Generator[tuple[int, list[str]], None, None]:
-    """Yield rows with their numbers, as far as the file can be read."""
+    """Yield rows with their numbers, as far as the file is readable."""
     lines = _lines(file)
     reader = csv.reader(lines, delimiter=delimiter)
     row = 0
@@ -250,7 +250,7 @@ def _lines(file: Path) -> Generator[str, None, None]:
 
 
 def _opened(file: Path) -> IO[str]:
-    # What is no UTF-8 is seen in the cell where it stands.
+    # Invalid UTF-8 is reported for its cell.
     if file.suffix.lower() == ".gz":
         return gzip.open(file, "rt", encoding="utf-8-sig", errors="replace", newline="")
     return file.open(encoding="utf-8-sig", errors="replace", newline="")

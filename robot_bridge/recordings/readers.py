@@ -18,12 +18,12 @@ from .bags import read_bag
 from .csv_table import TableForm, read_csv
 from .tracks import Recording, RecordingError, Remarks, Sample, Source, ValueRefusedError, number
 
-# --- Positions out of GPX: each track is a robot's, its segments one after the other ---
+# --- Positions from GPX: each track belongs to a robot, its segments are joined ---
 
 DEEPEST = 64
 """levels of elements."""
 LONGEST_TEXT = 1000
-"""characters of what stands in an element that is read."""
+"""characters of the content of an element that is read."""
 LONGEST_TAG = 1 << 20
 """bytes of a tag, with its attributes, or of a comment."""
 CHUNK = 1 << 16
@@ -104,11 +104,11 @@ class _Parsing:
 
 
 def read_gpx(file: Path, remarks: Remarks) -> Source:
-    """Return the points of the tracks in ``file``; points that cannot be used are noted in ``remarks``.
+    """Return the points of the tracks in ``file``; unusable points are recorded in ``remarks``.
 
-    A file that is cut off gives what stands before.
+    A truncated file yields the points before its end.
 
-    :raises RecordingError: when it is read, for what is no GPX.
+    :raises RecordingError: while reading, for a file that is no GPX.
     """
     return Source(tracks.WGS84, _gpx_samples(file, remarks))
 
@@ -153,7 +153,7 @@ def _gpx_sample(point: _Point, robot: str) -> Sample:
     )
 
 
-# --- Positions out of a GeoPackage that ``robot-bridge trajectories export`` wrote, in its own CRS ---
+# --- Positions from a GeoPackage of ``robot-bridge trajectories export``, in its own CRS ---
 
 LAYER = "positions"
 FIELDS = ("robot", "time", "heading", "v")
@@ -163,7 +163,7 @@ _POINT = np.dtype([("order", "u1"), ("kind", "<u4"), ("x", "<f8"), ("y", "<f8")]
 
 
 def read_geopackage(file: Path, remarks: Remarks) -> Source:
-    """Return the positions in layer ``positions``; those that cannot be used are noted in ``remarks``.
+    """Return the positions in layer ``positions``; unusable ones are recorded in ``remarks``.
 
     :raises RecordingError: for a file that is not such a GeoPackage.
     """
@@ -250,21 +250,21 @@ def _finite(value: Any, column: str, bounds: tuple[float, float]) -> float:
     return number
 
 
-# --- Which reader a file is for ---
+# --- Choice of the reader for a file ---
 
 
 @dataclass(frozen=True)
 class ReadingOptions:
-    """How a file is read; ``table`` concerns CSV, ``topics`` bags."""
+    """Options of reading a file; ``table`` concerns CSV, ``topics`` bags."""
 
     table: TableForm = field(default_factory=lambda: TableForm({}))
     topics: Sequence[str] = ()
 
 
 def read_recording(file: Path, options: ReadingOptions) -> Recording:
-    """Return the recording in ``file``; what in it cannot be used stands in its remarks.
+    """Return the recording in ``file``; unusable parts are listed in its remarks.
 
-    :raises RecordingError: naming the file, for what holds no recording.
+    :raises RecordingError: naming the file, if it holds no recording.
     """
     remarks = Remarks()
     kind = file.name.lower().removesuffix(".gz").rpartition(".")[2]
@@ -300,4 +300,4 @@ READERS: Mapping[str, Callable[[Path, ReadingOptions, Remarks], Source]] = {
     "db3": _bag,
     "bag": _bag,
 }
-"""Readers by the ending of a file's name."""
+"""Readers by file name suffix."""

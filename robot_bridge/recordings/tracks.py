@@ -1,4 +1,4 @@
-"""Samples that every reader makes of a file, and the tracks of a recording that they are gathered into."""
+"""Samples from the readers of files, and the tracks of a recording that are gathered from them."""
 
 from __future__ import annotations
 
@@ -17,16 +17,16 @@ import numpy.typing as npt
 from ..core.errors import BridgeError
 from ..core.messages.base import COORDINATE, SPEED, THETA
 
-# --- Samples that every reader makes of a file ---
+# --- Samples from the readers of files ---
 
 # --- The exception family of recordings ---
 
 
 class RecordingError(BridgeError):
-    """A file of which nothing can be played; the text names file, row and column, and what to do."""
+    """A file without usable positions; the text names file, row, column and remedy."""
 
 
-# --- What every reader makes of a file: positions one by one, and remarks on those that cannot be used
+# --- Results of every reader: positions one by one, and remarks on unusable ones
 
 WGS84 = "wgs84"
 MOST_SAMPLES = 10_000_000
@@ -42,8 +42,8 @@ NOTHING = math.nan
 class Sample(NamedTuple):
     """Where a robot was: ``t`` seconds, ``x`` and ``y`` in the CRS of its :class:`Source`.
 
-    ``theta`` is radians counter-clockwise from the x axis (from east in WGS84), ``v`` m/s; NaN for what the
-    recording does not say. ``row`` is where it stands in the file.
+    ``theta`` is radians counter-clockwise from the x axis (from east in WGS84), ``v`` m/s; NaN for values
+    missing in the recording. ``row`` is its row in the file.
     """
 
     row: int
@@ -57,9 +57,9 @@ class Sample(NamedTuple):
 
 @dataclass(frozen=True)
 class Source:
-    """Positions as they stand in a file.
+    """Positions as stored in a file.
 
-    ``crs`` is ``wgs84`` (x is the longitude, degrees) or a code of a projected CRS; None where the file does
+    ``crs`` is ``wgs84`` (x is the longitude, degrees) or a code of a projected CRS; None if the file does
     not say it.
     """
 
@@ -69,20 +69,20 @@ class Source:
 
 @dataclass
 class Remarks:
-    """What in a file cannot be used, and where: all are counted, the first few are kept as texts."""
+    """Unusable parts of a file with their places: all are counted, the first few are kept as texts."""
 
     count: int = 0
     texts: list[str] = field(default_factory=list)
 
     def add(self, where: str, what: str) -> None:
-        """Note that what stands at ``where`` is left out."""
+        """Record that the position at ``where`` is left out."""
         self.count += 1
         if len(self.texts) < MOST_REMARKS:
             self.texts.append(f"{where}: {what}")
 
 
 class ValueRefusedError(ValueError):
-    """A value that cannot be used; the text says why, and :attr:`column` which it is."""
+    """An unusable value; the text says why, and :attr:`column` names its column."""
 
     def __init__(self, column: str, why: str) -> None:
         super().__init__(f"column {column}: {why}")
@@ -106,7 +106,7 @@ def place_bounds(is_earth: bool) -> tuple[tuple[float, float], tuple[float, floa
 
 
 def shown(text: str) -> str:
-    """Return what people are shown of a text from a file."""
+    """Return a text from a file in a form for messages."""
     return repr(text if len(text) <= 40 else f"{text[:40]}…") if text else "nothing"
 
 
@@ -116,13 +116,13 @@ TIME_BOUNDS, SPEED_BOUNDS, THETA_BOUNDS = (-LATEST, LATEST), SPEED, THETA
 # --- Times in recordings: seconds, parts of seconds, or dates as ISO 8601 ---
 
 UNITS = {"s": 1.0, "ms": 1e3, "us": 1e6, "ns": 1e9}
-"""How many of each are a second."""
+"""Units per second."""
 
 
 def seconds_of(text: str, column: str, unit: str = "s") -> float:
     """Return a time as seconds: a number in ``unit``, or a date and time, UTC where it has no offset.
 
-    :raises ValueRefusedError: for what is neither.
+    :raises ValueRefusedError: for any other text.
     """
     try:
         at = float(text) / UNITS[unit]
@@ -143,15 +143,15 @@ def _of_date(text: str, column: str) -> float:
 
 # --- Tracks as columns, with headings and speeds from movement ---
 
-# --- Headings and speeds from movement, for recordings that do not tell them; no I/O ---
+# --- Headings and speeds from movement, for recordings without them; no I/O ---
 
 Column = npt.NDArray[np.float64]
 
 MEASURED, COURSE, LAST, UNKNOWN = range(4)
 ORIGINS: tuple[Literal["course", "last", "unknown"] | None, ...] = (None, "course", "last", "unknown")
-"""What ``theta_from`` of a position says, by these numbers."""
+"""Values of ``theta_from``; columns hold their indices."""
 LEAST_MOVE = 0.5
-"""metres below which a move tells no course."""
+"""metres below which a move gives no course."""
 STANDS_AFTER = 2.0
 """seconds without such a move after which a robot counts as standing."""
 EARTH = 6_371_008.8
@@ -161,10 +161,10 @@ EARTH = 6_371_008.8
 def filled(
     t: Column, x: Column, y: Column, theta: Column, v: Column, *, is_earth: bool
 ) -> tuple[Column, npt.NDArray[np.int8], Column]:
-    """Return headings, where each is from, and speeds, with nothing left that is not known.
+    """Return headings, their origins, and speeds, with all unknown values filled.
 
-    A heading that was not recorded is the course over ground, while the robot stands the last one; before
-    either is known it is 0. A speed that was not recorded is that over ground.
+    A missing heading becomes the course over ground, or the last one while the robot stands; before either is
+    known it is 0. A missing speed becomes that over ground.
     """
     origins = np.zeros(len(t), dtype=np.int8)
     if not (np.isnan(theta).any() or np.isnan(v).any()):
@@ -195,19 +195,19 @@ def filled(
 
 
 def _metres(lon: Column, lat: Column) -> tuple[Column, Column]:
-    """Return metres east and north of the first place; near enough for moves of some metres."""
+    """Return metres east and north of the first place; accurate enough for moves of some metres."""
     scale = EARTH * math.pi / 180.0
     return (lon - lon[0]) * scale * np.cos(np.radians(lat)), (lat - lat[0]) * scale
 
 
-# --- A recording in memory: for each robot its positions as columns, their times going forward ---
+# --- A recording in memory: for each robot its positions as columns, with increasing times ---
 
 
 @dataclass(frozen=True)
 class Track:
-    """Where one robot was: (n,) columns, ``t`` rising.
+    """The positions of one robot: (n,) columns, ``t`` increasing.
 
-    ``theta`` is known everywhere; ``theta_from`` (n,) says where it is from, as numbers of
+    ``theta`` is known everywhere; ``theta_from`` (n,) is its origin, as indices into
     :data:`.tracks.ORIGINS`. ``v`` is m/s.
     """
 
@@ -222,7 +222,7 @@ class Track:
 
 @dataclass(frozen=True)
 class Recording:
-    """The tracks of a file; ``crs`` is what their coordinates are, None where the file does not say it."""
+    """The tracks of a file; ``crs`` is that of their coordinates, None if the file does not state it."""
 
     file: Path
     crs: str | None
@@ -241,14 +241,14 @@ class Recording:
 
     @property
     def count(self) -> int:
-        """How many positions there are."""
+        """The number of positions."""
         return sum(len(track.t) for track in self.tracks)
 
 
 def gather(file: Path, source: Source, remarks: Remarks) -> Recording:
     """Return the recording that ``source`` reads from ``file``.
 
-    Of positions whose time goes back as few as possible are left out, and noted in ``remarks``.
+    As few positions as possible are left out so that times increase; these are recorded in ``remarks``.
 
     :raises RecordingError: for a file without a position, and one with too many.
     """
@@ -295,9 +295,9 @@ def _track(file: Path, robot: str, values: array[float], crs: str | None, remark
 
 
 def longest_rising(values: Sequence[float]) -> npt.NDArray[np.int64]:
-    """Return the numbers of as many values as possible that rise one after the other.
+    """Return the indices of a longest increasing subsequence.
 
-    Of values of which one is too many the earlier ones are taken.
+    If either of two values could be dropped, the earlier one is kept.
     """
     count = len(values)
     falling = _rising([-value for value in reversed(values)])
@@ -305,7 +305,7 @@ def longest_rising(values: Sequence[float]) -> npt.NDArray[np.int64]:
 
 
 def _rising(values: Sequence[float]) -> npt.NDArray[np.int64]:
-    # Patience sorting: of values that could be taken for one another it takes the later ones.
+    # Patience sorting: of interchangeable values it keeps the later ones.
     ends: list[float] = []
     """the smallest last value of a run of each length."""
     at: list[int] = []
