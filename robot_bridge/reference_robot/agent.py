@@ -1,4 +1,4 @@
-"""What the robot says, does and remembers, without a wire or a clock of its own."""
+"""The robot's behaviour: messages, tasks and memory, without a wire or a clock of its own."""
 
 from __future__ import annotations
 
@@ -32,40 +32,40 @@ from .body import (
 STANDING = 0.01
 """m/s."""
 RANGE = 10_000.0
-"""metres that the simulated battery lasts."""
+"""metres of range of the simulated battery."""
 STEER_EVERY = 0.05
-"""seconds; a robot steers as often, however late the program is in letting time pass."""
+"""seconds between steering steps, however late the program lets time pass."""
 MOST_DONE = 10_000
-"""Messages that are remembered: many more than a gateway ever has on their way to one robot."""
+"""Remembered messages: many more than a gateway ever has in flight to one robot."""
 REMEMBER_EVERY = 1.0
-"""seconds of driving between two notes of how far the robot has come."""
+"""seconds of driving between two records of the robot's progress."""
 GREET_AGAIN = 1.0
-"""seconds after which a robot that was refused says Ready once more."""
+"""seconds after which a refused robot sends Ready again."""
 ASK_AGAIN = 3.0
-"""seconds after which a robot that stands without a path asks for it once more."""
+"""seconds after which a robot that stands without a path requests it again."""
 NEAR_BORDER = 0.25
-"""of the shorter side of a map of a part of the site: so near to its border a robot asks for the next."""
+"""share of the shorter side of a partial map: this near to its border a robot requests the next."""
 SAME_MAP = 5.0
-"""metres from where it was sent its map: nearer than that it would be sent the same one again."""
+"""metres from where it got its map: nearer than that it would get the same one again."""
 LEAST_KNOWN = 1e5
-"""metres: a larger accuracy says no more."""
+"""metres: larger accuracies mean an unknown position."""
 FIRST_AREA = 10_000.0
-"""m² of the map that a robot asks for around itself when the first one was no use to it."""
+"""m² of the map that a robot requests around itself when the first one was of no use."""
 OFF_PATH = 1.0
-"""metres from its path at which a robot that has found itself again asks for another one."""
+"""metres from its path at which a robot that was lost and knows its place again requests another path."""
 ASK_ROUND = 10.0
-"""seconds for which something may be in its way until it asks for another path, and then again."""
+"""seconds for which something may block it until it requests another path, and between repetitions."""
 
 
 @dataclass(frozen=True)
 class AgentSettings:
     """``magic`` names this run of the robot, ``noise`` is metres on reported positions.
 
-    ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot asks
-    for a path to every target, and stands until it has one; with ``asks_surface`` it asks what ground it is
-    on and is to go to, and says so as its status. With a ``memory`` in which something is, the robot goes on
-    from there. It asks for the next map when the border of its own is nearer than ``map_margin`` metres, too.
-    ``body`` is driven instead of one at ``pose`` that always knows its place.
+    ``things`` are seen on the way, with ``image`` as the picture of each; with ``asks_path`` the robot
+    requests a path to every target, and stands until it has one; with ``asks_surface`` it requests the
+    surface at its place and its goal, and reports it as its status. With a non-empty ``memory`` the robot
+    continues from there. It also requests the next map when the border of its own is nearer than
+    ``map_margin`` metres. ``body`` is driven instead of one at ``pose`` that always knows its place.
     """
 
     magic: int
@@ -86,24 +86,24 @@ class AgentSettings:
 
 @dataclass(frozen=True)
 class Awaited:
-    """A target (x, y) in metres, and the heading to end in, to which a path was asked for."""
+    """A target (x, y) in metres with its heading, to which a path was requested."""
 
     place: tuple[float, float]
     theta: float | None
 
 
 class RequestSink(Protocol):
-    """Who carries a robot's requests to the gateway."""
+    """A carrier of a robot's requests to the gateway."""
 
     def say(self, request: messages.Request) -> None:
         """Send a request."""
 
 
 class Agent:
-    """Takes in answers, lets time pass, and hands the requests to send to its ``sink``.
+    """Receives answers, lets time pass, and passes requests to its ``sink``.
 
-    A message that came twice is acknowledged twice and done once. Until the gateway has taken its Ready the
-    robot says nothing else: another one may run under its account.
+    A message received twice is acknowledged twice and done once. Until the gateway has accepted its Ready the
+    robot sends nothing else: another one may run under its account.
     """
 
     def __init__(self, settings: AgentSettings, sink: RequestSink) -> None:
@@ -114,26 +114,26 @@ class Agent:
         self._driver: Driver | None = None
         self._sightings = ScriptedObjects(settings.things, settings.image)
         self._done: dict[int, None] = {}
-        """The ids of the newest messages that were done, in that order."""
+        """The ids of the newest messages done, in that order."""
         self._database: str | None = None
         self._admitted = False
         self._rests = False
-        """Whether it stands until the gateway has let it in: its task may have been aborted meanwhile."""
+        """Whether it stands until the gateway has admitted it: its task may have been aborted meanwhile."""
         self._greet_in = math.inf
         self._since_pose = math.inf
         self._moving = False
         self._awaited: Awaited | None = None
-        """The target to which it was not told the path yet."""
+        """The target whose path it has not received yet."""
         self._ask_in = math.inf
         self._no_path: str | None = None
-        """Why it was not told it."""
+        """Why it got no path."""
         self._ground: str | None = None
         self._hindered = False
         self._ask_round_in = 0.0
         self._since_kept = 0.0
         self.map: RobotMap | None = None
         self._map_from = (0.0, 0.0)
-        """Where it was when it was sent its map."""
+        """Where it was when it received its map."""
         self._ask_map_in = 0.0
         self._map_refused = False
         self._magic = settings.magic
@@ -144,17 +144,17 @@ class Agent:
 
     @property
     def pose(self) -> Pose:
-        """Where the robot takes itself to be."""
+        """The robot's own pose estimate."""
         return self._body.pose
 
     def greet(self) -> None:
-        """Say Ready; done again whenever the link is made anew."""
+        """Send Ready; repeated after each reconnection of the link."""
         self._greet_in = math.inf
         asks, cones = self._settings.asks_path or None, self._settings.path_cones or None
         self._sink.say(messages.Ready(magic=self._magic, asks_path=asks, path_cones=cones))
 
     def receive(self, answer: messages.Answer, id: int | None) -> messages.OpAck | None:
-        """Take in message ``id`` of the server; return what to acknowledge it with."""
+        """Receive message ``id`` of the server; return its acknowledgement."""
         if isinstance(answer, messages.Start):
             self._count_ids_of(answer.database)
             self.greet()
@@ -163,28 +163,28 @@ class Agent:
             self._take_acknowledgement(answer)
             return None
         if isinstance(answer, messages.Abort) and self._admitted:
-            # What it has come to the end of has been reached, and is not aborted: said before its OpAck.
+            # A task at whose end it is has been reached, and is not aborted: reported before its OpAck.
             self._sink.say(self._position())
         if id is not None and id in self._done:
-            # The gateway has not heard what became of it: it is told once more that all is done, when it is.
+            # The gateway has not received the outcome: it is reported again once all is done.
             self._moving = True
             return messages.OpAck(id=id)
         refusal = self._do(answer)
         if id is not None:
             self._note_done(id)
-        # Before it is acknowledged: what a robot has acknowledged it is not told once more.
+        # Before the acknowledgement: the server does not repeat acknowledged messages.
         self._keep()
         return messages.OpAck(id=id, ok=refusal is None, reason=refusal)
 
     def concerns(self, answer: messages.Answer) -> bool:
-        """Tell whether a message is for this run of the robot, and not for another one of its account."""
+        """Return whether a message is for this run of the robot, and not for another one of its account."""
         if isinstance(answer, messages.OpAck) and answer.magic is not None:
             return answer.magic == self._magic
         return self._admitted or isinstance(answer, messages.Start)
 
     def step(self, dt: float) -> None:
-        """Let ``dt`` seconds pass: drive, and say where the robot is when it is time."""
-        # A step that comes a little late is one step all the same.
+        """Let ``dt`` seconds pass: drive, and send the position when due."""
+        # A step that is a little late still counts as one step.
         steps = max(1, round(dt / STEER_EVERY))
         for _ in range(steps):
             self._move(dt / steps)
@@ -217,7 +217,7 @@ class Agent:
         if self._rests:
             self._body.drive(0.0, 0.0)
         elif self._body.hindrance is not None:
-            # It is not steered by a pose that is wrong, nor does it come to the end of its task by one.
+            # A wrong pose must neither steer it nor complete its task.
             self._hindered = True
             self._body.drive(0.0, 0.0)
         elif self._driver is not None:
@@ -238,22 +238,22 @@ class Agent:
         self._body.drive(*(motion or (0.0, 0.0)))
 
     def wait_for_gateway(self) -> None:
-        """Stand until the gateway has let the robot in once more; its task stays, unless it is aborted."""
+        """Stand until the gateway has admitted the robot again; its task stays, unless it is aborted."""
         self._rests = True
 
     def stop(self) -> None:
-        """Say that the robot stands and does nothing; what it remembers of its task stays."""
+        """Send Stopped; the remembered task stays."""
         self._driver = None
         if self._admitted:
             self._sink.say(messages.Stopped())
 
     def alive(self) -> None:
-        """Say Alive."""
+        """Send Alive."""
         if self._admitted:
             self._sink.say(messages.Alive())
 
     def _go_on(self, remembered: RememberedRun) -> None:
-        """Be the run of the robot that is remembered, and say once more that all is done when it is."""
+        """Continue the remembered run of the robot, and report again that all is done if it is."""
         self._magic, self._database = remembered.magic, remembered.database
         self._done = dict.fromkeys(remembered.done)
         self._body.place(remembered.pose)
@@ -293,7 +293,7 @@ class Agent:
             self._greet_in = GREET_AGAIN
 
     def _count_ids_of(self, database: str | None) -> None:
-        """Stop, and forget what was done, when ids begin again: its task is in no other database."""
+        """Stop, and forget the done messages, when the database is another one: it does not hold the task."""
         if database != self._database:
             if self._database is not None:
                 self._halt()
@@ -308,7 +308,7 @@ class Agent:
             del self._done[next(iter(self._done))]
 
     def _do(self, answer: messages.Answer) -> str | None:
-        """Do what a message asks; return why not, or None."""
+        """Execute a message; return why not, or None."""
         limits = self._settings.limits
         if isinstance(answer, messages.SetMap):
             return self._take_map(answer)
@@ -348,20 +348,20 @@ class Agent:
         self._awaited, self._no_path, self._ask_in = awaited, None, math.inf
 
     def _ask_path(self) -> None:
-        """Ask for the path that is wanted, again after each Ready: a gateway that died answers no more.
+        """Request the awaited path, again after each Ready, since a dead gateway no longer answers.
 
-        Also from time to time: roads are opened again.
+        Also from time to time, as roads are opened again.
         """
         if self._awaited is None:
             self._ask_in = math.inf
             return
         self._ask_in = ASK_AGAIN
-        # The path is to begin where the robot is now.
+        # The path must begin where the robot is now.
         self._sink.say(self._position())
         self._sink.say(messages.GetPath())
 
     def _ask_way_round(self) -> None:
-        """Ask for another path where something stays in the way; what it has is driven until one comes."""
+        """Request another path if something stays in the way; the present one is driven until it arrives."""
         if self._driver is not None and self._settings.asks_path:
             self._ask_round_in = ASK_ROUND
             self._sink.say(self._position())
@@ -383,7 +383,7 @@ class Agent:
         return refusal
 
     def _ask_map(self) -> None:
-        """Ask for the map around the robot where it is about to leave the one of a part that it has."""
+        """Request the map around the robot when it is about to leave its partial map."""
         x, y, _ = self.pose
         if self.map is None:
             if self._map_refused:
@@ -437,18 +437,18 @@ class Agent:
             self._sink.say(messages.Stopped())
 
 
-# --- What it keeps on its disk, so that a program that is started anew goes on as the one before it ---
+# --- State on the disk, so that a restarted program continues as the one before ---
 
 Point = tuple[float, float]
 
 
 @dataclass(frozen=True)
 class RememberedRun:
-    """The run of a robot: its ``magic`` number, and the ids of the messages of ``database`` that it has done.
+    """A run of a robot: its ``magic`` number, and the ids of its done messages of ``database``.
 
-    ``pose`` is where it was, ``way`` the points that are left of its task (none when it has nothing to do),
-    and ``theta`` the heading to end in; metres and radians in the site frame. With ``awaits_path`` it was not
-    told the path to the end of ``way`` yet, and stands.
+    ``pose`` is where it was, ``way`` the remaining points of its task (none without a task), and ``theta``
+    the final heading; metres and radians in the site frame. With ``awaits_path`` it has not received the path
+    to the end of ``way`` yet, and stands.
     """
 
     magic: int
@@ -461,13 +461,13 @@ class RememberedRun:
 
 
 class RobotMemory:
-    """A file with what a robot remembers: on the disk when :meth:`keep` returns, and never half of it."""
+    """A file with a robot's memory: on the disk when :meth:`keep` returns, and written atomically."""
 
     def __init__(self, file: Path) -> None:
         self._file = file
 
     def recall(self) -> RememberedRun | None:
-        """Return what an earlier run kept, None where there was none; raises BridgeError."""
+        """Return the state of an earlier run, None if there was none; raises BridgeError."""
         try:
             kept = decode_json(self._file.read_bytes())
             x, y, theta = kept["pose"]
@@ -484,7 +484,7 @@ class RobotMemory:
             ) from None
 
     def keep(self, remembered: RememberedRun) -> None:
-        """Write what is to be remembered in place of what was; raises BridgeError."""
+        """Replace the stored state; raises BridgeError."""
         try:
             write_state(self._file, json.dumps(asdict(remembered)).encode())
         except OSError as error:

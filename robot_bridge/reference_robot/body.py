@@ -22,7 +22,7 @@ Pose = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class BodyLimits:
-    """What the body can do: m/s, rad/s, m/s², rad/s²."""
+    """Limits of the body: m/s, rad/s, m/s², rad/s²."""
 
     speed: float = 1.5
     turn_rate: float = 1.2
@@ -31,16 +31,16 @@ class BodyLimits:
 
     @classmethod
     def of(cls, speed: float, turn_rate: float, acceleration: float) -> BodyLimits:
-        """Limits of a body whose two accelerations are in proportion; it is told the one in m/s²."""
+        """Return limits with proportional accelerations; ``acceleration`` is the one in m/s²."""
         return cls(speed, turn_rate, acceleration, cls.turn_acceleration * acceleration / cls.acceleration)
 
 
 class SimulatedVehicle(Protocol):
-    """What an agent drives. Its ``pose`` is where it takes itself to be.
+    """A vehicle driven by an agent. Its ``pose`` is its own estimate.
 
-    ``accuracy`` is the standard deviation of that in metres, ``hindrance`` says why it must not drive,
-    ``remark`` what else operators are to know, and ``blocked_for`` for how many seconds something has been in
-    its way.
+    ``accuracy`` is the standard deviation of that in metres, ``hindrance`` is why it must not drive,
+    ``remark`` further information for operators, and ``blocked_for`` the seconds for which something has
+    blocked it.
     """
 
     @property
@@ -59,25 +59,25 @@ class SimulatedVehicle(Protocol):
     def blocked_for(self) -> float: ...
 
     def place(self, pose: Pose) -> None:
-        """Take it to be at ``pose``."""
+        """Set the pose estimate to ``pose``."""
 
     def drive(self, v: float, turn_rate: float) -> None:
-        """Ask for a motion, m/s and rad/s."""
+        """Request a motion, m/s and rad/s."""
 
     def step(self, dt: float) -> None:
         """Let ``dt`` seconds pass."""
 
     def use_map(self, robot_map: RobotMap) -> str | None:
-        """Take over a map; return why not, or None."""
+        """Use a map; return why not, or None."""
 
     def observations(self) -> Sequence[Observed]:
-        """Return what it has seen since it was asked last that belongs on the map."""
+        """Return objects for the map that it has seen since the last call."""
 
 
 class Body:
-    """Where the robot really is. ``drive`` asks for a motion, ``step`` lets time pass.
+    """The true pose of the robot. ``drive`` requests a motion, ``step`` lets time pass.
 
-    ``driven`` is metres since the start. It knows its place without a map, and stands in nobody's way.
+    ``driven`` is metres since the start. It knows its place without a map, and blocks nothing.
     """
 
     accuracy: float | None = None
@@ -94,11 +94,11 @@ class Body:
         self._target_speeds = (0.0, 0.0)
 
     def place(self, pose: Pose) -> None:
-        """Take the body to be at ``pose``, as a robot that is told where it stands."""
+        """Set the body to ``pose``, like a robot that receives its position."""
         self.pose = pose
 
     def use_map(self, robot_map: RobotMap) -> str | None:
-        """Take any map: it needs none."""
+        """Accept any map: it needs none."""
         return None
 
     def observations(self) -> Sequence[Observed]:
@@ -106,7 +106,7 @@ class Body:
         return ()
 
     def drive(self, v: float, turn_rate: float) -> None:
-        """Ask for a speed (m/s) and a turn rate (rad/s), within the limits."""
+        """Request a speed (m/s) and a turn rate (rad/s), within the limits."""
         limits = self._limits
         self._target_speeds = (
             _clamp(v, limits.speed),
@@ -132,34 +132,34 @@ def _clamp(value: float, limit: float) -> float:
     return max(-limit, min(limit, value))
 
 
-# --- How the robot drives to a target or along a path: pure pursuit, slow in corners, a turn at the end
+# --- Driving to a target or along a path: pure pursuit, slow in corners, a turn at the end
 
 ARRIVED = 0.05
 """metres from the end at which the robot stops."""
 LOOK_AHEAD = 1.2
-"""metres ahead on the path that the robot steers to."""
+"""metres ahead on the path of the point that the robot steers to."""
 TURN_FIRST = 0.6
 """radians off course above which it turns on the spot before it drives."""
 HEADING_REACHED = 0.03
 """radians."""
 WINDOW = 4.0
-"""metres of path searched ahead for the place where the robot is, so that it cuts no loop short."""
+"""metres of path searched ahead for the robot's place, so that it skips no loop."""
 
 CORNER = 0.6
-"""metres before and behind a corner in which the robot takes it."""
+"""metres before and behind a corner within which the robot rounds it."""
 TURNING = 0.6
-"""Of its turn rate, what a corner takes: with the rest the robot comes back to its path."""
+"""Share of the turn rate used in corners: the rest is for returning to the path."""
 LEAST_SPEED = 0.2
 """m/s through the sharpest corner."""
 BRAKING = 0.5
-"""Of its acceleration, what the robot brakes with: it can do more."""
+"""Share of the acceleration used for braking: it can do more."""
 
 Motion = tuple[float, float]
 """Speed in m/s and turn rate in rad/s."""
 
 
 class Driver:
-    """Drives one task. ``points`` is where to go, (x, y) in metres; ``theta`` the heading to end in."""
+    """Drives one task. ``points`` are the way, (x, y) in metres; ``theta`` is the final heading."""
 
     def __init__(
         self, points: Sequence[tuple[float, float]], theta: float | None, limits: BodyLimits
@@ -180,7 +180,7 @@ class Driver:
         return ahead or [self._points[-1]]
 
     def off(self, pose: Pose) -> float:
-        """Return how far ``pose`` is from what is left of its path, metres; 0 without a path."""
+        """Return the distance of ``pose`` from the rest of its path, metres; 0 without a path."""
         if len(self._points) < 2:
             return 0.0
         station, off = self._line.feet(*pose[:2])
@@ -188,7 +188,7 @@ class Driver:
         return float(off[ahead].min(initial=math.inf))
 
     def steer(self, pose: Pose) -> Motion | None:
-        """Return the motion to ask the body for at ``pose``, or None when the task is done."""
+        """Return the motion to request at ``pose``, or None when the task is done."""
         x, y, theta = pose
         self._locate(x, y)
         end = self._line.end
@@ -212,7 +212,8 @@ class Driver:
     def _corners(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Return stations, the speed through each, and the least of v² + 2as of the corners from there on.
 
-        Who drives with v at a station s can then still brake by a for each of them, where 2as less is left.
+        A robot with speed v at station s can still brake with a for each of them, if v² + 2as is not above
+        it.
         """
         bends = self._line.turns(CORNER) / (2 * CORNER)
         fastest = TURNING * self._limits.turn_rate / np.maximum(bends, 1e-9)
@@ -222,8 +223,8 @@ class Driver:
         return stations, speeds, np.minimum.accumulate(squares[::-1])[::-1]
 
     def _before_corners(self) -> float:
-        """Return the speed with which the robot can still be slow enough in each corner ahead."""
-        # One that lies just behind is still being driven round, and no longer braked for.
+        """Return the highest speed from which the robot can still slow down for each corner ahead."""
+        # A corner just behind is still being rounded, but no longer braked for.
         begin, ahead = np.searchsorted(self._stations, [self._driven - CORNER, self._driven])
         fastest = float(self._speeds[begin:ahead].min(initial=math.inf))
         if ahead < len(self._squares):
@@ -247,7 +248,7 @@ class Driver:
         return None if abs(left) < HEADING_REACHED else (0.0, 2.0 * left)
 
 
-# --- What the simulated robot comes across: things at known places that it sees when it is near them ---
+# --- Scripted objects: things at known places that the simulated robot sees when near ---
 
 SIGHT = 10.0
 """metres within which the robot sees a thing."""
@@ -263,7 +264,7 @@ class ScriptedObject:
 
 
 class ScriptedObjects:
-    """Observes each thing once, as an object and, where there is an ``image``, as an image of it."""
+    """Observes each thing once, as an object and, if there is an ``image``, as an image of it."""
 
     def __init__(self, things: Sequence[ScriptedObject], image: bytes | None) -> None:
         self._unseen = list(things)
@@ -271,7 +272,7 @@ class ScriptedObjects:
         self._count = 0
 
     def observe(self, pose: Pose) -> list[Observed]:
-        """Return what is seen from ``pose`` and was not before."""
+        """Return the things newly seen from ``pose``."""
         observed: list[Observed] = []
         for thing in [thing for thing in self._unseen if _sees(pose, thing)]:
             self._unseen.remove(thing)
@@ -291,16 +292,16 @@ def _sees(pose: Pose, thing: ScriptedObject) -> bool:
     return math.hypot(thing.x - pose[0], thing.y - pose[1]) <= SIGHT
 
 
-# --- How near a place is to where a robot's map ends and the site goes on ---
+# --- Distance of a place from the edge of a robot's map beyond which the site continues ---
 
 SAME_EDGE = 0.02
-"""metres: what a map's border may differ from the site's by rounding."""
+"""metres: tolerance for rounding between a map's border and the site's."""
 
 
 def before_border(robot_map: RobotMap, x: float, y: float) -> float:
-    """Return how far (x, y) is inside the border of a map, metres; negative outside.
+    """Return the distance of (x, y) inside the border of a map, metres; negative outside.
 
-    Edges at which the site ends as well do not count; infinite for a map of the whole site.
+    Edges at which the site ends, too, do not count; infinite for a map of the whole site.
     """
     if PART_OF not in robot_map.meta:
         return math.inf
@@ -316,7 +317,7 @@ def before_border(robot_map: RobotMap, x: float, y: float) -> float:
 
 
 def _whole(robot_map: RobotMap) -> tuple[float, float, float, float]:
-    """Return the bounds of the site; a line that cannot be read says that it goes on everywhere."""
+    """Return the bounds of the site; an unreadable line means unbounded."""
     try:
         x_min, y_min, x_max, y_max = (float(part) for part in robot_map.meta[PART_OF].split(","))
     except ValueError:

@@ -1,4 +1,4 @@
-"""The reference robot's SQL: it inserts into RR, reads its own rows of SA and deletes them."""
+"""The reference robot's SQL link: it inserts into RR, reads its own rows of SA and deletes them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ RETRY_AFTER = 1.0
 
 
 class RobotSqlLink:
-    """Writes what the agent says as it says it, and hands it what is answered as soon as it is there."""
+    """Writes the agent's messages immediately, and delivers answers as soon as they arrive."""
 
     def __init__(self, database: str | URL, robot: str) -> None:
         self._address = make_url(database)
@@ -39,7 +39,7 @@ class RobotSqlLink:
         self._robot = robot
         self._outgoing: list[Request] = []
         self._magic: int | None = None
-        """The number of this run, once it has said Ready."""
+        """The number of this run, once it has sent Ready."""
 
     def say(self, request: Request) -> None:
         """Write a request at the next turn."""
@@ -85,9 +85,9 @@ class RobotSqlLink:
         await asyncio.sleep(RETRY_AFTER)
 
     async def _follow_file(self, agent: Agent) -> None:
-        """Open SQLite's file again: another may be there, by which a gateway has to reach the robot.
+        """Reopen SQLite's file if it was replaced, as the gateway reaches the robot through the new one.
 
-        Not in the midst of a turn: what was read in one file is deleted and acknowledged in no other.
+        Not during a turn: rows read in one file must be deleted and acknowledged in the same one.
         """
         file = self._inode()
         if file is None:
@@ -95,7 +95,7 @@ class RobotSqlLink:
         former, self._database = self._database, Database(self._address)
         await former.close()
         if file == self._file:
-            # Its log may be another one.
+            # Its write-ahead log may be another one.
             return
         log.warning("robot %s goes on with the file that has taken the place of its database", self._robot)
         self._file = file
@@ -119,16 +119,16 @@ class RobotSqlLink:
                 read.append(row.id)
             is_behind |= not own
             if ack is not None:
-                # Behind what the agent said about the message.
+                # After the agent's requests about the message.
                 self._outgoing.append(ack)
             if own and is_behind and row.op == OpAck.__name__:
-                # It may have let the robot in: what stands before it, such as an Abort, is done first.
+                # It may admit the robot: earlier rows, such as an Abort, are handled first.
                 break
         await self._flush(read)
         return bool(read)
 
     def _receive(self, agent: Agent, row: AnswerRow) -> tuple[bool, OpAck | None]:
-        """Hand a row to the agent; return whether it was the agent's own, and how to acknowledge it."""
+        """Deliver a row to the agent; return whether it was the agent's own, and its acknowledgement."""
         try:
             answer = decode_answer(row.op, parse_params(row.op, row.params), row.payload)
         except MessageError as error:
@@ -151,7 +151,7 @@ class RobotSqlLink:
 
 
 def _still_to_say(requests: Sequence[Request]) -> list[Request]:
-    """Return what is to be said again, each once; of positions where the robot was when it answered."""
+    """Return the requests to repeat, each once; of positions only the last before each OpAck."""
     kept: list[Request] = []
     position = None
     for request in requests:
@@ -173,6 +173,6 @@ def _exchange(
 
 
 def _row(robot: str, magic: int | None, request: Request) -> tuple[str, str, str, bytes | None]:
-    """Return the row of a request, with the number of the run that says it."""
+    """Return the row of a request, with the number of its run."""
     params = {**to_json(request), "magic": magic} if magic is not None else to_json(request)
     return robot, type(request).__name__, json.dumps(params), payload_of(request)

@@ -1,4 +1,4 @@
-"""The reference robot's WebSocket: connects, connects again, and carries messages both ways."""
+"""The reference robot's WebSocket: connects, reconnects, and carries messages both ways."""
 
 from __future__ import annotations
 
@@ -24,21 +24,21 @@ from .agent import Agent
 log = logging.getLogger(__name__)
 
 SAY_AGAIN = 1.0
-"""seconds after which an observation that the gateway could not store is said once more."""
+"""seconds after which an observation that the gateway could not store is sent again."""
 REPLACED = 4001
-"""Close code of a gateway to which another robot has connected under the same name."""
+"""Close code after another robot has connected under the same name."""
 Frame = str
 LARGEST_FRAME = 64 << 20
 """bytes; a whole city's map comes in one frame."""
 
 
 class RobotWebSocketLink:
-    """Carries what the agent says while connected; what it says in between is dropped as out of date.
+    """Sends the agent's messages while connected; others are dropped as outdated.
 
-    Observations are kept, and said again after the next Ready, until the gateway has acknowledged them.
-    Where several gateways serve the fleet it goes on at another one when its own does not answer. Of what lay
-    on a connection while this program stood still for ``longest_pause_s`` seconds only an Abort is done:
-    nobody may want the rest any more. What is still wanted comes again on the next one.
+    Observations are kept, and sent again after the next Ready, until the gateway has acknowledged them. If
+    several gateways serve the fleet, it continues at another one when its own does not answer. Of messages
+    that waited on a connection while this program stood still for ``longest_pause_s`` seconds, only an Abort
+    is obeyed: the rest may be outdated. Messages that still apply are repeated on the next connection.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class RobotWebSocketLink:
         self._addresses = GatewayAddresses(url, has_token=self._credentials.token_file is not None)
         self._robot = robot
         self._outgoing: asyncio.Queue[Request | Frame] = asyncio.Queue()
-        """What is to be sent, in order: a reply does not overtake what was said before it."""
+        """Outgoing messages in order: a reply does not overtake earlier messages."""
         self._longest_pause_s = longest_pause_s
         self._standstill = StandstillWatch(longest_pause_s)
         self._connected = False
@@ -67,7 +67,7 @@ class RobotWebSocketLink:
 
     @property
     def unacknowledged_observations(self) -> int:
-        """How many observations the gateway has not acknowledged yet."""
+        """The number of observations that the gateway has not acknowledged yet."""
         return len(self._untold)
 
     def say(self, request: Request) -> None:
@@ -82,7 +82,7 @@ class RobotWebSocketLink:
                 self._outgoing.put_nowait(observed)
 
     async def run(self, agent: Agent) -> None:
-        """Carry messages until cancelled; raises BridgeError for a URL that cannot be right."""
+        """Carry messages until cancelled; raises BridgeError for an invalid URL."""
         while True:
             url, ends = self._url, False
             try:
@@ -128,14 +128,14 @@ class RobotWebSocketLink:
                 agent.wait_for_gateway()
 
     async def _end_when_old(self, connection: ClientConnection, agent: Agent) -> None:
-        """End a connection on which what was received is too old to be done."""
+        """End a connection whose received messages are too old."""
         await self._standstill.wait()
         agent.wait_for_gateway()
         log.warning(
             "robot %s stood still for %.0f s: it waits for the gateway", self._robot, self._standstill.seconds
         )
         await asyncio.sleep(ABORTS_WITHIN_S)
-        # Closed in good order it would seem to be switched off.
+        # After an orderly close the robot would count as switched off.
         connection.transport.abort()
 
     async def _send_all(self, connection: ClientConnection) -> None:
@@ -167,7 +167,7 @@ class RobotWebSocketLink:
             params = message.params if isinstance(message.params, dict) else {}
             self._addresses.learn(params.get("gateways"))
             return
-        # Nothing is said before the gateway's Start.
+        # Nothing is sent before the gateway's Start.
         self._connected = True
         id = message.id if isinstance(message.id, int) else None
         try:
@@ -187,7 +187,7 @@ class RobotWebSocketLink:
         ack = _acknowledgement(reply)
         self._addresses.learn(ack.gateways)
         if isinstance(request, Observed) and reply.code == jsonrpc.INTERNAL_ERROR:
-            # What could not be stored just now is said again; what is wrong is not.
+            # Observations that could not be stored are sent again; invalid ones are not.
             asyncio.get_running_loop().call_later(SAY_AGAIN, self._outgoing.put_nowait, request)
         elif isinstance(request, Observed) and request in self._untold:
             self._untold.remove(request)
@@ -219,7 +219,7 @@ def _reply(id: int | str, ack: OpAck) -> str:
 
 
 def _reason(error: OSError | InvalidHandshake) -> str:
-    """Return why there is no connection, in the gateway's own words where it gave some."""
+    """Return why there is no connection, in the gateway's own words if it gave any."""
     if isinstance(error, InvalidStatus):
         text = bytes(error.response.body).decode("utf-8", "replace").strip()
         return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"

@@ -13,25 +13,25 @@ from numpy.typing import NDArray
 from .sensors import Motion, TruePose
 
 NEAR = 4.0
-"""metres: what is farther away is not in the way yet."""
+"""metres: things farther away are not in the way yet."""
 TOGETHER = 0.3
-"""metres between the ends of neighbouring beams that see one thing; a beam alone sees noise."""
+"""metres between the ends of neighbouring beams on one thing; a single beam is noise."""
 STEADY = 0.5
 """metres within which a thing must have been seen one scan before."""
 GAP = 0.3
-"""metres that the robot keeps from what is ahead of it."""
+"""metres that the robot keeps from obstacles ahead."""
 WAITS = 3.0
-"""seconds that it waits for what stands in its way, people above all, before it goes round it."""
+"""seconds that it waits for an obstacle, people above all, before it drives round it."""
 SIDEWAYS = tuple(math.radians(degrees) for degrees in (15, -15, 30, -30, 45, -45, 60, -60, 80, -80))
-"""Directions beside its own in which it looks for a free way."""
+"""Directions relative to its own in which it searches for a free way."""
 ROUND = 1.2
-"""metres that must be free in such a direction, and that it drives then."""
+"""metres that must be free in such a direction, and that it then drives."""
 ROUND_SPEED = 0.4
-"""m/s while it goes round something."""
+"""m/s while it drives round something."""
 PASSED = 3.0
-"""metres driven on after which what was in the way is passed."""
+"""metres driven after which an obstacle counts as passed."""
 AIMS = 2.5
-"""1/s: turn rate for an angle to where it steers."""
+"""1/s: turn rate per angle to the direction of steering."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +45,8 @@ class ObstacleShape:
 class Avoidance:
     """Changes a wanted motion so that the robot hits nothing that its laser sees.
 
-    ``blocked_for`` is for how many seconds something has kept it from driving on, its tries to go round it
-    included; ``waits`` tells whether it stands because of it now.
+    ``blocked_for`` is the seconds for which something has blocked it, including its tries to drive round it;
+    ``waits`` says whether it stands because of it now.
     """
 
     def __init__(self, bearings: NDArray[Any], shape: ObstacleShape) -> None:
@@ -55,16 +55,16 @@ class Avoidance:
         self._points = self._earlier = np.empty((0, 2))
         self._things = np.empty((0, 2))
         self._heading: float | None = None
-        """radians to turn until it looks where it goes round something, None while it does not."""
+        """radians to turn until it faces its way round something, None otherwise."""
         self._left = 0.0
         self.blocked_for = 0.0
         self.waits = False
         self._waited = 0.0
         self._clear = 0.0
-        """metres driven since something was in the way last."""
+        """metres driven since something was last in the way."""
 
     def observe(self, ranges: NDArray[Any], motion: Motion) -> None:
-        """Take in a scan, (B,) metres, and what the robot moved since the one before."""
+        """Process a scan, (B,) metres, and the robot's motion since the one before."""
         self._earlier = _seen_after(self._points, motion)
         self._points = _points(ranges, self._bearings)
         if len(self._points) and len(self._earlier):
@@ -74,7 +74,7 @@ class Avoidance:
             self._things = self._points[:0]
 
     def move(self, motion: Motion) -> None:
-        """Take in what the robot moved since the newest scan, so that things stay where they are."""
+        """Apply the robot's motion since the newest scan, so that things keep their places."""
         self._things = _seen_after(self._things, motion)
         self._points = _seen_after(self._points, motion)
         self._clear += abs(motion.distance)
@@ -85,13 +85,13 @@ class Avoidance:
     def adjusted(self, v: float, turn_rate: float, dt: float) -> tuple[float, float]:
         """Return the motion, m/s and rad/s, for the wanted one in the next ``dt`` seconds."""
         if v == 0 and turn_rate == 0:
-            # Who asks it to stand is obeyed whatever it is going round.
+            # A request to stand is obeyed even while driving round something.
             self._heading, self.blocked_for, self._waited, self.waits = None, 0.0, 0.0, False
             return 0.0, 0.0
         self.waits = False
         self.blocked_for = self.blocked_for + dt if self.blocked_for and self._clear < PASSED else 0.0
         if v <= 0 and self._heading is None:
-            # A round body hits nothing by turning on the spot.
+            # A round body cannot hit anything by turning on the spot.
             return v, turn_rate
         if self._heading is not None and self._left > 0:
             return self._round()
@@ -124,12 +124,12 @@ class Avoidance:
             self._left = ROUND
 
     def _fastest(self, bearing: float) -> float:
-        """Return the speed from which the robot can still stop before what is ahead of it."""
+        """Return the speed from which the robot can still stop before the obstacle ahead."""
         room = self.free_ahead(bearing) - GAP
         return math.sqrt(2 * self._shape.braking * room) if room > 0 else 0.0
 
     def free_ahead(self, bearing: float) -> float:
-        """Return how far the body can go in a direction until it touches something, metres, or infinite."""
+        """Return the metres that the body can move in a direction before touching something, or infinite."""
         cos, sin = math.cos(bearing), math.sin(bearing)
         along = self._things @ (cos, sin)
         beside = self._things @ (-sin, cos)
@@ -142,7 +142,7 @@ class Avoidance:
 
 
 def _points(ranges: NDArray[Any], bearings: NDArray[Any]) -> NDArray[Any]:
-    """Return where beams end that a neighbouring beam confirms, (n, 2) metres, x ahead."""
+    """Return the ends of beams that a neighbouring beam confirms, (n, 2) metres, x ahead."""
     ends = np.column_stack([ranges * np.cos(bearings), ranges * np.sin(bearings)])
     with np.errstate(invalid="ignore"):
         near = ranges < NEAR
@@ -177,7 +177,7 @@ Discs = NDArray[Any]
 
 
 class People:
-    """Walk to and fro between points of a line, and stop before a robot that is in their way."""
+    """People who walk to and fro between points of a line, and stop before a robot in their way."""
 
     def __init__(self, count: int, line: NDArray[Any], aside: float, rng: np.random.Generator) -> None:
         """``line`` is (m, 2) metres; people keep within ``aside`` metres of it."""
@@ -199,7 +199,7 @@ class People:
                 continue
             place = self.places[one] + way / far * min(far, self._speeds[one] * dt)
             gap = _gap(place, robots)
-            # Whom a robot has come too near to walks away from it.
+            # A person whom a robot has come too near to walks away from it.
             if gap < NEAREST and gap <= _gap(self.places[one], robots):
                 if self._rng.random() < 0.05:
                     self._goals[one] = self._near(self.places[one])
@@ -215,7 +215,7 @@ class People:
         return self._at(self._rng.uniform(0, self._stations[-1]))
 
     def _near(self, place: NDArray[Any]) -> NDArray[Any]:
-        """Return a goal on the piece of the line that a place is beside: nothing is in between."""
+        """Return a goal on the piece of the line beside a place, so that nothing is in between."""
         begin, end = self._line[:-1], self._line[1:]
         along = end - begin
         part = np.clip(
@@ -239,23 +239,23 @@ def _gap(place: NDArray[Any], robots: Discs) -> float:
 
 
 class MovingObstacles:
-    """What moves, shared by all robots of one world: ``others`` are asked again for each scan."""
+    """Moving obstacles, shared by all robots of one world: ``others`` are queried for each scan."""
 
     def __init__(self) -> None:
         self._sources: list[tuple[object, Callable[[], Discs]]] = []
 
     def add(self, owner: object, discs: Callable[[], Discs]) -> None:
-        """Let what ``discs`` returns be seen by all but ``owner``."""
+        """Make the result of ``discs`` visible to all but ``owner``."""
         self._sources.append((owner, discs))
 
     def around(self, owner: object) -> Discs:
-        """Return all that ``owner`` can see, and not itself."""
+        """Return all that ``owner`` can see, except itself."""
         found = [discs() for whose, discs in self._sources if whose is not owner]
         return np.concatenate([np.empty((0, 3)), *found])
 
 
 def ranges_to(discs: Discs, pose: TruePose, bearings: NDArray[Any]) -> NDArray[Any]:
-    """Return how far each beam goes until it meets a cylinder, (B,) metres, infinite where it meets none."""
+    """Return the distance of each beam to a cylinder, (B,) metres, infinite without a hit."""
     if not len(discs):
         return np.full(len(bearings), np.inf)
     angle = pose[2] + bearings[:, None]

@@ -1,4 +1,4 @@
-"""The nearest hits of rays, compiled by numba; imported only where numba may be there."""
+"""The nearest hits of rays, compiled by numba; imported only where numba may be installed."""
 
 from __future__ import annotations
 

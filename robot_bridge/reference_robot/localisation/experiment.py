@@ -1,4 +1,4 @@
-"""A drive along a route in a simulated world: what is true, what the wheels say, what the filter believes."""
+"""A drive along a route in a simulated world: truth, odometry, and the filter's estimate."""
 
 from __future__ import annotations
 
@@ -26,27 +26,27 @@ EXPERIMENTS = Path(__file__).with_name("experiments")
 STEERING = 20.0
 """times a second."""
 PATIENCE = 3.0
-"""times as long as the route takes at full speed, until an experiment is given up."""
+"""times the route's duration at full speed, until an experiment is given up."""
 
 Coordinate = Annotated[float, msgspec.Meta(ge=-1e7, le=1e7)]
 Place = tuple[Coordinate, Coordinate]
 
 
 class Carried(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """The robot is carried on ``after`` so many metres, by so many metres of its route."""
+    """The robot is carried forward ``after`` so many metres, by so many metres of its route."""
 
     after: Metres
     by: Metres
 
 
 class ExperimentSettings(LocalisedRobotSettings, frozen=True, forbid_unknown_fields=True):
-    """A route, how it is driven, and what the robot and its world are set to.
+    """A route, how it is driven, and the settings of the robot and its world.
 
     ``route`` are points, metres in the site frame; ``speed`` is m/s and ``scans`` a second. ``start`` is
     ``known`` to ``start_m`` metres and ``start_deg`` degrees (standard deviations), or ``unknown``: then it
-    is somewhere on the route. ``length`` ends the drive after so many metres. With ``gps``
-    the filter hears the receiver once a second. With ``end_heading_deg``, degrees counter-clockwise from the
-    x axis, the robot must stand so at the end of its route, and how well it does is measured.
+    is somewhere on the route. ``length`` ends the drive after so many metres. With ``gps`` the filter gets
+    the receiver's position once a second. With ``end_heading_deg``, degrees counter-clockwise from the x
+    axis, the robot must have this heading at the end of its route, and the error is measured.
     """
 
     title: Annotated[str, msgspec.Meta(max_length=200)] = ""
@@ -65,11 +65,11 @@ class ExperimentSettings(LocalisedRobotSettings, frozen=True, forbid_unknown_fie
 
 @dataclass(frozen=True, eq=False)
 class SensorLog:
-    """What the sensors of a drive said, for other filters to be tried on.
+    """The sensor data of a drive, for trying other filters.
 
     ``start`` is where the robot was when it made the first of n + 1 ``scans``, (n + 1, B) metres, NaN where a
-    beam has no reading and infinite where it met nothing; ``motions``, (n, 2), are what it took itself to
-    have done between two scans: metres forward and radians counter-clockwise.
+    beam has no reading and infinite where it met nothing; ``motions``, (n, 2), are its measured motions
+    between scans: metres forward and radians counter-clockwise.
     """
 
     start: sensors.TruePose
@@ -82,12 +82,12 @@ class Record:
     """One drive, a row for each of n scans.
 
     ``truth``, ``odometry`` and ``belief`` are (n, 3): x, y in metres and theta in radians, site frame;
-    ``driven`` and ``accuracy`` are (n,) metres, ``lost`` (n,) bool as the robot says it, ``seconds`` (n,) of
-    processor time for an update, and ``particles`` (n,) how many there are after it. The robot was carried
+    ``driven`` and ``accuracy`` are (n,) metres, ``lost`` (n,) bool as the robot reports it, ``seconds`` (n,)
+    of processor time for an update, and ``particles`` (n,) how many there are after it. The robot was carried
     away before row ``carried``; ``goal`` is where it should stand in the end. Of a drive at a gateway:
-    ``maps`` that the robot was sent, of ``map_bytes`` in all, and the least way, metres, between its body and
-    all that it could have hit, ``clearance``; ``accepted`` observations of robots were on its map, None where
-    nobody reviewed any. Of one without: what its sensors said, ``log``.
+    ``maps`` that the robot was sent, of ``map_bytes`` in all, and the least distance, metres, between its
+    body and any obstacle, ``clearance``; ``accepted`` observations of robots were on its map, None if none
+    were reviewed. Of a drive without a gateway: its sensor data, ``log``.
     """
 
     seed: int
@@ -117,7 +117,7 @@ def names() -> list[str]:
 def read_settings(file: Path) -> ExperimentSettings:
     """Return the experiment in a TOML ``file``.
 
-    :raises ReferenceRobotError: naming the file and what is wrong in it.
+    :raises ReferenceRobotError: naming the file and the fault in it.
     """
     try:
         return msgspec.convert(settings_tables(file), ExperimentSettings)
@@ -126,10 +126,10 @@ def read_settings(file: Path) -> ExperimentSettings:
 
 
 def run(robot_map: RobotMap, settings: ExperimentSettings, seed: int, compiled: bool | None = None) -> Record:
-    """Return one drive on ``robot_map``; all that is random comes from ``seed``.
+    """Return one drive on ``robot_map``; all randomness comes from ``seed``.
 
-    :raises ReferenceRobotError: for a route that leaves the map or goes through what is solid, and for one
-        that is not driven to its end.
+    :raises ReferenceRobotError: for a route that leaves the map or passes through obstacles, and for one that
+        is not driven to its end.
     """
     check_route(robot_map, settings.route)
     drive = _Drive(robot_map, settings, seed, compiled)
@@ -144,7 +144,7 @@ def run(robot_map: RobotMap, settings: ExperimentSettings, seed: int, compiled: 
 
 
 def goal_of(settings: ExperimentSettings) -> sensors.TruePose | None:
-    """Return where the robot should stand in the end, None where that does not matter."""
+    """Return the robot's final pose, None if it does not matter."""
     heading = settings.end_heading_deg
     return None if heading is None else (*settings.route[-1], math.radians(heading))
 
@@ -183,7 +183,7 @@ def check_route(robot_map: RobotMap, route: Sequence[Place]) -> None:
 
 
 class _Drive:
-    """One drive in the making."""
+    """One drive in progress."""
 
     def __init__(
         self, robot_map: RobotMap, settings: ExperimentSettings, seed: int, compiled: bool | None
@@ -216,7 +216,7 @@ class _Drive:
         self._begin()
 
     def go_on(self) -> bool:
-        """Drive until the next scan, and take that in; False at the end."""
+        """Drive until the next scan, and process it; False at the end."""
         settings = self._settings
         steps = max(1, round(STEERING / settings.scans))
         dt = 1 / settings.scans / steps
@@ -241,7 +241,7 @@ class _Drive:
         return True
 
     def record(self) -> Record:
-        """Return what has been so far."""
+        """Return the record so far."""
         columns = [np.array(column) for column in zip(*self._rows, strict=True)]
         log = SensorLog(self._start, np.array(self._motions), np.array(self._scans))
         return Record(self._seed, self._carried, *columns, goal=goal_of(self._settings), log=log)
@@ -289,7 +289,7 @@ class _Drive:
         self._driver = self._driver_from(station)
 
     def _driver_from(self, station: float) -> Driver:
-        """Return who drives what is left of the route."""
+        """Return the driver for the rest of the route."""
         x, y, _ = _along(self._settings.route, self._line, station)
         stations = zip(self._settings.route, self._line.stations, strict=True)
         left = [point for point, at in stations if at > station + 1e-6]

@@ -15,9 +15,9 @@ from .experiment import Record
 from .world import Walls, walls_of
 
 MARGIN = 8.0
-"""metres around what is drawn."""
+"""metres around the drawing."""
 SCALE = 12.0
-"""pixels for each metre of a small drive; a large one is made to fit."""
+"""pixels per metre of a small drive; a large one is scaled to fit."""
 LARGEST = 1200.0
 """pixels of the longer side."""
 _HEAD = 56.0
@@ -30,8 +30,8 @@ _LINES = (
 
 
 def svg_of(robot_map: RobotMap, record: Record, title: str, laser_height: float) -> str:
-    """Return an SVG of one drive; ``laser_height`` tells which obstacles are drawn dark: those it sees."""
-    # Odometry may lead anywhere: the truth and as much again around it is shown.
+    """Return an SVG of one drive; obstacles that the laser at ``laser_height`` sees are drawn dark."""
+    # Odometry may lead anywhere: the extent of the truth with an equal margin is shown.
     places = np.concatenate([record.truth[:, :2], record.belief[~record.lost][:, :2]])
     low, high = places.min(axis=0) - MARGIN, places.max(axis=0) + MARGIN
     scale = min(SCALE, LARGEST / float((high - low).max()))

@@ -1,4 +1,4 @@
-"""What came of an experiment: figures for each seed and for all together, as a table and as CSV."""
+"""Results of an experiment: figures for each seed and for all together, as a table and as CSV."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 from .experiment import Record
 
 FOUND = 0.5
-"""metres: a robot that is as near to its belief knows where it is."""
+"""metres: a robot this near to its estimate knows where it is."""
 WRONG = 1.0
-"""metres: one that is farther away and does not say that it is lost misleads."""
+"""metres: one farther away that does not report being lost is misleading."""
 
 _HEADS = {
     "seed": "seed",
@@ -47,13 +47,12 @@ _HEADS = {
 class Figures:
     """One row of the table.
 
-    Errors count the scans at which the robot does not say that it is lost; ``lost`` are the others,
-    ``wrong`` those at which it is more than :data:`WRONG` away and does not say so. ``within`` is the
-    share of scans at which it is at most twice as far away as the accuracy that it states, which is a
-    standard deviation: of a normal distribution 0.95. ``found_m`` are metres from where it was switched
-    on or carried to until it was within :data:`FOUND` for good. ``update_ms`` is the median of the
-    processor's time. ``end_m`` and ``end_deg`` tell how far from its goal it really stood in the end.
-    What is None was not measured.
+    Errors are over the scans at which the robot does not report being lost; ``lost`` are the others,
+    ``wrong`` those at which it is more than :data:`WRONG` away without reporting it. ``within`` is the share
+    of scans at which it is at most twice as far away as the accuracy that it states, which is a standard
+    deviation: of a normal distribution 0.95. ``found_m`` are metres from where it was switched on or carried
+    to until it was within :data:`FOUND` for good. ``update_ms`` is the median of the processor's time.
+    ``end_m`` and ``end_deg`` are its true final distance from the goal. None means not measured.
     """
 
     seed: str
@@ -79,20 +78,20 @@ class Figures:
 
 
 def position_errors(record: Record) -> NDArray[Any]:
-    """Return how far the belief is from the truth at each scan, (n,) metres."""
+    """Return the distance of the estimate from the truth at each scan, (n,) metres."""
     away: NDArray[Any] = np.hypot(*(record.belief - record.truth)[:, :2].T)
     return away
 
 
 def heading_errors(record: Record) -> NDArray[Any]:
-    """Return by how much the believed heading is wrong at each scan, (n,) degrees, not negative."""
+    """Return the error of the estimated heading at each scan, (n,) degrees, not negative."""
     off = np.abs(record.belief[:, 2] - record.truth[:, 2]) % (2 * np.pi)
     wrong: NDArray[Any] = np.degrees(np.minimum(off, 2 * np.pi - off))
     return wrong
 
 
 def figures(records: Sequence[Record]) -> list[Figures]:
-    """Return a row for each record, and after several one of all their scans together."""
+    """Return a row for each record, and, if there are several, one of all their scans together."""
     rows = [_figures(str(record.seed), [record]) for record in records]
     return rows if len(rows) == 1 else [*rows, _figures("all", records)]
 
@@ -127,7 +126,7 @@ def _figures(name: str, records: Sequence[Record]) -> Figures:
 
 
 def _measured(records: Sequence[Record]) -> dict[str, Any]:
-    """Return what only some experiments measure: means of several drives, and the least clearance."""
+    """Return figures that only some experiments measure: means of several drives, and the least clearance."""
     ends = np.array([_end(record) for record in records if record.goal is not None]).reshape(-1, 2)
     maps = [record.maps for record in records if record.maps is not None]
     sizes = [record.map_bytes for record in records if record.map_bytes is not None]
@@ -144,7 +143,7 @@ def _measured(records: Sequence[Record]) -> dict[str, Any]:
 
 
 def _end(record: Record) -> tuple[float, float]:
-    """Return by how many metres and degrees the robot really stands off its goal."""
+    """Return the true distance of the robot from its goal in metres and degrees."""
     assert record.goal is not None
     x, y, theta = record.truth[-1]
     off = math.remainder(theta - record.goal[2], math.tau)

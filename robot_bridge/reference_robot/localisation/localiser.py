@@ -1,4 +1,4 @@
-"""Where the robot takes itself to be, found beside its driving: nobody waits for the filter."""
+"""Localisation concurrent with driving: nothing waits for the filter."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ _FRAME = ("crs", "origin", "rotation")
 
 @dataclass(frozen=True)
 class Estimate:
-    """What the filter believed after reading ``number``; ``accuracy`` is a standard deviation in metres."""
+    """The filter's belief after reading ``number``; ``accuracy`` is a standard deviation in metres."""
 
     number: int
     pose: sensors.TruePose
@@ -38,7 +38,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class InitialBelief:
-    """Where the robot takes itself to be when it is switched on; ``deviation`` metres and radians."""
+    """The robot's pose estimate at power-on; ``deviation`` in metres and radians."""
 
     pose: sensors.TruePose
     deviation: tuple[float, float] = (0.1, 0.05)
@@ -47,7 +47,7 @@ class InitialBelief:
 
 @dataclass(frozen=True)
 class LocaliserSettings:
-    """The laser, the filter, and what the body can do; ``fix_noise`` is the GPS receiver's, metres."""
+    """Settings of laser, filter and body; ``fix_noise`` is the GPS receiver's, metres."""
 
     laser: LaserSettings
     filter: FilterSettings
@@ -57,10 +57,10 @@ class LocaliserSettings:
 
 
 class Localiser:
-    """Hands readings to a particle filter that works on ``executor``, one after the other.
+    """Passes readings to a particle filter that works on ``executor``, one after the other.
 
-    :attr:`pose` is the newest belief, moved on by what was measured since. :attr:`trouble` says why the
-    robot must not drive by it. Call all methods from one thread.
+    :attr:`pose` is the newest belief, updated by the motion measured since. :attr:`trouble` is why the robot
+        must not drive by it. Call all methods from one thread.
     """
 
     def __init__(
@@ -72,10 +72,10 @@ class Localiser:
         self._rng = rng
         self._executor = executor
         self._filter: ParticleFilter | None = None
-        """Touched by work on the executor alone."""
+        """Accessed only by work on the executor."""
         self._quiet_scans = 0
         self._expected: sensors.TruePose | None = None
-        """Where the wheels have it since it knew its place last; this too is the executor's."""
+        """The pose by the wheels since it last knew its place; also accessed only on the executor."""
         self._fixed: tuple[float, float] | None = None
         self._fixed_for = 0.0
         """Metres driven since the newest GPS position."""
@@ -89,7 +89,7 @@ class Localiser:
         """Motions that the filter does not have yet, because it was busy."""
         self._number = 0
         self._since: list[tuple[int, sensors.Motion]] = []
-        """Motions by the number of their reading, that the newest estimate does not know of."""
+        """Motions by the number of their reading that the newest estimate does not include."""
         self._estimate = Estimate(0, start.pose, start.deviation[0], True, 0.0)
         self._fault: str | None = None
         self._failure: str | None = None
@@ -101,7 +101,7 @@ class Localiser:
 
     @property
     def pose(self) -> sensors.TruePose:
-        """Where the robot takes itself to be, as of the newest reading."""
+        """The robot's pose estimate as of the newest reading."""
         pose = self._estimate.pose
         for _, motion in self._since:
             pose = sensors.moved(pose, motion)
@@ -114,12 +114,12 @@ class Localiser:
 
     @property
     def accuracy(self) -> float:
-        """The standard deviation of the position in metres; of a lost robot the worst so far."""
+        """The standard deviation of the position in metres; for a lost robot the worst so far."""
         return max(self._estimate.accuracy, self._worst)
 
     @property
     def agreement(self) -> float:
-        """The share of the newest scan's beams that are where the map has something."""
+        """The share of the newest scan's beams that match the map."""
         return self._estimate.agreement
 
     @property
@@ -154,7 +154,7 @@ class Localiser:
         return None
 
     def use_map(self, robot_map: RobotMap) -> None:
-        """Go on with another map, or begin with the first one.
+        """Switch to another map, or begin with the first one.
 
         :raises ReferenceRobotError: for a map of another frame, one that does not hold the robot's place, and
             one without anything that the laser can see; the old one is kept.
@@ -164,20 +164,20 @@ class Localiser:
         self._next_map = robot_map
 
     def place(self, start: InitialBelief) -> None:
-        """Take the robot to be at ``start``, whatever the filter believed."""
+        """Set the estimate to ``start``, regardless of the filter's belief."""
         self._start = start
         self._estimate = Estimate(self._number, start.pose, start.deviation[0], True, 0.0)
         self._since, self._owed, self._worst = [], [], 0.0
 
     def observe(self, reading: sensors.SensorReading) -> None:
-        """Hand a reading to the filter, now or, while that is busy, with the next one."""
+        """Pass a reading to the filter, now or, while it is busy, with the next one."""
         self._collect()
         before, self._last_t = self._last_t, reading.t
         if self._done_t is None:
             self._done_t = reading.t
         fault = sensors.motion_fault(reading, before, self._settings.reach, self._standing)
         if fault is not None:
-            # What the robot did meanwhile nobody knows: the filter doubts its place.
+            # The motion meanwhile is unknown: the filter doubts its place.
             self._fault, self._missed, self._done_t = fault, True, reading.t
             return
         self._number += 1
@@ -199,7 +199,7 @@ class Localiser:
         self._collect()
 
     def _collect(self) -> None:
-        """Take over what the filter has come to, if it has."""
+        """Apply the filter's result, if there is one."""
         work = self._work
         if work is None or not work.done():
             return
@@ -213,7 +213,7 @@ class Localiser:
             return
         self._failure = None
         if self._start is not None:
-            # It was given another place meanwhile.
+            # The place was set meanwhile.
             return
         estimate = self._estimate = work.result()
         worst = max(self._worst, estimate.accuracy, self._standing.lost_accuracy)
@@ -249,7 +249,7 @@ class Localiser:
                 "ask for the map around there"
             )
 
-    # What follows is done on the executor.
+    # The following methods run on the executor.
 
     def _update(
         self,
@@ -281,7 +281,8 @@ class Localiser:
         return Estimate(number, belief.pose, accuracy, belief.lost, belief.agreement, count, nothing)
 
     def _sees_nothing(self, pose: sensors.TruePose, ranges: Any) -> bool:
-        """Return whether neither the scan nor the map has anything there: all places are alike then."""
+        """Return whether neither the scan nor the map has anything there: then places cannot be
+        distinguished."""
         reach = self._settings.laser.reach
         if np.count_nonzero(ranges < reach) > self._standing.few_echoes or self._walls is None:
             return False

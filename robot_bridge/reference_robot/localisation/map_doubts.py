@@ -1,4 +1,4 @@
-"""What the map has and the laser never sees, scan after scan: things that may not be there any more."""
+"""Doubtful objects of the map: things that the laser repeatedly does not see and that may be gone."""
 
 from __future__ import annotations
 
@@ -18,15 +18,15 @@ from .settings import LaserSettings
 from .world import Walls, standing_obstacles, walls_of
 
 NEAR = 8.0
-"""metres: beyond it beams are too far apart to say that something is not there."""
+"""metres: beyond it beams are too far apart to prove that something is absent."""
 BEAMS = 2
-"""that go through a thing in one scan, at least: one may just miss it."""
+"""least beams through a thing in one scan: a single one may just miss it."""
 OFTEN = 10
-"""scans that go through a thing, a quarter of a metre of driving apart, until it is in doubt."""
+"""scans through a thing, a quarter of a metre of driving apart, until it is in doubt."""
 SEEN = 0.25
-"""Of the scans that say something of a thing, the share that may see it: people stand there, too."""
+"""Share of the informative scans that may see the thing: people stand there, too."""
 SMALL = 3.0
-"""metres: of what is larger, half of its width must have been gone through: a gap is not the whole wall."""
+"""metres: of larger things, beams must have passed half of the width: a gap is not the whole wall."""
 MOST = 1000
 """Things that are suspected at a time."""
 
@@ -44,7 +44,7 @@ class Doubt:
 
 @dataclass(eq=False)
 class _Suspect:
-    """How many scans went through a thing and how many saw it, and the box of where beams went through."""
+    """The number of scans through a thing and of those that saw it, and the box where beams passed."""
 
     low: NDArray[Any]
     high: NDArray[Any]
@@ -53,7 +53,7 @@ class _Suspect:
 
 
 class MapDoubts:
-    """Gathers what a robot that knows its place looks through although ``robot_map`` has it."""
+    """Gathers things of ``robot_map`` through which the laser of a robot that knows its place sees."""
 
     def __init__(self, robot_map: RobotMap, laser: LaserSettings, bearings: NDArray[Any]) -> None:
         self._laser, self._bearings = laser, bearings
@@ -63,14 +63,14 @@ class MapDoubts:
         self.use_map(robot_map)
 
     def use_map(self, robot_map: RobotMap) -> None:
-        """Go on with another map of the same frame; things are the same where their source is."""
+        """Switch to another map of the same frame; things are identified by their source."""
         self._walls: Walls = walls_of(robot_map).higher_than(self._laser.height)
         self._caster = RayCaster(self._walls.a, self._walls.b, self._laser.reach, compiled=False)
         standing = standing_obstacles(robot_map)
         self._names = [(one.ext.get("src", ""), one.semantics) for one in standing]
 
     def observe(self, pose: TruePose, ranges: NDArray[Any]) -> list[Doubt]:
-        """Take in a scan, (B,) metres, from where the robot is; return what is in doubt from now on."""
+        """Process a scan, (B,) metres, from the robot's pose; return new doubts."""
         if self._from is not None and math.dist(self._from, pose[:2]) < AGAIN:
             return []
         self._from = pose[:2]
@@ -87,8 +87,8 @@ class MapDoubts:
     def _passes(
         self, pose: TruePose, ways: NDArray[Any], ranges: NDArray[Any], expected: NDArray[Any]
     ) -> dict[str, NDArray[Any]]:
-        """Return where beams go through things, (n, 2) metres, by their sources."""
-        # A beam without an end goes as far as the laser reaches; one without a reading says nothing.
+        """Return where beams pass through things, (n, 2) metres, by their sources."""
+        # A beam without an echo counts to the laser's reach; one without a reading is ignored.
         through = (expected < NEAR) & (ranges > expected + OFF_MAP)
         found: dict[str, list[NDArray[Any]]] = {}
         for hit in np.array(pose[:2]) + expected[through, None] * ways[through]:
@@ -101,12 +101,12 @@ class MapDoubts:
         }
 
     def _judge(self, source: str, hits: NDArray[Any] | None, ends: NDArray[Any]) -> None:
-        """Count whether a scan sees a thing, else whether it goes through."""
+        """Count whether a scan sees a thing, else whether it passes through."""
         rows = self._rows_of(source)
         if not len(rows):
             return
         near = sum(distances(end, self._walls.a[rows], self._walls.b[rows]).min() < OFF_MAP for end in ends)
-        # Of what is a little beside its place some beams miss it; where it is gone people cut some short.
+        # Some beams miss a thing slightly off its place; where it is gone people shorten some.
         if hits is None or 2 * near >= len(hits):
             if near and source in self._suspects:
                 self._suspects[source].seen += 1
@@ -135,6 +135,6 @@ class MapDoubts:
         return Doubt(source, semantics, round(float(x), 2), round(float(y), 2), round(max(wide / 2, 0.05), 2))
 
     def _rows_of(self, source: str) -> NDArray[Any]:
-        """Return the segments of a thing; none where the map at hand does not have it."""
+        """Return the segments of a thing; none if the present map does not have it."""
         obstacles = [number for number, (own, _) in enumerate(self._names) if own == source]
         return np.flatnonzero(np.isin(self._walls.obstacle, obstacles))

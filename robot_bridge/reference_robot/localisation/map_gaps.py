@@ -1,4 +1,4 @@
-"""What the laser sees again and again where the map has nothing: things that belong on the map."""
+"""Objects missing on the map: things that the laser sees repeatedly where the map has nothing."""
 
 from __future__ import annotations
 
@@ -19,30 +19,30 @@ from .settings import LaserSettings
 from .world import walls_of
 
 OFF_MAP = 0.6
-"""metres from all that the map has: the map may be wrong by less, and nothing be missing."""
+"""metres from everything on the map: smaller differences may be errors of the map."""
 NEAR = 10.0
-"""metres: beyond it neighbouring beams are too far apart to tell a thing."""
+"""metres: beyond it neighbouring beams are too far apart to detect a thing."""
 TOGETHER = 0.3
-"""metres between the ends of neighbouring beams, beside what their angle makes, that see one thing."""
+"""metres between the ends of neighbouring beams on one thing, in addition to their angular spacing."""
 ONE_THING = 1.0
 """metres within which ends belong to one thing."""
 AGAIN = 0.25
-"""metres that the robot drives between two scans that count: standing sees the same once."""
+"""metres that the robot drives between two scans that count: while standing a thing counts once."""
 OFTEN = 10
-"""scans that see a thing until it is one."""
+"""scans that must see a thing."""
 PASSES = 0.3
-"""Of the scans that could see it, the share that may see through it: people walk on, things do not."""
+"""Share of the scans that may see through it: people walk on, things do not."""
 WANDERED = 0.5
-"""metres that a thing may seem to move while it is passed and its other side is seen."""
+"""metres that a thing may seem to move while being passed, as its other side comes into view."""
 LARGEST = 1.5
 """metres: the radius of the largest thing that is reported; larger ones are walls for a surveyor."""
 PIXELS, PIXEL = 64, 0.05
-"""of the image of a thing, and the side of one in metres."""
+"""pixels of the image of a thing, and the side of one in metres."""
 
 
 @dataclass(frozen=True)
 class FoundObject:
-    """A thing at (x, y) of ``radius``, metres, and a PNG ``image`` of what was seen of it from above."""
+    """A thing at (x, y) of ``radius``, metres, and a PNG ``image`` of its outline from above."""
 
     x: float
     y: float
@@ -52,7 +52,7 @@ class FoundObject:
 
 @dataclass(eq=False)
 class _Thing:
-    """Something seen off the map: where beams ended, how many scans saw it, and how many saw through it."""
+    """Something not on the map: the ends of beams, the number of scans that saw it, and saw through it."""
 
     middle: NDArray[Any]
     ends: list[NDArray[Any]] = field(default_factory=list)
@@ -62,7 +62,7 @@ class _Thing:
 
 
 class MapGaps:
-    """Gathers what is seen off ``robot_map`` by a robot that knows its place."""
+    """Gathers things that are not on ``robot_map``, seen by a robot that knows its place."""
 
     def __init__(self, robot_map: RobotMap, laser: LaserSettings, bearings: NDArray[Any]) -> None:
         self._laser, self._bearings = laser, bearings
@@ -71,12 +71,12 @@ class MapGaps:
         self.use_map(robot_map)
 
     def use_map(self, robot_map: RobotMap) -> None:
-        """Go on with another map of the same frame."""
+        """Switch to another map of the same frame."""
         self._walls = walls_of(robot_map).higher_than(self._laser.height)
         self._caster = RayCaster(self._walls.a, self._walls.b, self._laser.reach, compiled=False)
 
     def observe(self, pose: TruePose, ranges: NDArray[Any]) -> list[FoundObject]:
-        """Take in a scan, (B,) metres, from where the robot is; return what is a thing from now on."""
+        """Process a scan, (B,) metres, from the robot's pose; return newly confirmed things."""
         if self._from is not None and math.dist(self._from, pose[:2]) < AGAIN:
             return []
         self._from = pose[:2]
@@ -90,7 +90,7 @@ class MapGaps:
         return [found for thing in self._things if (found := self._found(thing, pose)) is not None]
 
     def _off_map(self, pose: TruePose, ranges: NDArray[Any]) -> NDArray[Any]:
-        """Return where beams end that the map says nothing of, (n, 2) metres."""
+        """Return the ends of beams away from everything on the map, (n, 2) metres."""
         expected = self._caster.cast(np.array([pose]), self._bearings)[0]
         angle = pose[2] + self._bearings
         ends = np.array(pose[:2]) + ranges[:, None] * np.column_stack([np.cos(angle), np.sin(angle)])
@@ -110,7 +110,7 @@ class MapGaps:
         return np.array(kept).reshape(-1, 2)
 
     def _judge(self, thing: _Thing, pose: TruePose, ranges: NDArray[Any], ends: NDArray[Any]) -> None:
-        """Count whether a scan sees a thing, or sees through where it was."""
+        """Count whether a scan sees a thing, or sees through its place."""
         near = ends[np.hypot(*(ends - thing.middle).T) < ONE_THING]
         if len(near):
             thing.seen += 1
@@ -129,7 +129,7 @@ class MapGaps:
         return thing.passed > 2 and thing.passed > PASSES * (thing.seen + thing.passed)
 
     def _found(self, thing: _Thing, pose: TruePose) -> FoundObject | None:
-        """Return a thing once, when it has been seen often and lies behind the robot or beside it."""
+        """Return a thing once, when it was seen often and lies behind the robot or beside it."""
         off = thing.middle - pose[:2]
         ahead = off[0] * math.cos(pose[2]) + off[1] * math.sin(pose[2])
         if thing.reported or thing.seen < OFTEN or ahead > 0 or self._is_gone(thing):
@@ -144,7 +144,7 @@ class MapGaps:
 
 
 def _wandered(ends: Sequence[NDArray[Any]]) -> float:
-    """Return how far the last third of ``ends`` is from the first third, metres."""
+    """Return the distance between the last third of ``ends`` and the first third, metres."""
     third = max(1, len(ends) // 3)
     first, last = np.mean(ends[:third], axis=0), np.mean(ends[-third:], axis=0)
     return math.dist(first, last)
@@ -153,7 +153,7 @@ def _wandered(ends: Sequence[NDArray[Any]]) -> float:
 def _circle(ends: NDArray[Any]) -> tuple[float, float, float]:
     """Return centre and radius, metres, of the circle that best goes through ``ends``, (n, 2).
 
-    The middle of them where they are of no circle that is as large as they are wide.
+    If they do not fit a circle of their own width, their middle is used.
     """
     middle = np.median(ends, axis=0)
     away = np.hypot(*(ends - middle).T)

@@ -1,4 +1,4 @@
-"""Where the robot is, by what its wheels, gyroscope and laser say, on the map that it has.
+"""Particle filter: the robot's pose on its map, by wheels, gyroscope and laser.
 
 Monte Carlo localisation with a number of particles by KLD sampling and augmented recovery (Thrun, Burgard,
 Fox: Probabilistic Robotics, chapter 8).
@@ -23,13 +23,13 @@ from .world import walls_of
 
 @dataclass(frozen=True, eq=False)
 class Belief:
-    """Where the robot takes itself to be.
+    """The robot's pose estimate.
 
-    ``covariance`` is (3, 3) of x, y and theta, m² and rad²: the particles' own, and what wheels that are
-    wrong the same way all along would make of it; ``share`` of the particles' weight is near ``pose``;
-    ``lost`` says that the robot does not know its place, not for sure yet, or not well enough;
-    ``agreement`` is the share of the last scan's beams that are where the map has something; ``spread`` is
-    how far all particles are from ``pose``, metres (root mean square).
+    ``covariance`` is (3, 3) of x, y and theta, m² and rad²: the particles' own, plus the effect of systematic
+    errors of the wheels; ``share`` of the particles' weight is near ``pose``; ``lost`` says that the robot
+    does not know its place, not for sure yet, or not well enough; ``agreement`` is the share of the last
+    scan's beams that match the map; ``spread`` is the distance of all particles from ``pose``, metres (root
+    mean square).
     """
 
     pose: TruePose
@@ -46,11 +46,11 @@ class Belief:
 
 
 class ParticleFilter:
-    """Tracks the robot on ``robot_map``; ``rng`` is all its randomness.
+    """Tracks the robot on ``robot_map``; ``rng`` is its only source of randomness.
 
     ``compiled`` is as in :class:`.RayCaster`.
 
-    Call :meth:`place` or :meth:`search` first, then :meth:`move` and :meth:`observe` by turns.
+    Call :meth:`place` or :meth:`search` first, then :meth:`move` and :meth:`observe` alternately.
     """
 
     def __init__(
@@ -76,23 +76,23 @@ class ParticleFilter:
         self._since_scan = math.inf
         """Metres driven, and radians turned, since a scan was weighed."""
         self._by_scale: NDArray[Any] = np.zeros(2)
-        """By how many metres the belief is off for each 1 that the wheels' scale is off, (2,)."""
+        """Error of the belief in metres per unit error of the wheels' scale, (2,)."""
         self._unsettled = 0.0
         """metres to drive until the place counts as found."""
         self._since_look = (math.inf, 0)
         self._fix: tuple[float, float, float] | None = None
         self._since_fix = 0.0
         self._against: deque[bool] = deque(maxlen=settings.gps.of)
-        """Which of the newest GPS positions are far from the belief."""
+        """Whether each of the newest GPS positions is far from the belief."""
         self._rival = False
-        """Whether another place had weight left when the robot, which is lost, looked for others last."""
+        """Whether another place had weight left at the lost robot's last search for places."""
         self._place: TruePose | None = None
         """The one place that the particles have been at while it counts as lost, moved on by the wheels."""
 
     def use_map(self, robot_map: RobotMap) -> None:
-        """Go on with another map of the same frame.
+        """Switch to another map of the same frame.
 
-        :raises ReferenceRobotError: for one with nothing to see.
+        :raises ReferenceRobotError: for one without visible obstacles.
         """
         walls = walls_of(robot_map).higher_than(self._laser.height)
         if not len(walls):
@@ -124,7 +124,7 @@ class ParticleFilter:
     def search(self, ranges: NDArray[Any]) -> None:
         """Begin where a first scan, (B,), fits, anywhere on the map: global localisation.
 
-        :raises ReferenceRobotError: for a scan that says nothing.
+        :raises ReferenceRobotError: for a scan without information.
         """
         used = self._used(ranges)
         if not len(used):
@@ -134,7 +134,7 @@ class ParticleFilter:
         self._unsettled = self._settings.recovery.settled
 
     def move(self, motion: Motion) -> None:
-        """Move all particles as the odometry says, each a little otherwise."""
+        """Move all particles by the odometry, each with its own noise."""
         settings, rng, count = self._settings, self._rng, len(self.particles)
         far = abs(motion.distance)
         root = math.sqrt(far)
@@ -142,7 +142,7 @@ class ParticleFilter:
             self._unsettled = max(0.0, self._unsettled - far)
             self._place = moved(self._place, motion)
         self._since_fix += far
-        # Turned by a radian it sees as much else as driven by a metre.
+        # A turn of a radian changes the view as much as a metre of driving.
         self._since_scan += far + abs(motion.turn)
         self._since_look = self._since_look[0] + far, self._since_look[1]
         drift = math.radians(settings.drift_deg)
@@ -165,19 +165,19 @@ class ParticleFilter:
         self.particles = self.particles + spread
 
     def doubt(self) -> None:
-        """Count the place as not known for sure: something was missed that may have changed it."""
+        """Count the place as uncertain: missed readings may have changed it."""
         self._unsettled = self._settings.recovery.settled
 
     def settle(self, metres: float) -> None:
-        """Count as much as ``metres`` of driving towards a place that is known for sure."""
+        """Count ``metres`` of driving towards a certain place."""
         if self._place is not None:
             self._unsettled = max(0.0, self._unsettled - metres)
 
     def observe(self, ranges: NDArray[Any]) -> None:
         """Weigh all particles by a scan, (B,) metres: NaN without reading, infinite without echo.
 
-        :raises ReferenceRobotError: for a scan of another number of beams; one without any reading says
-            nothing and changes nothing.
+        :raises ReferenceRobotError: for a scan of another number of beams; one without any reading changes
+            nothing.
         """
         used = self._used(ranges)
         if not len(used):
@@ -190,7 +190,7 @@ class ParticleFilter:
         self._agreement = float(self.weights @ agreement)
         self._fast += self._settings.fast * (average - self._fast) if self._fast else average
         if not self._unsettled:
-            # What is usual is not known before the place is.
+            # The usual agreement is unknown before the place is known.
             self._slow += self._settings.slow * (average - self._slow) if self._slow else self._fast
         if self._fast < self._settings.least_agreement:
             self._unsettled = self._settings.recovery.settled
@@ -200,7 +200,7 @@ class ParticleFilter:
     def observe_fix(self, x: float, y: float, deviation: float) -> None:
         """Weigh all particles by a GPS position, metres, of which ``deviation`` is the standard deviation.
 
-        Several in a row that are far away show that the belief is wrong.
+        Several distant ones show that the belief is wrong.
 
         :raises ReferenceRobotError: for one that is not finite.
         """
@@ -217,7 +217,7 @@ class ParticleFilter:
 
     @property
     def belief(self) -> Belief:
-        """Where the robot most likely is."""
+        """The most likely pose of the robot."""
         near = self._together()
         weights = self.weights[near]
         share = float(weights.sum())
@@ -237,22 +237,22 @@ class ParticleFilter:
         return Belief(pose, covariance, share, lost, self._agreement, spread)
 
     def _scan_worth(self) -> float:
-        """Return how much of a scan's weight counts: scans of the same walls are wrong the same way."""
+        """Return the share of a scan's weight that counts: scans of the same walls have the same errors."""
         far, self._since_scan = self._since_scan, 0.0
         if self._unsettled:
             return self._settings.recovery.scan_worth
         return min(1.0, far / self._settings.same_walls)
 
     def _weigh(self, weights: NDArray[Any]) -> None:
-        """Give the particles other weights, (N,), of any sum.
+        """Set the particles' weights, (N,), of any sum.
 
-        The closer together the particles are then, the less of what the wheels' scale made of the place is
-        left: the gain of a Schmidt-Kalman filter, which knows of an error that it does not estimate.
+        The closer together the particles then are, the smaller is the remaining effect of the wheels' scale:
+        the gain of a Schmidt-Kalman filter, which considers an error without estimating it.
         """
         before = self._place_covariance()
         self.weights = weights / weights.sum()
         if self._unsettled:
-            # Its place is found by scans and not by wheels.
+            # Its place is found by scans, not by wheels.
             self._by_scale = np.zeros(2)
             return
         self._by_scale = self._place_covariance() @ np.linalg.solve(before, self._by_scale)
@@ -264,7 +264,7 @@ class ParticleFilter:
         return covariance
 
     def _compare_places(self) -> None:
-        """Begin to count again when the robot that is lost is most likely at another place than before."""
+        """Restart the count when a lost robot's most likely place has changed."""
         if not self._unsettled:
             self._place = None
             return
@@ -346,7 +346,7 @@ class ParticleFilter:
 
     @property
     def _near(self) -> tuple[float, float, float] | None:
-        """The newest GPS position, x, y and deviation, where it still says where to look."""
+        """The newest GPS position, x, y and deviation, if still valid for searching."""
         return self._fix if self._since_fix <= self._settings.gps.lasts else None
 
     def _likely(

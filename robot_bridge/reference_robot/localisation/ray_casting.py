@@ -1,4 +1,4 @@
-"""How far rays go until they meet a segment: exact, for many poses and bearings at once."""
+"""Ray casting at segments: exact ranges, for many poses and bearings at once."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ FINE_CELL = 0.25
 COARSE_CELL = 4.0
 """metres: for particles all over a map."""
 FEW_CELLS = 48
-"""As many fine cells are looked at in one call; more poses than that apart are cast from coarse ones."""
+"""Most fine cells per call; poses spread over more are cast from coarse ones."""
 
 RAYS_AT_ONCE = 2_000
-"""numpy works through as many at a time: all of their arrays stay in the processor's cache."""
+"""Rays per batch in numpy: all of their arrays stay in the processor's cache."""
 
 Evaluation = Callable[
     [NDArray[Any], NDArray[Any], NDArray[Any], Candidates, NDArray[Any], float], NDArray[Any]
@@ -30,11 +30,11 @@ Evaluation = Callable[
 class RayCaster:
     """Casts rays at segments from ``a`` to ``b``, (S, 2) float64, metres, as far as ``reach`` metres.
 
-    With ``compiled`` numba does it; without, numpy alone; by default whichever is there. A ray along a
-    segment does not meet it, the ends of segments do count.
+    With ``compiled`` numba is used, else numpy alone; the default is numba if available. A ray along a
+    segment does not hit it; the ends of segments count.
 
-    :raises ReferenceRobotError: for segments or a reach that are not finite, and for ``compiled`` where
-        there is no numba.
+    :raises ReferenceRobotError: for segments or a reach that are not finite, and for ``compiled`` without
+        numba.
     """
 
     def __init__(self, a: NDArray[Any], b: NDArray[Any], reach: float, compiled: bool | None = None) -> None:
@@ -47,7 +47,7 @@ class RayCaster:
             raise ReferenceRobotError(f"ray casting: the reach is {reach} m; give a finite one above 0")
         self.reach = reach
         a, b = merge_collinear(a, b)
-        # Around the middle of it all: coordinates that are large cost digits.
+        # Relative to the middle of all segments: large coordinates would cost digits.
         self._middle = (a.min(axis=0) + a.max(axis=0)) / 2 if len(a) else np.zeros(2)
         a, b = a - self._middle, b - self._middle
         cross = a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
@@ -141,7 +141,7 @@ def _nearest(
 def _ways(
     poses: NDArray[Any], bearings: NDArray[Any], ray: NDArray[Any], segments: NDArray[Any]
 ) -> NDArray[Any]:
-    """Return how far each ray goes until it meets its segment, infinite where it does not.
+    """Return the distance of each ray to its segment, infinite if it misses.
 
     ``ray``, (n,), counts the bearings of one pose after those of another; ``segments`` is (5, n).
     """

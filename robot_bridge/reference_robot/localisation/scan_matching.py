@@ -18,12 +18,12 @@ from .world import Walls, inside_solids
 
 
 def usable_beams(ranges: NDArray[Any]) -> NDArray[Any]:
-    """Return which beams of a scan say something, (K,) int64: all that have a reading."""
+    """Return the informative beams of a scan, (K,) int64: all that have a reading."""
     return np.flatnonzero(ranges >= 0)
 
 
 class BeamModel:
-    """Each beam is at what the map has there, cut short before it, without an echo, or anything at all."""
+    """Mixture per beam: hit on the map's obstacle, shorter, without an echo, or random."""
 
     def __init__(
         self, walls: Walls, laser: LaserSettings, settings: FilterSettings, compiled: bool | None = None
@@ -37,7 +37,7 @@ class BeamModel:
     ) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the mean over all beams of the logarithm of their likelihood (1/m), for each pose: (N,).
 
-        And the share of the beams that are where the map has something, or nothing: (N,).
+        Also returned: the share of the beams that agree with the map: (N,).
         """
         expected = self._caster.cast(poses, bearings)
         measured = np.minimum(ranges, self._reach)
@@ -52,9 +52,9 @@ def beam_likelihood(
 ) -> NDArray[Any]:
     """Return the likelihood (1/m) of ``measured``, (B,), where the map has ``expected``, (N, B): (N, B).
 
-    The parts: a normal distribution about what is expected; an even one from 0 to there, for what is in the
-    way; without an echo; an even one from 0 to ``reach``. A beam without an echo, and one that none is
-    expected of, is ``reach`` long.
+    The parts: a normal distribution about the expected range; a uniform one from 0 to there, for things in
+    the way; no echo; a uniform one from 0 to ``reach``. A beam without an echo, measured or expected, is
+    ``reach`` long.
     """
     sigma = settings.sigma
     whole = settings.hit + settings.short + settings.far + settings.random
@@ -74,7 +74,8 @@ def beam_likelihood(
 
 
 class FieldModel:
-    """How near to a wall each beam ends; rough, quick, and smooth enough to search a whole map with."""
+    """Likelihood by the distance of beam ends from walls; rough, quick, and smooth enough to search a whole
+    map."""
 
     def __init__(self, walls: Walls, laser: LaserSettings, settings: FilterSettings) -> None:
         self._settings = settings
@@ -102,7 +103,7 @@ class FieldModel:
     ) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the mean over all beams with an echo of the logarithm of their likelihood, for each pose.
 
-        And the share of them that end near a wall. Without an echo any pose is as good as another.
+        Also returned: the share of them that end near a wall. Beams without an echo do not distinguish poses.
         """
         echo = ranges < self._reach
         if not echo.any():
@@ -118,7 +119,7 @@ class FieldModel:
         return logs.mean(axis=1, dtype=np.float64), (logs > self._agrees).mean(axis=1)
 
     def _draw(self, nearest: NDArray[Any], a: NDArray[Any], b: NDArray[Any]) -> None:
-        """Bring down the distance of the cells around a segment."""
+        """Lower the distances of the cells around a segment."""
         pieces = max(1, math.ceil(math.dist(a, b) / 5.0))
         for part in range(pieces):
             # In pieces: the box around a long slanting wall is mostly empty.
@@ -159,10 +160,9 @@ def in_groups(
 ) -> tuple[NDArray[Any], NDArray[Any]]:
     """Return the rows of about ``count`` particles drawn in each group by itself, and their weights of sum 1.
 
-    ``group``, (N,) int64, says which belong together. A group keeps its weight, and has
-    ``group_least`` particles at least: of places that look alike none dies out by chance, and what scans say
-    of them adds up. Groups of less weight than ``group_share`` are left out, and all but the ``most_groups``
-    heaviest.
+    ``group``, (N,) int64, is the group of each. A group keeps its weight, and has ``group_least`` particles
+    at least: of similar places none dies out by chance, and the evidence of scans accumulates. Groups of less
+    weight than ``group_share`` are left out, and all but the ``most_groups`` heaviest.
     """
     _, number = np.unique(group, return_inverse=True)
     total = np.bincount(number, weights=weights) / weights.sum()
@@ -193,13 +193,13 @@ def bins_of(poses: NDArray[Any], size: float, turn: float) -> NDArray[Any]:
 
 
 def occupied_bins(poses: NDArray[Any], settings: FilterSettings) -> int:
-    """Return how many bins of place and heading ``poses``, (N, 3), lie in."""
+    """Return the number of bins of place and heading occupied by ``poses``, (N, 3)."""
     turn = 2 * math.pi / max(1, round(360 / settings.bin_turn_deg))
     return len(np.unique(bins_of(poses, settings.bin_size, turn)))
 
 
 def particles_for(bins: int, settings: FilterSettings) -> int:
-    """Return how many particles are enough for as many occupied bins, between ``least`` and ``most``.
+    """Return the sufficient number of particles for ``bins`` occupied bins, between ``least`` and ``most``.
 
     So that with 99 % the Kullback-Leibler distance to the true distribution is below ``kld_error``
     (Wilson-Hilferty approximation of the chi-square quantile).
@@ -212,16 +212,15 @@ def particles_for(bins: int, settings: FilterSettings) -> int:
 
 
 AT_ONCE = 4_000
-"""poses: so few that their arrays stay in the processor's cache."""
+"""poses: few enough for their arrays to stay in the processor's cache."""
 _PER_BIN = 20
-"""poses for each one that is kept are looked through: as many may be in one bin."""
+"""candidate poses per kept one: as many may be in one bin."""
 
 
 class PlaceSearch:
     """Finds poses on ``robot_map`` at which a scan fits, by likelihood fields of its ``walls``.
 
-    Which of them are drawn is by ``model``, the one of the filter: a field does not know that walls hide
-    others.
+    They are drawn by ``model``, the one of the filter: a field ignores that walls hide others.
     """
 
     def __init__(
@@ -250,10 +249,10 @@ class PlaceSearch:
         rng: np.random.Generator,
         near: tuple[float, float, float] | None = None,
     ) -> NDArray[Any]:
-        """Return ``count`` poses, (count, 3), of ``looked_at`` random ones, by how well a scan fits there.
+        """Return ``count`` poses, (count, 3), of ``looked_at`` random ones, by the fit of a scan.
 
         ``bearings`` and ``ranges``, (B,), are of beams with a reading. ``near`` is x, y and a standard
-        deviation, metres: poses are looked at around there, else all over the map.
+        deviation, metres: poses are sampled around there, else all over the map.
         """
         settings = self._settings
         poses = self.free(looked_at, rng, near)
@@ -281,7 +280,7 @@ class PlaceSearch:
     def _best_apart(self, poses: NDArray[Any], fit: NDArray[Any]) -> NDArray[Any]:
         """Return the rows of the poses that fit best, no two of them in one bin.
 
-        Else a façade that fits a little better takes all of them, and the robot's place has none.
+        Otherwise a façade that fits a little better would take all of them, and the robot's place none.
         """
         settings = self._settings
         most = min(settings.kept * _PER_BIN, len(poses))
@@ -295,9 +294,9 @@ class PlaceSearch:
     def free(
         self, count: int, rng: np.random.Generator, near: tuple[float, float, float] | None = None
     ) -> NDArray[Any]:
-        """Return poses all over the map, or around a place, but in what is solid, (count, 3).
+        """Return poses all over the map, or around a place, outside solid obstacles, (count, 3).
 
-        :raises ReferenceRobotError: when hardly anything is free there.
+        :raises ReferenceRobotError: when there is hardly any free space.
         """
         border = self._map.border
         low, high = np.array([border.x_min, border.y_min]), np.array([border.x_max, border.y_max])
@@ -320,5 +319,5 @@ class PlaceSearch:
 
 
 def _spread(count: int, most: int) -> NDArray[Any]:
-    """Return which of ``count`` beams to use, no more than ``most``, from all of the scan."""
+    """Return which of ``count`` beams to use, at most ``most``, spread over the scan."""
     return np.unique(np.linspace(0, count - 1, min(count, most)).round().astype(np.int64))

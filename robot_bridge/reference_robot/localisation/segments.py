@@ -1,4 +1,4 @@
-"""Segments: those on one line merged, and those that a ray can hit first."""
+"""Segments: merging collinear ones, and finding those that a ray can hit first."""
 
 from __future__ import annotations
 
@@ -9,14 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 SAME_LINE = 1e-4
-"""metres that an end may lie beside the line that it is taken to be on, and apart from its neighbour."""
+"""metres of tolerance for an end beside its line, and for gaps between neighbours."""
 
 
 def merge_collinear(a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return segments that cover what those from ``a`` to ``b``, (S, 2) metres, cover, fewer and longer.
+    """Return fewer and longer segments that cover the same as those from ``a`` to ``b``, (S, 2) metres.
 
-    No point moves by more than :data:`SAME_LINE`; what has no length is left out. The direction of segments
-    is not kept.
+    No point moves by more than :data:`SAME_LINE`; those without length are left out. The direction of
+    segments is not kept.
     """
     a, b = a[(a != b).any(axis=1)], b[(a != b).any(axis=1)]
     if not len(a):
@@ -35,14 +35,14 @@ def merge_collinear(a: NDArray[Any], b: NDArray[Any]) -> tuple[NDArray[Any], NDA
     angle, off, start, end, a, b = (each[order] for each in (angle, off, start, end, a, b))
     begins = _runs(angle, np.round(off / (SAME_LINE / 2)), start, end)
     first = np.flatnonzero(begins)
-    # The end of a run is that of whichever of its segments goes farthest.
+    # The end of a run is that of its farthest segment.
     run = np.cumsum(begins) - 1
     farthest = np.lexsort((end, run))[np.append(first[1:], len(end)) - 1]
     return a[first], b[farthest]
 
 
 def _runs(angle: NDArray[Any], off: NDArray[Any], start: NDArray[Any], end: NDArray[Any]) -> NDArray[Any]:
-    """Return which segments, sorted by line and start, do not go on where those before them end."""
+    """Return which segments, sorted by line and start, do not continue those before them."""
     begins = np.ones(len(start), dtype=bool)
     same = (np.diff(angle) == 0) & (np.diff(off) == 0)
     line = np.concatenate([[0], np.cumsum(~same)])
@@ -54,15 +54,15 @@ def _runs(angle: NDArray[Any], off: NDArray[Any], start: NDArray[Any], end: NDAr
 
 
 # Which segments a ray can hit first: space is cut into square cells and the circle into bins. For a cell and
-# a bin, a segment that every ray of the bin from anywhere in the cell hits hides all that lies beyond it:
-# what is left are a few candidates for each ray, and the nearest of them is the nearest of all.
+# a bin, a segment hit by every ray of the bin from anywhere in the cell hides everything beyond it: this
+# leaves a few candidates for each ray, and the nearest of them is the nearest of all.
 
 BINS = 240
 """of the circle, 1.5° each."""
 LIST_GROWTH = 8
-"""A cell's candidates are looked for in its neighbourhood, a square block of so many cells a side."""
+"""Side in cells of the square block whose segments are searched for a cell's candidates."""
 KEPT_CELLS = 20_000
-"""Cells that are remembered; the eldest goes first."""
+"""Cached cells; the oldest is dropped first."""
 
 _WIDTH = 2 * np.pi / BINS
 _SLACK = 1e-9
@@ -82,8 +82,7 @@ class Candidates:
 class VisibleSegments:
     """Segments from ``a`` to ``b``, (S, 2) metres, as seen from square cells of ``cell`` metres.
 
-    A cell is looked at when it is asked for first, and remembered. What is farther from it than ``reach``
-    metres is left out.
+    A cell is computed at first use, and cached. Segments farther from it than ``reach`` metres are left out.
     """
 
     def __init__(self, a: NDArray[Any], b: NDArray[Any], reach: float, cell: float) -> None:
@@ -94,7 +93,7 @@ class VisibleSegments:
         self._blocks: dict[tuple[int, int], NDArray[Any]] = {}
 
     def cells_of(self, points: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return the different cells, (m, 2) int64, that ``points``, (n, 2), lie in, and each point's row."""
+        """Return the distinct cells, (m, 2) int64, of ``points``, (n, 2), and each point's row among them."""
         column = np.floor(points / self._cell).astype(np.int64)
         low = column.min(axis=0)
         height = int(column[:, 1].max() - low[1]) + 1
@@ -103,7 +102,7 @@ class VisibleSegments:
         return np.stack([different // height + low[0], different % height + low[1]], axis=1), row
 
     def candidates(self, cells: NDArray[Any]) -> Candidates:
-        """Return what can be hit first from each of ``cells``, (m, 2) int64."""
+        """Return the segments that can be hit first from each of ``cells``, (m, 2) int64."""
         lists = [self._of_cell(int(column), int(row)) for column, row in cells]
         counts = np.concatenate([count for count, _ in lists])
         offset = np.zeros(len(counts) + 1, dtype=np.int64)
@@ -134,7 +133,7 @@ class VisibleSegments:
         return found
 
     def _seen_from(self, centre: NDArray[Any], near: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-        """Return how many candidates each bin has, (BINS,), and all of them one bin after the other."""
+        """Return the number of candidates of each bin, (BINS,), and all of them one bin after the other."""
         radius = self._cell * np.sqrt(0.5) + _SLACK
         distance = distances(centre, self._a[near], self._b[near])
         within = distance <= self._reach + radius
@@ -156,7 +155,7 @@ class VisibleSegments:
 
 
 def distances(point: NDArray[Any], a: NDArray[Any], b: NDArray[Any]) -> NDArray[Any]:
-    """Return how far ``point``, (2,), is from each segment from ``a`` to ``b``, (S, 2): (S,) metres."""
+    """Return the distance of ``point``, (2,), from each segment ``a`` to ``b``, (S, 2): (S,) metres."""
     along, to = b - a, point - a
     square = np.maximum((along * along).sum(axis=1), np.finfo(float).tiny)
     part = np.clip((along * to).sum(axis=1) / square, 0.0, 1.0)
@@ -186,13 +185,12 @@ def _bins_seen(
 
 
 def _ways_to(a: NDArray[Any], b: NDArray[Any], bins: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
-    """Return how far at least and at most a ray of ``bins``, (p,), goes until it hits its segment.
+    """Return the least and the greatest distance of a ray of ``bins``, (p,), to its segment.
 
-    ``a`` and ``b``, (4, p, 2), are the segment's ends as seen from the cell's corners. The most is infinite
-    where a ray may miss, the least 0 where nothing is known of it. Whether a ray passes an end on its left
-    is linear in where it begins and in its direction, and the way to a line is greatest, and but for a
-    line that is met at a right angle least, at the extremes of both: the four corners and the bin's two
-    edges tell of all rays.
+    ``a`` and ``b``, (4, p, 2), are the segment's ends as seen from the cell's corners. The greatest is
+    infinite if a ray may miss, the least 0 if it is unknown. Whether a ray passes an end on its left is
+    linear in its origin and its direction, and the distance to a line is greatest, and, except for a line met
+    at a right angle, least, at the extremes of both: the four corners and the bin's two edges bound all rays.
     """
     cross = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     along = b[0] - a[0]

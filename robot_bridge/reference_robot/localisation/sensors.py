@@ -1,4 +1,4 @@
-"""Simulated sensors, and what in their readings cannot be right."""
+"""Simulated sensors, and plausibility checks of readings."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ TruePose = tuple[float, float, float]
 
 
 class Motion(NamedTuple):
-    """What the robot did between two moments: metres forward and radians counter-clockwise."""
+    """The motion between two moments: metres forward and radians counter-clockwise."""
 
     distance: float
     turn: float
@@ -33,7 +33,7 @@ def motion_between(before: TruePose, after: TruePose) -> Motion:
 
 
 def moved(pose: TruePose, motion: Motion) -> TruePose:
-    """Return where ``motion`` leads from ``pose``."""
+    """Return the pose after ``motion`` from ``pose``."""
     x, y, theta = pose
     middle = theta + motion.turn / 2
     return (
@@ -46,7 +46,7 @@ def moved(pose: TruePose, motion: Motion) -> TruePose:
 def bearings_of(settings: LaserSettings) -> NDArray[Any]:
     """Return the direction of each beam, (B,) radians counter-clockwise from ahead.
 
-    A field of a whole turn has no beam twice.
+    A field of a full turn has no duplicate beam.
     """
     field = math.radians(settings.field_deg)
     if settings.beams == 1:
@@ -69,7 +69,8 @@ class SimulatedLaser:
         self.bearings = bearings_of(settings)
 
     def scan(self, pose: TruePose, nearer: NDArray[Any] | None = None) -> NDArray[Any]:
-        """Return the range of each beam from ``pose``, (B,) metres; ``nearer``, (B,), is what moves."""
+        """Return the range of each beam from ``pose``, (B,) metres; ``nearer``, (B,), are ranges to moving
+        obstacles."""
         settings, rng = self._settings, self._rng
         ranges: NDArray[Any] = self._caster.cast(np.array([pose]), self.bearings)[0]
         if nearer is not None:
@@ -93,7 +94,7 @@ class SimulatedOdometry:
         self._drift = math.radians(rng.normal(0, settings.drift_deg))
 
     def measure(self, motion: Motion) -> Motion:
-        """Return what the wheels say of a true motion."""
+        """Return the measurement of a true motion."""
         settings, rng = self._settings, self._rng
         far = abs(motion.distance)
         return Motion(
@@ -111,7 +112,7 @@ class SimulatedGyroscope:
         self._bias = math.radians(rng.normal(0, settings.bias_deg))
 
     def measure(self, turn: float, dt: float) -> float:
-        """Return what it says of a true ``turn``, radians, made in ``dt`` seconds."""
+        """Return the measurement of a true ``turn``, radians, made in ``dt`` seconds."""
         return turn + self._bias * dt + self._rng.normal(0, self._noise * math.sqrt(dt))
 
 
@@ -119,13 +120,13 @@ class SimulatedGps:
     """A receiver that loses its fix between buildings."""
 
     HIGHEST = 60.0
-    """metres: nothing farther away than what this shades is looked at."""
+    """metres: walls farther away than this are ignored."""
 
     def __init__(self, walls: Walls, settings: GpsSettings, rng: np.random.Generator) -> None:
         self._settings = settings
         self._rng = rng
         slope = math.tan(math.radians(settings.mask_deg))
-        # Walls of one height class shade as far as the lower edge of the class says.
+        # Walls of one height class shade by the lower edge of the class.
         self._casters = []
         for low, high in ((2.0, 5.0), (5.0, 10.0), (10.0, 20.0), (20.0, np.inf)):
             some = (walls.height >= low) & (walls.height < high)
@@ -160,7 +161,7 @@ class SensorReading:
 
 @dataclass(frozen=True)
 class BodyReach:
-    """What the body can do at most: m/s and rad/s."""
+    """Limits of the body: m/s and rad/s."""
 
     speed: float
     turn_rate: float
@@ -169,7 +170,7 @@ class BodyReach:
 def motion_fault(
     reading: SensorReading, before: float | None, reach: BodyReach, settings: StandingSettings
 ) -> str | None:
-    """Return what is wrong with the time and the motion of a reading, None where nothing is.
+    """Return the fault in the time or the motion of a reading, None if there is none.
 
     ``before`` is the time of the one before, None for the first.
     """
@@ -188,7 +189,7 @@ def motion_fault(
 
 
 def scan_fault(reading: SensorReading, beams: int) -> str | None:
-    """Return what is wrong with the scan or the GPS position of a reading, None where nothing is."""
+    """Return the fault in the scan or the GPS position of a reading, None if there is none."""
     if reading.ranges.shape != (beams,):
         return f"the laser gives {reading.ranges.size} ranges and not {beams}; see the laser's settings"
     if not (reading.ranges >= 0).any():
@@ -199,5 +200,5 @@ def scan_fault(reading: SensorReading, beams: int) -> str | None:
 
 
 def without_negatives(ranges: NDArray[Any]) -> NDArray[Any]:
-    """Return ``ranges`` with NaN where a range cannot be."""
+    """Return ``ranges`` with NaN for impossible values."""
     return np.where(ranges >= 0, ranges, np.nan)

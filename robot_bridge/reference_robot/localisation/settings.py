@@ -11,7 +11,7 @@ from ...core.json_decoder import toml_tables
 
 
 class ReferenceRobotError(Exception):
-    """Something the robot cannot do; the text names what was wrong, where, and what to do."""
+    """Something the robot cannot do; the text names the cause, the place and the remedy."""
 
 
 LARGEST = 64_000
@@ -27,10 +27,10 @@ Count = Annotated[int, msgspec.Meta(ge=1, le=10_000_000)]
 
 
 class WorldSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How the world differs from the map.
+    """Differences between the world and the map.
 
-    Each wall is moved by up to ``moved`` metres in x and in y; ``missing`` is the share of furniture
-    (what is less than ``furniture`` metres wide) that is not there.
+    Each wall is moved by up to ``moved`` metres in x and in y; ``missing`` is the share of absent furniture
+    (objects less than ``furniture`` metres wide).
     """
 
     moved: Metres = 0.0
@@ -42,7 +42,7 @@ class LaserSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A laser that scans a plane ``height`` metres above the ground, as far as ``reach`` metres.
 
     ``beams`` are spread over ``field_deg`` degrees. ``noise`` is the standard deviation of a range, metres;
-    ``short`` the share of beams that something in the way cuts short, ``dropout`` that of beams without a
+    ``short`` the share of beams shortened by something in the way, ``dropout`` that of beams without a
     reading.
     """
 
@@ -56,7 +56,7 @@ class LaserSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class OdometrySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Wheels: standard deviations of what is wrong for a whole run, and of the noise.
+    """Wheels: standard deviations of systematic errors of a run, and of the noise.
 
     ``scale`` is of the distance, ``drift_deg`` degrees for each metre; ``noise`` metres for the square root
     of each metre, ``turn_noise`` of the turn.
@@ -78,7 +78,7 @@ class GyroscopeSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True)
 class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """A receiver with ``noise`` metres that has no fix where too little of the sky is open.
 
-    Of ``directions`` all around, those are open in which nothing reaches above ``mask_deg`` degrees.
+    Of ``directions`` all around, those without obstacles above ``mask_deg`` degrees are open.
     """
 
     noise: Metres = 1.5
@@ -88,7 +88,7 @@ class GpsSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Where on a map a scan fits, when the robot may be anywhere: table ``[filter.search]``.
+    """Search for places where a scan fits on a map: table ``[filter.search]``.
 
     ``per_area`` random poses for each m² are compared at first, ``most`` of them on a large map: a pose of
     them is then some 0.2 m and at most 10° from the robot. While it is lost it looks for other places again,
@@ -117,7 +117,7 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How a robot that does not know its place finds it: table ``[filter.recovery]``.
+    """Recovery of a robot that does not know its place: table ``[filter.recovery]``.
 
     It is lost until it has driven ``settled`` metres at one place, moved on by the wheels: another place may
     fit by chance for some metres, and façades repeat every few. It is at one place when ``share`` of the
@@ -148,7 +148,7 @@ class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class FixSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """How far a GPS position is trusted: table ``[filter.gps]``.
+    """Trust in GPS positions: table ``[filter.gps]``.
 
     ``wrong`` is the likelihood of a position however far away, beside that of a right one, which is 1:
     reflections at walls rule no place out. The belief is wrong when ``against`` of the newest ``of``
@@ -164,13 +164,13 @@ class FixSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     lasts: Metres = 10.0
 
     def __post_init__(self) -> None:
-        """Refuse what could never be."""
+        """Refuse impossible values."""
         if self.against > self.of:
             raise ValueError(f"against = {self.against} is more than of = {self.of}")
 
 
 class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """When the robot stands, and what it learns then: table ``[filter.standing]``.
+    """Standing robots, and the use of their scans: table ``[filter.standing]``.
 
     Less than ``still_m`` metres and ``still_rad`` radians between two scans is standing. Of a robot that
     stands and knows its place every ``scans`` scans one is weighed, for they all see the same, with the

@@ -1,4 +1,4 @@
-"""Simulated robot that knows its place by its sensors alone, its world, and an executor for fast time."""
+"""Simulated robot that localises itself by its sensors alone, its world, and an executor for fast time."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ T = TypeVar("T")
 
 
 class InlineExecutor(Executor):
-    """Has done its work when it returns; errors are kept in the future, as other executors do."""
+    """Runs work synchronously; errors are kept in the future, as in other executors."""
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Call ``fn``."""
@@ -44,16 +44,16 @@ class InlineExecutor(Executor):
 
 
 BLOCKED_REMARK_S = 1.0
-"""seconds after which a robot says that something is in its way."""
+"""seconds after which a robot reports that something is in its way."""
 LASER_UP = 0.1
-"""metres above its laser: as high at least is what that sees."""
+"""metres above its laser: the least height of objects that it sees."""
 FIX_EVERY = 1.0
 """seconds between two positions of a GPS receiver."""
 
 
 @dataclass(frozen=True, eq=False)
 class SimulatedWorld:
-    """What is really there: ``walls`` as the laser meets them, ``sky`` as GPS does, and what moves."""
+    """The true world: ``walls`` for the laser, ``sky`` for GPS, and moving obstacles."""
 
     walls: Walls
     sky: Walls
@@ -64,7 +64,7 @@ class SimulatedWorld:
 class LocalisedSettings:
     """The robot: its sensors and filter, limits, ``scans`` a second, and with ``gps`` a receiver.
 
-    ``start`` is where it takes itself to be, ``truth`` where it is. All that is random comes from ``seed``.
+    ``start`` is its initial estimate, ``truth`` its true pose. All randomness comes from ``seed``.
     """
 
     robot: LocalisedRobotSettings
@@ -79,9 +79,9 @@ class LocalisedSettings:
 
 
 class LocalisedBody:
-    """Moves as asked while it knows its place and its way is free; its pose is what it believes.
+    """Moves as requested while it knows its place and its way is free; its pose is its estimate.
 
-    ``executor`` is where the filter works. ``driven`` is metres by the wheels.
+    The filter works on ``executor``. ``driven`` is metres by the wheels.
     """
 
     def __init__(self, settings: LocalisedSettings, world: SimulatedWorld, executor: Executor) -> None:
@@ -105,9 +105,9 @@ class LocalisedBody:
         )
         self.localiser = Localiser(localising, settings.start, mind, executor)
         self.odometry = settings.start.pose
-        """Where the wheels alone would have it."""
+        """The pose by the wheels alone."""
         self._felt = sensors.Motion(0.0, 0.0)
-        """What was measured since the newest scan."""
+        """The motion measured since the newest scan."""
         self._partial: list[sensors.Motion] = []
         self._target_speeds = 0.0, 0.0
         self._t = 0.0
@@ -119,17 +119,17 @@ class LocalisedBody:
         self._doubted: list[Doubt] = []
         self._reported, self._run = 0, secrets.token_hex(3)
         self.readings = 0
-        """How many scans there have been."""
+        """The number of scans so far."""
         world.surroundings.add(self, lambda: self.discs)
 
     @property
     def truth(self) -> sensors.TruePose:
-        """Where the robot really is."""
+        """The true pose."""
         return self._body.pose
 
     @property
     def pose(self) -> sensors.TruePose:
-        """Where the robot takes itself to be."""
+        """The robot's pose estimate."""
         pose = self.localiser.pose
         for motion in self._partial:
             pose = sensors.moved(pose, motion)
@@ -157,7 +157,7 @@ class LocalisedBody:
 
     @property
     def remark(self) -> str | None:
-        """What keeps it from driving on although it knows its place."""
+        """What keeps it from driving although it knows its place."""
         if not self.avoidance.waits or self.avoidance.blocked_for < BLOCKED_REMARK_S:
             return None
         return f"waits: something is in its way, {self.avoidance.free_ahead(0.0):.1f} m ahead"
@@ -174,7 +174,7 @@ class LocalisedBody:
         return np.array([[x, y, self._settings.shape.radius]])
 
     def place(self, pose: sensors.TruePose) -> None:
-        """Take itself to be at ``pose``, as a robot that an operator gives a start position."""
+        """Set its estimate to ``pose``, like a robot that gets a start position from an operator."""
         if self.localiser.map is None:
             # It is switched on there.
             self._body.place(pose)
@@ -182,7 +182,7 @@ class LocalisedBody:
         self.localiser.place(InitialBelief(pose, (0.5, math.radians(10))))
 
     def use_map(self, robot_map: RobotMap) -> str | None:
-        """Go on with another map; return why not, or None."""
+        """Switch to another map; return why not, or None."""
         try:
             self.localiser.use_map(robot_map)
         except ReferenceRobotError as error:
@@ -199,7 +199,7 @@ class LocalisedBody:
     def observations(self) -> Sequence[Observed]:
         """Return what it saw again and again where its map has nothing, an object and an image of it.
 
-        And what of its map it looks through again and again.
+        Also what its sensors repeatedly see through although the map has it.
         """
         found, self._found = self._found, []
         doubted, self._doubted = self._doubted, []
@@ -231,13 +231,13 @@ class LocalisedBody:
         return observed
 
     def drive(self, v: float, turn_rate: float) -> None:
-        """Ask for a motion, m/s and rad/s; it stands where it must not drive, and keeps off what it sees."""
+        """Request a motion, m/s and rad/s; it stands where it must not drive, and avoids what it sees."""
         if self.localiser.trouble is not None:
             v = turn_rate = 0.0
         self._target_speeds = v, turn_rate
 
     def step(self, dt: float) -> None:
-        """Let ``dt`` seconds pass, and scan when it is time."""
+        """Let ``dt`` seconds pass, and scan when due."""
         self._body.drive(*self.avoidance.adjusted(*self._target_speeds, dt))
         before = self._body.pose
         self._body.step(dt)
@@ -266,7 +266,7 @@ class LocalisedBody:
             self._doubted += self._doubts.observe(self.localiser.pose, ranges)
 
     def measured(self, reading: sensors.SensorReading) -> sensors.SensorReading:
-        """Return what the sensors say of what is; a place for tests to let them fail."""
+        """Return the sensor reading of the true state; a hook for tests to let sensors fail."""
         return reading
 
     def _fix(self) -> tuple[float, float] | None:
@@ -280,7 +280,7 @@ class LocalisedBody:
         self._body.place(pose)
 
     def clearance(self) -> float:
-        """Return how far the body really is from all that it could hit, metres; below 0 it has hit it."""
+        """Return the true distance to the nearest obstacle, metres; below 0 it has hit it."""
         x, y, _ = self._body.pose
         walls = self._world.walls
         found: list[NDArray[Any]] = [distances(np.array([x, y]), walls.a, walls.b)]
@@ -290,11 +290,11 @@ class LocalisedBody:
 
 
 MAP_MARGIN = 20.0
-"""metres from the border of its map at which such a robot asks for the next one."""
+"""metres from the border of its map at which such a robot requests the next one."""
 
 
 def read_robot_settings(file: Path) -> LocalisedRobotSettings:
-    """Return what a robot and its world are set to by a TOML ``file``; raises ReferenceRobotError."""
+    """Return the settings of a robot and its world in a TOML ``file``; raises ReferenceRobotError."""
     try:
         return msgspec.convert(settings_tables(file), LocalisedRobotSettings)
     except msgspec.ValidationError as error:
@@ -302,7 +302,7 @@ def read_robot_settings(file: Path) -> LocalisedRobotSettings:
 
 
 def simulated_world(robot_map: RobotMap, settings: LocalisedRobotSettings, seed: int) -> SimulatedWorld:
-    """Return the world of which ``robot_map`` is the map; another one for each ``seed``."""
+    """Return a world whose map is ``robot_map``; a different one for each ``seed``."""
     seen = walls_of(robot_map).higher_than(settings.laser.height)
     return SimulatedWorld(
         changed(seen, settings.world, np.random.default_rng([seed, 0])), walls_of(robot_map)

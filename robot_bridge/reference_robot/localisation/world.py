@@ -1,4 +1,4 @@
-"""What a laser sees of a map, and a world that differs from it."""
+"""The walls of a map as seen by a laser, and a world that differs from the map."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _DRIVEN_ON = (ShapeType.STAIRS, ShapeType.RAMP)
 class Walls:
     """S segments from ``a`` to ``b``, (S, 2) metres, with ``height``, (S,) metres above the ground.
 
-    ``obstacle``, (S,) int64, says which belong together.
+    ``obstacle``, (S,) int64, is the obstacle of each.
     """
 
     a: NDArray[Any]
@@ -32,7 +32,7 @@ class Walls:
         return len(self.a)
 
     def higher_than(self, height: float) -> Walls:
-        """Return what reaches above ``height`` metres."""
+        """Return the walls that reach above ``height`` metres."""
         high = self.height > height
         return Walls(self.a[high], self.b[high], self.height[high], self.obstacle[high])
 
@@ -43,7 +43,7 @@ def standing_obstacles(robot_map: RobotMap) -> list[Obstacle]:
 
 
 def walls_of(robot_map: RobotMap) -> Walls:
-    """Return all of a map that stands up: everything but stairs and ramps."""
+    """Return the upright obstacles of a map: everything but stairs and ramps."""
     standing = standing_obstacles(robot_map)
     return Walls(
         a=np.concatenate([np.empty((0, 2)), *(one.a for one in standing)]),
@@ -54,10 +54,10 @@ def walls_of(robot_map: RobotMap) -> Walls:
 
 
 def changed(walls: Walls, settings: WorldSettings, rng: np.random.Generator) -> Walls:
-    """Return the world of which ``walls`` are the map, as the laser sees them; another one for each ``rng``.
+    """Return a world whose map has ``walls``, as the laser sees it; a different one for each ``rng``.
 
-    What is small is moved as a whole or missing; of all else each straight wall is moved by itself. Walls
-    that a map has twice at one place are one wall, of infinite height.
+    Small objects are moved as a whole or missing; of others each straight wall is moved by itself. Walls that
+    a map has twice at one place become one wall of infinite height.
     """
     small = _is_small(walls, settings.furniture)
     things = np.unique(walls.obstacle[small])
@@ -78,7 +78,7 @@ def changed(walls: Walls, settings: WorldSettings, rng: np.random.Generator) -> 
 
 
 def _is_small(walls: Walls, size: float) -> NDArray[Any]:
-    """Return which segments belong to what is less than ``size`` wide and deep, and is no single line."""
+    """Return which segments belong to objects smaller than ``size`` both ways that are no single line."""
     count = int(walls.obstacle.max(initial=-1)) + 1
     low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     for ends in (walls.a, walls.b):
@@ -92,8 +92,8 @@ def _is_small(walls: Walls, size: float) -> NDArray[Any]:
 def inside_solids(robot_map: RobotMap, points: NDArray[Any]) -> NDArray[Any]:
     """Return which of ``points``, (n, 2), lie in something solid: (n,) bool.
 
-    Solid rings run counter-clockwise and courtyards clockwise: a point is inside where the rings go round it
-    more often one way than the other. Rings that the border cuts say nothing.
+    Solid rings run counter-clockwise and courtyards clockwise: a point is inside if the rings wind
+    around it more often one way than the other. Rings cut by the border are ignored.
     """
     turns = np.zeros(len(points), dtype=np.int64)
     x, y = points.T
@@ -108,7 +108,7 @@ def inside_solids(robot_map: RobotMap, points: NDArray[Any]) -> NDArray[Any]:
 
 
 def _turns_around(a: NDArray[Any], b: NDArray[Any], x: NDArray[Any], y: NDArray[Any]) -> NDArray[Any]:
-    """Return how often the ring goes counter-clockwise round each point, by what crosses a ray from it."""
+    """Return the winding number of the ring around each point, by crossings of a ray."""
     up = (a[:, 1] <= y) & (b[:, 1] > y)
     down = (a[:, 1] > y) & (b[:, 1] <= y)
     left = (b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (x - a[:, 0]) * (b[:, 1] - a[:, 1])
