@@ -294,7 +294,7 @@ def add_robot(
     if not has_accounts(address.drivername):
         _refuse_password(password_file)
         print(act_audited(address, "robots add", name, None, lambda connection: _add_token(connection, name)))
-        _say(f"robot {name} has a token, which it shows when it connects over WebSocket")
+        _report(f"robot {name} has a token, which it shows when it connects over WebSocket")
         return
     password = new_password(password_file)
 
@@ -306,7 +306,7 @@ def add_robot(
     if password_file is None:
         print(password)
     robots_address = address._replace(username=name, password=None, database=found)
-    _say(f"robot {name} has an account; it connects to {shown(robots_address)}")
+    _report(f"robot {name} has an account; it connects to {shown(robots_address)}")
 
 
 @robots.command("rotate")
@@ -336,7 +336,7 @@ def rotate_robot(
     )
     if password_file is None:
         print(password)
-    _say(f"robot {name} has another password")
+    _report(f"robot {name} has another password")
 
 
 @robots.command("remove")
@@ -363,7 +363,7 @@ def remove_robot(
             accounts.revoke_robot_token(connection, name, time.time())
 
     act_audited(address, "robots remove", name, None, work)
-    _say(f"robot {name} is removed")
+    _report(f"robot {name} is removed")
 
 
 @robots.command("list")
@@ -413,7 +413,7 @@ def _refuse_password(file: Path | None) -> None:
         )
 
 
-def _say(text: str) -> None:
+def _report(text: str) -> None:
     typer.echo(text, err=True)
 
 

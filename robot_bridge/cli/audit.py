@@ -41,16 +41,16 @@ def act_audited(
     Refusals are recorded too, and raised again.
     """
 
-    def noted(connection: Connection) -> T:
+    def recorded(connection: Connection) -> T:
         result = work(connection)
-        _note(connection, action, subject, True, detail)
+        _record(connection, action, subject, True, detail)
         return result
 
     try:
-        return read_database(address, noted)
+        return read_database(address, recorded)
     except (BridgeError, MessageError) as error:
         reason = str(error)
-        read_database(address, lambda connection: _note(connection, action, subject, False, reason))
+        read_database(address, lambda connection: _record(connection, action, subject, False, reason))
         raise
 
 
@@ -66,10 +66,10 @@ def audited(address: URL, action: str, subject: str, detail: str | None = None) 
     except BridgeError as error:
         reason = str(error)
         with contextlib.suppress(BridgeError):  # the reason is reported already
-            run_once(address, _note_if_there, action, subject, False, reason)
+            run_once(address, _record_if_there, action, subject, False, reason)
         raise
     try:
-        run_once(address, _note_if_there, action, subject, True, detail)
+        run_once(address, _record_if_there, action, subject, True, detail)
     except BridgeError as error:
         typer.echo(f"robot-bridge: this is done, and not in the audit log: {error}", err=True)
 
@@ -95,18 +95,20 @@ async def _run(address: URL, work: Callable[[Connection], T]) -> T:
         await database.close()
 
 
-def _note(connection: Connection, action: str, subject: str, done: bool, detail: str | None) -> None:
+def _record(connection: Connection, action: str, subject: str, done: bool, detail: str | None) -> None:
     entry = AuditEntry(
         time.time(), system_account(), action, done, address="command line", subject=subject, detail=detail
     )
     audit_log.add_entries(connection, [entry])
 
 
-def _note_if_there(connection: Connection, action: str, subject: str, done: bool, detail: str | None) -> None:
+def _record_if_there(
+    connection: Connection, action: str, subject: str, done: bool, detail: str | None
+) -> None:
     found = revisions.current(connection)
     if found != revisions.NEEDED:
         raise StoreError(f"its tables are at revision {found or 'none'}, which this version does not write")
-    _note(connection, action, subject, done, detail)
+    _record(connection, action, subject, done, detail)
 
 
 def system_account() -> str:

@@ -148,7 +148,7 @@ async def _run(link: RobotLink, settings: AgentSettings, stop: asyncio.Event) ->
     """Run a robot in real time until ``stop`` is set; it sends Stopped before it disconnects."""
     agent = Agent(settings, link)
     tasks = [
-        asyncio.create_task(work) for work in (link.run(agent), _live(agent), _say_alive(agent), stop.wait())
+        asyncio.create_task(work) for work in (link.run(agent), _live(agent), _send_alive(agent), stop.wait())
     ]
     done, _ = await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     agent.stop()
@@ -171,7 +171,7 @@ async def _live(agent: Agent) -> None:
         last = now
 
 
-async def _say_alive(agent: Agent) -> None:
+async def _send_alive(agent: Agent) -> None:
     while True:
         await asyncio.sleep(ALIVE_INTERVAL)
         agent.alive()

@@ -209,11 +209,11 @@ async def _serve(settings: GatewaySettings, until_stdin_closes: bool) -> None:
 
 def _started(address: str) -> None:
     freeze_permanent_objects()
-    _say(f"listening on {address}")
+    _print_line(f"listening on {address}")
     notify("READY=1", f"STATUS=listening on {address}")
 
 
-def _say(line: str) -> None:
+def _print_line(line: str) -> None:
     """Print ``line``. Errors, such as a full disk or a closed pipe, are ignored: they must not end a
     gateway."""
     try:

@@ -352,7 +352,7 @@ class _Robot:
         self.agent.step(dt)
         if self._begun and not self.is_done and self.body.readings > self._readings:
             self._readings = self.body.readings
-            self._note()
+            self._record_scan()
 
     def record(self) -> Record:
         """Return the record."""
@@ -364,7 +364,7 @@ class _Robot:
             clearance=float(self._clearance),
         )
 
-    def _note(self) -> None:
+    def _record_scan(self) -> None:
         body = self.body
         self._clearance = min(self._clearance, body.clearance())
         state = body.pose, body.driven, body.accuracy, body.localiser.lost
@@ -373,5 +373,5 @@ class _Robot:
     def say(self, request: Request) -> None:
         self.link.say(request)
         if isinstance(request, Stopped) and self._begun and self.body.driven > 0:
-            self._note()
+            self._record_scan()
             self.is_done = True

@@ -58,7 +58,7 @@ def import_recording(
     form.check()
     settings = options.site_settings(site)
     recording = read_recording(file, ReadingOptions(form, tuple(topic or ())))
-    _tell_remarks(recording)
+    _print_remarks(recording)
     own = FrameSettings(crs=recording.crs or crs, origin=_origin(origin), rotation_deg=rotation)
     if recording.crs is not None and (crs, origin, rotation) != ("site", "0,0", 0.0):
         raise BridgeError(
@@ -149,7 +149,7 @@ def _origin(text: str) -> tuple[float, float]:
     return x, y
 
 
-def _tell_remarks(recording: Recording) -> None:
+def _print_remarks(recording: Recording) -> None:
     for text in recording.remarks.texts:
         typer.echo(text, err=True)
     if recording.remarks.count:

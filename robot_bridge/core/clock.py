@@ -73,14 +73,14 @@ class StandstillWatch:
     def __init__(self, longest_s: float = LONGEST_PAUSE_S, clock: Clock = SYSTEM_CLOCK) -> None:
         self._longest_s = longest_s
         self._clock = clock
-        self._looked_at = clock.steady()
+        self._checked_at = clock.steady()
         self.seconds = 0.0
         """Duration of the standstill; 0 if there was none."""
 
     def check(self) -> bool:
         """Return whether it stood still; once true it stays true."""
-        since, self._looked_at = self._looked_at, self._clock.steady()
-        passed = self._looked_at - since
+        since, self._checked_at = self._checked_at, self._clock.steady()
+        passed = self._checked_at - since
         if passed > self._longest_s:
             self.seconds = max(self.seconds, passed)
         return self.seconds > 0.0

@@ -169,10 +169,10 @@ class StagedFiles:
             failed = kind is not None
         finally:
             if failed:
-                self._take_back()
+                self._roll_back()
             self._clear()
 
-    def _take_back(self) -> None:
+    def _roll_back(self) -> None:
         for name in self._changed:
             earlier, place = self._earlier / name, self.target / name
             with suppress(OSError):

@@ -119,14 +119,14 @@ class GatewayAddresses:
             "close_timeout": 1,
         }
 
-    def learn(self, told: object) -> None:
-        """Replace the known addresses by those that a gateway ``told``, its own first.
+    def learn(self, addresses: object) -> None:
+        """Replace the known addresses by those of a gateway's message, its own first.
 
         If the given address has TLS, others without it are ignored. A token for this computer alone stays
         here: it is unknown who listens on this computer's addresses. Anything but a list of addresses is
         ignored.
         """
-        texts = [one for one in told if isinstance(one, str)] if isinstance(told, list) else []
+        texts = [one for one in addresses if isinstance(one, str)] if isinstance(addresses, list) else []
         usable = usable_addresses([one for one in texts if self._is_as_safe(one)])
         if usable is None:
             return
@@ -155,7 +155,7 @@ class GatewayAddresses:
         end."""
         lost, pace = self._current, self._pace
         if self._failures or ends or lost in self._refusing:
-            self._go_on()
+            self._advance()
         is_worth_it = self._given not in self._refusing and not (ends and lost == self._given)
         if pace.given_first and not self._failures and is_worth_it:
             self._current = self._given
@@ -166,7 +166,7 @@ class GatewayAddresses:
             wait = pace.between
         return wait * self._random.uniform(1 - SPREAD, 1 + SPREAD)
 
-    def _go_on(self) -> None:
+    def _advance(self) -> None:
         at = self._ring.index(self._current)
         later = [*self._ring[at + 1 :], *self._ring[: at + 1]]
         self._current = next((one for one in later if one not in self._refusing), later[0])

@@ -181,12 +181,12 @@ class RepeatedLines:
 
     def warn(self, log: logging.Logger, key: Key, line: str) -> None:
         """Write ``line`` as a warning, or count it."""
-        if self._is_to_be_written(log, key, line):
+        if self._is_due(log, key, line):
             log.warning("%s", line)
 
     def note_unforeseen(self, log: logging.Logger, key: Key, who: str) -> str:
         """Log the exception being handled, met by ``who``, or count it; return the text for them."""
-        if self._is_to_be_written(log, (*key, "internal error"), f"{who}: internal error"):
+        if self._is_due(log, (*key, "internal error"), f"{who}: internal error"):
             return log_unforeseen(log, who)
         return "internal error, again; the gateway's log says more of the first ones"
 
@@ -203,7 +203,7 @@ class RepeatedLines:
             run.log.warning(text, " ".join(key), run.left_out, now - run.began, run.last)
             run.began, run.left_out = now, 0
 
-    def _is_to_be_written(self, log: logging.Logger, key: Key, line: str) -> bool:
+    def _is_due(self, log: logging.Logger, key: Key, line: str) -> bool:
         run = self._runs.get(key)
         if run is None:
             if len(self._runs) >= MOST_KEYS:

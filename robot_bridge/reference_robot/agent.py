@@ -139,7 +139,7 @@ class Agent:
         self._magic = settings.magic
         remembered = settings.memory.recall() if settings.memory else None
         if remembered is not None:
-            self._go_on(remembered)
+            self._continue_run(remembered)
         self._keep()
 
     @property
@@ -160,7 +160,7 @@ class Agent:
             self.greet()
             return None if id is None else messages.OpAck(id=id)
         if isinstance(answer, messages.OpAck):
-            self._take_acknowledgement(answer)
+            self._apply_acknowledgement(answer)
             return None
         if isinstance(answer, messages.Abort) and self._admitted:
             # A task at whose end it is has been reached, and is not aborted: reported before its OpAck.
@@ -171,7 +171,7 @@ class Agent:
             return messages.OpAck(id=id)
         refusal = self._do(answer)
         if id is not None:
-            self._note_done(id)
+            self._record_done(id)
         # Before the acknowledgement: the server does not repeat acknowledged messages.
         self._keep()
         return messages.OpAck(id=id, ok=refusal is None, reason=refusal)
@@ -252,7 +252,7 @@ class Agent:
         if self._admitted:
             self._sink.say(messages.Alive())
 
-    def _go_on(self, remembered: RememberedRun) -> None:
+    def _continue_run(self, remembered: RememberedRun) -> None:
         """Continue the remembered run of the robot, and report again that all is done if it is."""
         self._magic, self._database = remembered.magic, remembered.database
         self._done = dict.fromkeys(remembered.done)
@@ -275,7 +275,7 @@ class Agent:
             RememberedRun(self._magic, self._database, done, self._body.pose, way, theta, awaits)
         )
 
-    def _take_acknowledgement(self, ack: messages.OpAck) -> None:
+    def _apply_acknowledgement(self, ack: messages.OpAck) -> None:
         if (
             self._awaited is not None
             and not ack.ok
@@ -302,7 +302,7 @@ class Agent:
             self._database = database
             self._keep()
 
-    def _note_done(self, id: int) -> None:
+    def _record_done(self, id: int) -> None:
         self._done[id] = None
         if len(self._done) > MOST_DONE:
             del self._done[next(iter(self._done))]
@@ -311,9 +311,9 @@ class Agent:
         """Execute a message; return why not, or None."""
         limits = self._settings.limits
         if isinstance(answer, messages.SetMap):
-            return self._take_map(answer)
+            return self._apply_map(answer)
         if isinstance(answer, messages.SetPosEnd):
-            self._take_target(answer)
+            self._apply_target(answer)
             self._ask_surface((answer.x, answer.y))
         elif isinstance(answer, messages.SetPath):
             self._driver = Driver(answer.points, answer.theta, limits)
@@ -323,13 +323,13 @@ class Agent:
             names = ["no road" if name is None else name or "an unknown surface" for name in answer.surfaces]
             self._ground = " to ".join(names)
         elif isinstance(answer, messages.SetPosIni):
-            return self._take_place(answer)
+            return self._apply_place(answer)
         elif isinstance(answer, messages.Abort):
             self._halt()
         self._moving = self._moving or self._driver is not None
         return None
 
-    def _take_target(self, target: messages.SetPosEnd) -> None:
+    def _apply_target(self, target: messages.SetPosEnd) -> None:
         """Drive straight to a target, or stand until its path is known."""
         place = target.x, target.y
         if not self._settings.asks_path:
@@ -371,7 +371,7 @@ class Agent:
         if self._settings.asks_surface:
             self._sink.say(GetSurface([self._body.pose[:2], goal]))
 
-    def _take_map(self, answer: messages.SetMap) -> str | None:
+    def _apply_map(self, answer: messages.SetMap) -> str | None:
         try:
             robot_map = decode(answer.map, LARGEST_TEXT)
         except RobotMapError as error:
@@ -399,7 +399,7 @@ class Agent:
             self._ask_map_in = ASK_AGAIN
             self._sink.say(messages.GetMap(round(x, 2), round(y, 2), round(max(width, height) ** 2, 2)))
 
-    def _take_place(self, begin: messages.SetPosIni) -> str | None:
+    def _apply_place(self, begin: messages.SetPosIni) -> str | None:
         drives = self._driver is not None and self._body.hindrance is None
         if drives or abs(self._body.v) >= STANDING:
             return "it drives, and knows where; abort its task first"

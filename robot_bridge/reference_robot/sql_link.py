@@ -146,11 +146,11 @@ class RobotSqlLink:
         try:
             await self._database.write_relaxed(_exchange, self._robot, self._magic, read, outgoing)
         except StoreError:
-            self._outgoing = [*_still_to_say(outgoing), *self._outgoing]
+            self._outgoing = [*_still_to_send(outgoing), *self._outgoing]
             raise
 
 
-def _still_to_say(requests: Sequence[Request]) -> list[Request]:
+def _still_to_send(requests: Sequence[Request]) -> list[Request]:
     """Return the requests to repeat, each once; of positions only the last before each OpAck."""
     kept: list[Request] = []
     position = None

@@ -243,12 +243,12 @@ class CancellableTravel:
     """The ways of ``inner``; its paths raise CancelledError once ``go_on()`` returns false."""
 
     def __init__(self, inner: Travel, go_on: Callable[[], bool]) -> None:
-        self._inner, self._go_on = inner, go_on
+        self._inner, self._may_continue = inner, go_on
         self.name, self.metres = inner.name, inner.metres
 
     def path(self, start: int, goal: int) -> Floats:
         """Return the points from place to place."""
-        if not self._go_on():
+        if not self._may_continue():
             raise AssignmentCancelledError("The assignment was cancelled.")
         return self._inner.path(start, goal)
 

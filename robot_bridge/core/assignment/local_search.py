@@ -246,16 +246,16 @@ class _Search:
         for other in self._near[target]:
             its_slot, its_at = self._at[other]
             for change in moves_beside(self.plan, slot, at, its_slot, its_at):
-                if self._take_trips(change):
+                if self._apply_trips(change):
                     return True
-        if any(self._take_trips(change) for change in moves_elsewhere(self.plan, slot, at)):
+        if any(self._apply_trips(change) for change in moves_elsewhere(self.plan, slot, at)):
             return True
         if at > 0 or slot[1] <= self._fixed[slot[0]][0]:
             return False
         free = [last + 1 for last, _ in self._fixed]
-        return any(self._take_days(change) for change in moves_of_trips(self.plan, slot, free))
+        return any(self._apply_days(change) for change in moves_of_trips(self.plan, slot, free))
 
-    def _take_trips(self, change: TripChange) -> bool:
+    def _apply_trips(self, change: TripChange) -> bool:
         if not self._worth(change) or not all(self._allowed(*one) for one in change.items()):
             return False
         days: DayChange = {}
@@ -265,7 +265,7 @@ class _Search:
                 day.append(trip)
             else:
                 day[number] = trip
-        return self._take(days)
+        return self._apply(days)
 
     def _worth(self, change: TripChange) -> bool:
         """Whether ``change`` can improve anything, by the lengths of its trips alone."""
@@ -299,13 +299,13 @@ class _Search:
             return False
         return self._days.fits(robot, trip, first=number == 0)
 
-    def _take_days(self, change: DayChange) -> bool:
+    def _apply_days(self, change: DayChange) -> bool:
         fit = all(
             self._days.fits(robot, trip, first=False) for robot, day in change.items() for trip in day[1:]
         )
-        return fit and self._take(change)
+        return fit and self._apply(change)
 
-    def _take(self, change: DayChange) -> bool:
+    def _apply(self, change: DayChange) -> bool:
         change = {robot: [*day[:1], *(trip for trip in day[1:] if trip)] for robot, day in change.items()}
         costs = list(self._costs)
         for robot, day in change.items():

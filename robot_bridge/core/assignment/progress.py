@@ -147,7 +147,7 @@ class PlanProgress:
         """Apply a report on a robot's queue."""
         open_ones = {task.task for task in queue.tasks}
         for report in (*reversed(queue.ended), *queue.tasks):
-            self._note(report)
+            self._record(report)
         theirs = [task for task, one in self.stops.items() if one.robot == queue.robot]
         for task in theirs:
             known = self.reports.get(task)
@@ -183,7 +183,7 @@ class PlanProgress:
         out = {one.target.id for one in plan.left_out}
         return all(target.id in self.done or target.id in out for target in plan.targets)
 
-    def _note(self, task: TaskReport) -> None:
+    def _record(self, task: TaskReport) -> None:
         stop = self.stops.get(task.task)
         if stop is None:
             return

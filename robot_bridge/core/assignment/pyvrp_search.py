@@ -61,17 +61,17 @@ class SearchProgress:
     """Progress of a search: its shares are mapped to those from ``begin`` to ``end`` of the whole."""
 
     def __init__(self, goes_on: Progress, begin: float = 0.0, end: float = 1.0) -> None:
-        self._goes_on, self._begin, self._end = goes_on, begin, end
+        self._progress, self._begin, self._end = goes_on, begin, end
 
     def report(self, share: float) -> None:
         """Report that ``share`` of the search is over; raises AssignmentCancelledError if it must end."""
-        if not self._goes_on(self._begin + (self._end - self._begin) * share):
+        if not self._progress(self._begin + (self._end - self._begin) * share):
             raise AssignmentCancelledError("The assignment was cancelled.")
 
     def part(self, begin: float, end: float) -> SearchProgress:
         """Return the progress of a part, from ``begin`` to ``end`` of this."""
         length = self._end - self._begin
-        return SearchProgress(self._goes_on, self._begin + length * begin, self._begin + length * end)
+        return SearchProgress(self._progress, self._begin + length * begin, self._begin + length * end)
 
 
 class SearchClock:

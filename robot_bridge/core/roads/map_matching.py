@@ -147,7 +147,7 @@ def edges_along(
     A path has no levels, so these are ignored.
     """
     network = nearest.network
-    places, heading, step = _looked_at(points)
+    places, heading, step = _sampled(points)
     found = [np.empty(0, np.int64)]
     room = float(network.edges.width.max()) / 2 if len(network) else 0.0
     for some in _runs(network, places, among, room):
@@ -189,7 +189,7 @@ def _is_any_in(places: Floats, boxes: Floats) -> bool:
     return bool(inside.all(axis=2).any())
 
 
-def _looked_at(points: Floats) -> tuple[Floats, Floats, float]:
+def _sampled(points: Floats) -> tuple[Floats, Floats, float]:
     """Return the middles of equal steps along ``points``, (k, 2), their unit vectors, and the step."""
     legs = np.diff(points, axis=0)
     metres = np.hypot(*legs.T)

@@ -104,7 +104,7 @@ class Avoidance:
         self.blocked_for = max(self.blocked_for, dt)
         self._waited += dt
         if self._waited >= WAITS:
-            self._look_round(turn_rate / AIMS)
+            self._find_way_round(turn_rate / AIMS)
         return 0.0, 0.0
 
     def _round(self) -> tuple[float, float]:
@@ -117,10 +117,10 @@ class Avoidance:
             return 0.0, 0.0
         return min(ROUND_SPEED, fastest), AIMS * self._heading
 
-    def _look_round(self, speed_wanted: float) -> None:
+    def _find_way_round(self, angle_wanted: float) -> None:
         free = [side for side in SIDEWAYS if self.free_ahead(side) > ROUND + self._shape.radius]
         if free:
-            self._heading = min(free, key=lambda side: abs(side - speed_wanted))
+            self._heading = min(free, key=lambda side: abs(side - angle_wanted))
             self._left = ROUND
 
     def _fastest(self, bearing: float) -> float:

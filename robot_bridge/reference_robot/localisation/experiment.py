@@ -237,7 +237,7 @@ class _Drive:
             steered = self.body.pose if settings.steered_by == "truth" else sensors.moved(steered, felt)
         self.seconds += steps * dt
         self._carry()
-        self._take_in(sensors.Motion(distance, turn))
+        self._process(sensors.Motion(distance, turn))
         return True
 
     def record(self) -> Record:
@@ -249,7 +249,7 @@ class _Drive:
     def _begin(self) -> None:
         scan = self._scan()
         settings = self._settings
-        self._hear_receiver()
+        self._receive_fix()
         if settings.start == "unknown":
             self._filter.search(scan)
         else:
@@ -261,11 +261,11 @@ class _Drive:
         self._scans.append(scan)
         return scan
 
-    def _take_in(self, motion: sensors.Motion) -> None:
+    def _process(self, motion: sensors.Motion) -> None:
         scan = self._scan()
         self._motions.append(motion)
         if len(self._rows) % max(1, round(self._settings.scans)) == 0:
-            self._hear_receiver()
+            self._receive_fix()
         begin = time.process_time()
         self._filter.move(motion)
         self._filter.observe(scan)
@@ -274,7 +274,7 @@ class _Drive:
         believed = belief.pose, self.body.driven, belief.accuracy, belief.lost
         self._rows.append((self.body.pose, self._odometry, *believed, seconds, len(self._filter.particles)))
 
-    def _hear_receiver(self) -> None:
+    def _receive_fix(self) -> None:
         fix = self._receiver.fix(self.body.pose) if self._receiver is not None else None
         if fix is not None:
             self._filter.observe_fix(*fix, self._settings.gps_receiver.noise)

@@ -79,7 +79,7 @@ class ParticleFilter:
         """Error of the belief in metres per unit error of the wheels' scale, (2,)."""
         self._unsettled = 0.0
         """metres to drive until the place counts as found."""
-        self._since_look = (math.inf, 0)
+        self._since_search = (math.inf, 0)
         self._fix: tuple[float, float, float] | None = None
         self._since_fix = 0.0
         self._against: deque[bool] = deque(maxlen=settings.gps.of)
@@ -144,7 +144,7 @@ class ParticleFilter:
         self._since_fix += far
         # A turn of a radian changes the view as much as a metre of driving.
         self._since_scan += far + abs(motion.turn)
-        self._since_look = self._since_look[0] + far, self._since_look[1]
+        self._since_search = self._since_search[0] + far, self._since_search[1]
         drift = math.radians(settings.drift_deg)
         distance = rng.normal(motion.distance, settings.distance_noise * root + 1e-9, count)
         turn_noise = math.hypot(settings.turn_noise * motion.turn, drift * root) + 1e-9
@@ -316,8 +316,8 @@ class ParticleFilter:
         lost = max(0.0, 1 - self._fast / (settings.recover * self._slow)) if self._slow else 0.0
         if lost:
             self._unsettled = recovery.settled
-        metres, scans = self._since_look
-        self._since_look = metres, scans + 1
+        metres, scans = self._since_search
+        self._since_search = metres, scans + 1
         due = metres >= recovery.look_every_m or scans >= recovery.look_every_scans
         looks = self._unsettled > 0 and due
         crowd = 1 / float(self.weights @ self.weights)
@@ -336,7 +336,7 @@ class ParticleFilter:
             weights = np.full(len(rows), 1 / len(rows))
         particles = self.particles[rows]
         if new:
-            self._since_look = 0.0, 0
+            self._since_search = 0.0, 0
             again = settings.search.again_per_area, settings.search.again_most
             particles = np.concatenate([particles, self._likely(new, again, ranges, used)])
             share = new / count
