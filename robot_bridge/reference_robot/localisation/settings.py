@@ -91,13 +91,13 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Search for places where a scan fits on a map: table ``[filter.search]``.
 
     ``per_area`` random poses for each m² are compared at first, ``most`` of them on a large map: a pose of
-    them is then some 0.2 m and at most 10° from the robot. While it is lost it looks for other places again,
-    with ``again_per_area`` for each m² and ``again_most``: fewer, because it does so every metre.
-    ``near_fix`` poses are compared around a GPS position. ``few_beams`` of a scan are enough to notice a
-    place, by a likelihood field of ``wide_sigma`` metres: a pose beside the right one must be noticed, too.
-    The ``kept`` best, one of each bin of ``apart_m`` metres and ``apart_deg`` degrees, are tried ``tries``
-    times around, in two rounds, with standard deviations of ``rounds_m`` metres and ``rounds_deg`` degrees,
-    by ``more_beams``. Of these poses are drawn by the filter's model of all beams.
+    them is then some 0.2 m and at most 10° from the robot. While it is lost it repeats the search, with
+    ``again_per_area`` for each m² and ``again_most``: fewer, because it does so every metre. ``near_fix``
+    poses are compared around a GPS position. ``few_beams`` of a scan are enough to notice a place, by a
+    likelihood field of ``wide_sigma`` metres: a pose beside the true one must be noticed, too. The ``kept``
+    best, one of each bin of ``apart_m`` metres and ``apart_deg`` degrees, are tried ``tries`` times around,
+    in two rounds, with standard deviations of ``rounds_m`` metres and ``rounds_deg`` degrees, by
+    ``more_beams``. From these, poses are drawn by the filter's model of all beams.
     """
 
     per_area: Positive = 85.0
@@ -119,16 +119,16 @@ class SearchSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Recovery of a robot that does not know its place: table ``[filter.recovery]``.
 
-    It is lost until it has driven ``settled`` metres at one place, moved on by the wheels: another place may
+    It is lost until it has driven ``settled`` metres at one place, updated by the wheels: another place may
     fit by chance for some metres, and façades repeat every few. It is at one place when ``share`` of the
     particles' weight is within ``place_m`` metres and ``place_deg`` degrees of the middle. Every
-    ``look_every_m`` metres or ``look_every_scans`` scans it looks for other places, and puts
-    ``new_particles`` of its particles there. Where more than ``rival`` of the weight is at other places when
-    it looks again, another one fits as well, and it is at none: ``accuracy`` must hold at 95 % of the scans.
-    A scan counts for ``scan_worth`` of what it does otherwise: in each place the same walls are wrong scan
-    after scan. Particles of one bin of ``group_m`` metres and ``group_deg`` degrees are resampled apart from
+    ``look_every_m`` metres or ``look_every_scans`` scans it searches for other places, and puts
+    ``new_particles`` of its particles there. If more than ``rival`` of the weight is at other places at the
+    next search, another one fits equally well, and it is at none: ``accuracy`` must hold at 95 % of the
+    scans. A scan has ``scan_worth`` of its usual weight: in each place the same walls are wrong scan after
+    scan. Particles of one bin of ``group_m`` metres and ``group_deg`` degrees are resampled apart from
     others, ``group_least`` of each, in the ``most_groups`` heaviest, down to ``group_share`` of the weight:
-    none of several that look alike dies out by chance.
+    so none of several similar places dies out by chance.
     """
 
     settled: Metres = 15.0
@@ -150,10 +150,10 @@ class RecoverySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class FixSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Trust in GPS positions: table ``[filter.gps]``.
 
-    ``wrong`` is the likelihood of a position however far away, beside that of a right one, which is 1:
-    reflections at walls rule no place out. The belief is wrong when ``against`` of the newest ``of``
+    ``wrong`` is the likelihood of a position however far away, relative to that of a correct one, 1: because
+    of reflections at walls no place is excluded. The belief is wrong when ``against`` of the newest ``of``
     positions are more than ``far`` standard deviations from it: not all in a row, because a belief that
-    drives the same alley the other way comes by the robot's true place. A position says where to look for
+    drives the same alley the other way comes by the robot's true place. A position guides the search for
     ``lasts`` metres of driving.
     """
 
@@ -172,16 +172,15 @@ class FixSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Standing robots, and the use of their scans: table ``[filter.standing]``.
 
-    Less than ``still_m`` metres and ``still_rad`` radians between two scans is standing. Of a robot that
-    stands and knows its place every ``scans`` scans one is weighed, for they all see the same, with the
-    particles spread by ``jitter_m`` and ``jitter_rad`` before. One that is lost counts each scan as
-    ``scan_worth`` metres of driving, within ``expected`` metres of where its wheels or GPS have it:
-    elsewhere it may be in any of several places that look alike. It says that its accuracy is
-    ``lost_accuracy`` metres at least, as wide as one place, and is lost where it knows its place no
-    better. It sees nothing of its map where ``few_echoes`` beams or fewer have an echo. It stands
-    ``border`` metres from the border of a map of a part of the site, when the filter is ``late`` seconds
-    behind the sensors, and after a pause of more than ``pause`` seconds between readings or a motion
-    ``jump`` metres or radians beyond what its body can do: the noise of sensors is less.
+    Less than ``still_m`` metres and ``still_rad`` radians between two scans is standing. While a robot stands
+    and knows its place, one of every ``scans`` scans is weighed, as they all see the same, after spreading
+    the particles by ``jitter_m`` and ``jitter_rad``. One that is lost counts each scan as ``scan_worth``
+    metres of driving, within ``expected`` metres of where its wheels or GPS have it: elsewhere it may be in
+    any of several similar places. It reports an accuracy of ``lost_accuracy`` metres at least, as wide as one
+    place, and is lost if it knows its place no better. It sees nothing of its map if ``few_echoes`` beams or
+    fewer have an echo. It stands ``border`` metres from the border of a map of a part of the site, when the
+    filter is ``late`` seconds behind the sensors, and after a pause of more than ``pause`` seconds between
+    readings or a motion ``jump`` metres or radians beyond what its body can do: the noise of sensors is less.
     """
 
     still_m: Metres = 1e-3
@@ -202,22 +201,22 @@ class StandingSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 class FilterSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """The particle filter: motion, beams, number of particles, and when scans do not fit any more.
 
-    ``distance_noise`` and ``slip`` are metres ahead and sideways, ``drift_deg`` degrees, for the square
-    root of a metre, ``turn_noise`` is of the turn: standard deviations by which particles are spread.
+    ``distance_noise`` and ``slip`` are metres ahead and sideways, ``drift_deg`` degrees, for the square root
+    of a metre, ``turn_noise`` is of the turn: standard deviations by which particles are spread.
     ``wheel_scale`` is by how much of the distance the wheels are wrong the same way all along (a standard
-    deviation): no particle tries it, but the covariance has what it makes of the place. ``sigma`` is how
+    deviation): no particle samples it, but the covariance includes its effect on the place. ``sigma`` is how
     far a beam may be from the map, metres, the map's own errors included; ``hit``, ``short``, ``far`` and
-    ``random`` are the weights of the beam model's parts. ``beams_of_worth`` is how many independent beams
-    a scan counts for: neighbouring beams see the same wall, whose place in the map is wrong for all of
-    them. For the same reason the scans of ``same_walls`` metres of driving count for one together.
-    ``least`` to ``most`` particles, so many that with a probability of 99 % their error
-    (Kullback-Leibler) is below ``kld_error`` over bins of ``bin_size`` metres and ``bin_turn_deg``
-    degrees. ``slow`` and ``fast`` are the rates at which the agreement of scans and map is averaged;
-    particles are put where a scan fits once the fast average is below ``recover`` times the slow one.
-    Below ``least_agreement`` the place is not known, whatever is usual. A beam agrees when it is within
-    ``agrees`` times ``sigma`` of what the map has there. A likelihood field has cells of ``field_cell``
-    metres, larger ones where it would have more than ``field_cells``, and is even farther than
-    ``field_sigmas`` times ``sigma`` from all walls, where hardly any beam that sees one ends.
+    ``random`` are the weights of the beam model's parts. ``beams_of_worth`` is the number of independent
+    beams that a scan counts for: neighbouring beams see the same wall, whose place in the map is wrong for
+    all of them. For the same reason the scans of ``same_walls`` metres of driving count as one. ``least`` to
+    ``most`` particles, so many that with a probability of 99 % their error (Kullback-Leibler) is below
+    ``kld_error`` over bins of ``bin_size`` metres and ``bin_turn_deg`` degrees. ``slow`` and ``fast`` are the
+    rates at which the agreement of scans and map is averaged; particles are put where a scan fits once the
+    fast average is below ``recover`` times the slow one. Below ``least_agreement`` the place is unknown,
+    whatever the usual agreement. A beam agrees when it is within ``agrees`` times ``sigma`` of the map's
+    obstacle. A likelihood field has cells of ``field_cell`` metres, larger ones if there would be more than
+    ``field_cells``, and is uniform beyond ``field_sigmas`` times ``sigma`` from all walls, where hardly any
+    beam on a wall ends.
     """
 
     model: Literal["beam", "field"] = "beam"
