@@ -225,10 +225,10 @@ def replan(
     so_far = replace(plan, robots=robots, left_out=(*plan.left_out, *failed))
     job = job_of(so_far)
     made = assign(job, travel_of(job), objective or Objective(plan.objective), progress)
-    anew = {one.robot.id: one.trips for one in made.robots}
+    replanned = {one.robot.id: one.trips for one in made.robots}
     return replace(
         so_far,
-        robots=tuple(replace(one, trips=anew.get(one.robot.id, ())) for one in robots),
+        robots=tuple(replace(one, trips=replanned.get(one.robot.id, ())) for one in robots),
         objective=made.objective,
         method=made.method,
         travel=made.travel,
