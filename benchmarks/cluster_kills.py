@@ -19,7 +19,7 @@ from benchmarks.cluster_onlookers import Plan as Onlookers
 from benchmarks.cluster_positions import Fleet
 from benchmarks.page import Part, goal
 from benchmarks.trial import size
-from robot_bridge.core.gateway_addresses import ROBOT_PACE
+from robot_bridge.core.reconnection import ROBOT_PACE
 from tests.support.databases.postgresql import PostgreSql
 from tests.support.errors import StageError
 from tests.support.faults.audit import Findings

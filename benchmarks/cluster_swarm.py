@@ -19,8 +19,8 @@ import numpy as np
 from benchmarks.raw_websocket import frame
 from benchmarks.raw_websocket import result as call_result
 from benchmarks.swarm_robots import Robot, Robots, Sent, serve
-from robot_bridge.core.gateway_addresses import GatewayAddresses
 from robot_bridge.core.position_frame import POSITION_HEAD, POSITION_VALUE
+from robot_bridge.core.reconnection import GatewayAddresses
 from robot_bridge.gateway.fleet.emergency_stop import NAME_PREFIX
 
 ROW, APART, CORNER = 150, 1.25, 3.0

@@ -27,7 +27,7 @@ from ..layers.roles import layers_with_role
 from ..layers.site_transform import SiteToCanvas, SiteToMapTransform
 from ..ui.language import age_in_words, tr
 from ..ui.scheduling import STALLED_AFTER, Steps, scaled_progress
-from .layer_checks import (
+from .keepout_checks import (
     CheckedPath,
     KeepoutCheck,
     LayerReadings,

@@ -9,9 +9,9 @@ from qgis.gui import QgsMapCanvas
 from qgis.PyQt.QtCore import QObject, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.queues import PauseRobot
 from ...robot_bridge.core.messages.roads import ReplannedRobot
+from ...robot_bridge.core.reconnection import FleetGateways
 from ..gateway_client.connection import ConnectionThread
 from ..gateway_client.connection_status import ConnectionPhase, OperatorCredentials
 from ..gateway_client.fleet_state import FleetState

@@ -10,7 +10,7 @@ from typing import Any
 from qgis.PyQt.QtCore import QObject, QThread
 
 from ...robot_bridge.core.clock import Clock, steady_time
-from ...robot_bridge.core.gateway_addresses import DESK_PACE, FleetGateways, GatewayAddresses
+from ...robot_bridge.core.reconnection import DESK_PACE, FleetGateways, GatewayAddresses
 from ..ui.errors import AddressError, GatewayLinkError, NotSentError
 from ..ui.language import tr
 from ..ui.vendored import websocket_library

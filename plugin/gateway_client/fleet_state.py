@@ -10,7 +10,6 @@ from typing import Any, NamedTuple, Protocol
 from qgis.PyQt.QtCore import QObject, QTimer, pyqtSignal
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.administration import SiteReport, Suspensions
 from ...robot_bridge.core.messages.commands import CommandReport
 from ...robot_bridge.core.messages.links import Links
@@ -19,6 +18,7 @@ from ...robot_bridge.core.messages.queues import QueueReport
 from ...robot_bridge.core.messages.records import ObservationReport, PlacementReport
 from ...robot_bridge.core.messages.roads import Closures, Conflicts, ReplannedRobot
 from ...robot_bridge.core.messages.safety import EmergencyReport, Geofence, Nearness
+from ...robot_bridge.core.reconnection import FleetGateways
 from ..ui.language import tr
 from ..ui.scheduling import PULL_EVERY_MS
 from . import report_caches

@@ -8,7 +8,6 @@ import math
 from typing import Any
 
 from ...robot_bridge.core.clock import Clock
-from ...robot_bridge.core.gateway_addresses import FleetGateways, GatewayAddresses
 from ...robot_bridge.core.json_decoder import DOCUMENT, check_bounds
 from ...robot_bridge.core.messages import administration, links, records, roads, safety
 from ...robot_bridge.core.messages.administration import PROTOCOL_VERSION, Hello, SiteReport
@@ -18,6 +17,7 @@ from ...robot_bridge.core.messages.plans import GetPlans
 from ...robot_bridge.core.messages.positions import PositionForm, Subscribe, View
 from ...robot_bridge.core.messages.queues import GetQueue, queue_report
 from ...robot_bridge.core.messages.roads import GetClosures
+from ...robot_bridge.core.reconnection import FleetGateways, GatewayAddresses
 from ..ui.errors import GatewayLinkError
 from ..ui.language import tr
 from .command_cache import command_in, commands_in

@@ -11,8 +11,8 @@ from qgis.gui import QgisInterface, QgsCustomDropHandler, QgsMapTool
 from qgis.PyQt.QtCore import QMimeData, QObject, Qt, QTimer, pyqtSignal
 from qgis.PyQt.QtWidgets import QAction, QMainWindow, QMenu, QToolBar
 
-from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.messages.positions import AlarmLimits
+from ...robot_bridge.core.reconnection import FleetGateways
 from ...robot_bridge.core.sites.frame import SiteFrame
 from ..control.fleet_controller import FleetController
 from ..control.messages import OUTAGE, Level, MessageBar, request_topic

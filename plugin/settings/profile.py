@@ -12,9 +12,9 @@ from urllib.parse import quote, unquote
 from qgis.core import QgsApplication, QgsAuthMethodConfig, QgsSettings
 from qgis.PyQt.QtCore import QStandardPaths
 
-from ...robot_bridge.core.gateway_addresses import FleetGateways
 from ...robot_bridge.core.json_decoder import decode_json
 from ...robot_bridge.core.messages.base import usable_addresses
+from ...robot_bridge.core.reconnection import FleetGateways
 from ..gateway_client.connection_status import check_address
 from ..ui.errors import FleetError
 from ..ui.language import tr

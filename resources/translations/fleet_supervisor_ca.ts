@@ -1222,67 +1222,67 @@
             <translation>{words}: no s'ha enviat, perquè s'ha eliminat el robot {robot}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>La capa {layer} no es pot situar al recinte ({error}), així que els seus obstacles no es veuen. Corregiu-ne el SRC, o traieu-li el paper.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The route</source>
             <translation>La ruta</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to}</source>
             <translation>El camí fins a {to}</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>El camí fins a {to} surt de la superfície de via.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is on</source>
             <translation>és sobre</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is {away:.2f} m from</source>
             <translation>és a {away:.2f} m de</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{layer} (feature {id})</source>
             <translation>{layer} (entitat {id})</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{leave} of {legs} legs leave the road surface.</source>
             <translation>{leave} de {legs} trams surten de la superfície de via.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{off} of {points} points are not on a road surface.</source>
             <translation>{off} de {points} punts són fora de les superfícies de via.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{place} is not on a road surface.</source>
             <translation>{place} és fora de les superfícies de via.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
             <translation>{spot} entra a la zona prohibida {name}. Trieu un lloc o recorregut fora.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Trieu un lloc o recorregut al costat.</translation>
         </message>

@@ -1222,67 +1222,67 @@
             <translation>{words}: no se envió, porque se eliminó el robot {robot}.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>La capa {layer} no se puede situar en el recinto ({error}), así que sus obstáculos no se ven. Corrija su SRC, o quítele el papel.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The route</source>
             <translation>La ruta</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to}</source>
             <translation>El camino hasta {to}</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>El camino hasta {to} se sale de la superficie de vía.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is on</source>
             <translation>está sobre</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is {away:.2f} m from</source>
             <translation>está a {away:.2f} m de</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{layer} (feature {id})</source>
             <translation>{layer} (objeto {id})</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{leave} of {legs} legs leave the road surface.</source>
             <translation>{leave} de {legs} tramos se salen de la superficie de vía.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{off} of {points} points are not on a road surface.</source>
             <translation>{off} de {points} puntos están fuera de las superficies de vía.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{place} is not on a road surface.</source>
             <translation>{place} está fuera de las superficies de vía.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
             <translation>{spot} entra en la zona prohibida {name}. Elija un lugar o recorrido fuera.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Elija un lugar o recorrido al lado.</translation>
         </message>

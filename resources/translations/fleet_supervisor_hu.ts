@@ -1216,67 +1216,67 @@
             <translation>{words}: nem lett elküldve, mert a(z) {robot} robotot eltávolították.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>({x:.2f}, {y:.2f}) m</source>
             <translation>({x:.2f}, {y:.2f}) m</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The layer {layer} cannot be placed on the site ({error}), so obstacles in it are not seen. Correct its CRS, or take its role away.</source>
             <translation>A(z) {layer} réteg nem helyezhető a telephelyre ({error}), így az akadályai nem látszanak. Javítsa ki a vetületét, vagy vegye el a szerepét.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The route</source>
             <translation>Az útvonal</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to}</source>
             <translation>Az út ide: {to}</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>The way to {to} leaves the road surface.</source>
             <translation>A(z) {to} helyhez vezető út letér az útfelületről.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is on</source>
             <translation>rajta van:</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>is {away:.2f} m from</source>
             <translation>{away:.2f} m-re van ettől:</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{layer} (feature {id})</source>
             <translation>{layer} ({id}. elem)</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{leave} of {legs} legs leave the road surface.</source>
             <translation>{legs} szakaszból {leave} letér az útfelületről.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{off} of {points} points are not on a road surface.</source>
             <translation>{points} pontból {off} nincs útfelületen.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{place} is not on a road surface.</source>
             <translation>{place} nincs útfelületen.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} enters the keepout {name}. Choose a place or way outside it.</source>
             <translation>{spot} a(z) {name} tiltott területre ér. Válasszon helyet vagy utat rajta kívül.</translation>
         </message>
         <message>
-            <location filename="../../plugin/control/layer_checks.py" />
+            <location filename="../../plugin/control/keepout_checks.py" />
             <source>{spot} {where} {name}. Choose a place or way beside it.</source>
             <translation>{spot} {where} {name}. Válasszon helyet vagy utat mellette.</translation>
         </message>

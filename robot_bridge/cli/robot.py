@@ -16,10 +16,10 @@ from typing import TYPE_CHECKING, Annotated, Protocol
 import typer
 
 from ..core.errors import BridgeError
-from ..core.gateway_addresses import ClientCredentials
 from ..core.messages.base import check_robot_name
 from ..core.messages.robots import SetObject
-from ..core.parent_process import call_at_end_of_input
+from ..core.reconnection import ClientCredentials
+from ..core.systemd import call_at_end_of_input
 from ..reference_robot.agent import STEER_EVERY, Agent, AgentSettings, RequestSink, RobotMemory
 from ..reference_robot.body import BodyLimits, ScriptedObject, SimulatedVehicle
 from ..reference_robot.websocket_link import RobotWebSocketLink

@@ -19,7 +19,7 @@ import typer
 
 from ..core.errors import BridgeError
 from ..core.logs import LogFormat, LogLevel, set_up_log
-from ..core.parent_process import call_at_end_of_input, notify, watchdog_interval
+from ..core.systemd import call_at_end_of_input, notify, watchdog_interval
 from ..gateway.monitoring import freeze_permanent_objects
 from . import options
 

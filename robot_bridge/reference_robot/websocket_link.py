@@ -13,10 +13,10 @@ from websockets.frames import CloseCode
 
 from ..core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ..core.errors import AccessError, BridgeError
-from ..core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ..core.messages.administration import Gateways
 from ..core.messages.base import MessageError, to_json
 from ..core.messages.robots import Abort, Observed, OpAck, Ready, Request, Start
+from ..core.reconnection import ClientCredentials, GatewayAddresses
 from ..protocol import jsonrpc
 from ..protocol.codec import decode_answer, params_of
 from .agent import Agent

@@ -16,10 +16,10 @@ from websockets.frames import CloseCode
 
 from ...core.clock import ABORTS_WITHIN_S, LONGEST_PAUSE_S, StandstillWatch
 from ...core.errors import AccessError, BridgeError
-from ...core.gateway_addresses import ClientCredentials, GatewayAddresses
 from ...core.logs import log_and_continue
 from ...core.messages.base import MessageError
 from ...core.messages.robots import Abort
+from ...core.reconnection import ClientCredentials, GatewayAddresses
 from ...protocol import jsonrpc
 from .errors import LinkError
 from .settings import LinkSettings

@@ -9,7 +9,7 @@ import signal
 from collections.abc import Callable, Coroutine
 from typing import Any
 
-from ...core.parent_process import call_at_end_of_input, notify
+from ...core.systemd import call_at_end_of_input, notify
 from .adapter import Adapter
 from .client import LinkClient
 from .errors import FrameChangedError, LinkError

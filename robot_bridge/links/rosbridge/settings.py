@@ -9,7 +9,7 @@ from typing import Any, Literal
 from urllib.parse import urlsplit
 
 from ...core.errors import AccessError
-from ...core.gateway_addresses import ClientCredentials
+from ...core.reconnection import ClientCredentials
 from ..base.errors import LinkError
 from ..base.settings import LinkSettings
 from ..ros.errors import FaultError

@@ -12,8 +12,8 @@ import msgspec
 from msgspec import field
 
 from ...core.errors import AccessError
-from ...core.gateway_addresses import client_context
 from ...core.messages.base import ROBOT_NAME
+from ...core.reconnection import client_context
 from ..base.errors import LinkError
 from ..base.frames import FrameSettings, LinkFrame
 from ..base.settings import LinkSettings

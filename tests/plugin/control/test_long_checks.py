@@ -6,7 +6,7 @@ import threading
 from dataclasses import replace
 
 import pytest
-from fleet_supervisor.plugin.control.layer_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
+from fleet_supervisor.plugin.control.keepout_checks import KeepoutCheck, ObstacleCheck, SurfaceCheck
 from fleet_supervisor.plugin.ui import scheduling
 from fleet_supervisor.plugin.ui.errors import NotSentError
 from qgis.core import (

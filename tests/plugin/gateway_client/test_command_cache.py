@@ -18,7 +18,7 @@ from fleet_supervisor.plugin.gateway_client.command_cache import (
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
+from fleet_supervisor.robot_bridge.core.reconnection import GatewayAddresses
 
 WAY = [[0.5 * k, 20.0 + 0.25 * k] for k in range(600)]
 """Along 300 m of roads."""

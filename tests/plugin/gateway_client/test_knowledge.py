@@ -27,12 +27,12 @@ from fleet_supervisor.plugin.gateway_client.robot_states import STATES, RobotSta
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.assignment.plan import ConePlan, document_of
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 from fleet_supervisor.robot_bridge.core.messages.base import to_json
 from fleet_supervisor.robot_bridge.core.messages.commands import CommandReport, CommandState, CommandStep
 from fleet_supervisor.robot_bridge.core.messages.queues import queue_report
 from fleet_supervisor.robot_bridge.core.messages.records import placement_report
 from fleet_supervisor.robot_bridge.core.messages.safety import RobotState
+from fleet_supervisor.robot_bridge.core.reconnection import GatewayAddresses
 
 
 def test_the_same_order_is_kept_once_and_answered_once():

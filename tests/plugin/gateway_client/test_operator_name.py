@@ -8,7 +8,7 @@ import pytest
 from fleet_supervisor.plugin.gateway_client.fleet_state import UpdateBuffer
 from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
+from fleet_supervisor.robot_bridge.core.reconnection import GatewayAddresses
 
 
 @pytest.mark.parametrize(

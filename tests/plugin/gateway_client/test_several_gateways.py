@@ -11,7 +11,7 @@ from fleet_supervisor.plugin.gateway_client.connection_status import ConnectionP
 from fleet_supervisor.plugin.gateway_client.fleet_state import OperatorRequest
 from fleet_supervisor.plugin.settings.profile import GATEWAYS, GatewayConnection, KnownGateways
 from fleet_supervisor.robot_bridge.core.clock import steady_time
-from fleet_supervisor.robot_bridge.core.gateway_addresses import FleetGateways
+from fleet_supervisor.robot_bridge.core.reconnection import FleetGateways
 from qgis.core import QgsSettings
 
 from tests.plugin.conftest import SmallGateway

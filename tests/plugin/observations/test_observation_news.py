@@ -11,8 +11,8 @@ from fleet_supervisor.plugin.gateway_client.protocol import GatewayProtocol
 from fleet_supervisor.plugin.gateway_client.report_caches import ObservationCache
 from fleet_supervisor.plugin.ui.errors import GatewayLinkError
 from fleet_supervisor.robot_bridge.core.clock import ManualClock
-from fleet_supervisor.robot_bridge.core.gateway_addresses import GatewayAddresses
 from fleet_supervisor.robot_bridge.core.messages.records import ObservationState
+from fleet_supervisor.robot_bridge.core.reconnection import GatewayAddresses
 
 
 def told(number, state="pending", **more):

@@ -7,7 +7,7 @@ import hashlib
 import pytest
 
 from robot_bridge.core.errors import AccessError
-from robot_bridge.core.gateway_addresses import ClientCredentials, read_token
+from robot_bridge.core.reconnection import ClientCredentials, read_token
 from robot_bridge.gateway.auth.accounts import TokenKind, bearer, digest, new_token
 from robot_bridge.gateway.auth.client_connection import RateLimit
 from robot_bridge.gateway.auth.port import check_reach

@@ -7,7 +7,7 @@ import socket
 import pytest
 
 from robot_bridge.core.errors import FatalError, StoreError
-from robot_bridge.core.parent_process import notify, watchdog_interval
+from robot_bridge.core.systemd import notify, watchdog_interval
 from robot_bridge.gateway import monitoring as tasks
 from robot_bridge.gateway.monitoring import Counters
 from tests.support.patience import BUSY

@@ -7,8 +7,8 @@ import json
 
 import pytest
 
-from robot_bridge.core.gateway_addresses import ClientCredentials
 from robot_bridge.core.messages.robots import SetPosEnd
+from robot_bridge.core.reconnection import ClientCredentials
 from robot_bridge.links.base.adapter import Command
 from robot_bridge.links.base.errors import CommandRefusedError
 from robot_bridge.links.ros.effects import CancelGoals, RosAction

@@ -12,7 +12,7 @@ import pytest
 from websockets.asyncio.server import serve
 
 from robot_bridge.core.errors import AccessError
-from robot_bridge.core.gateway_addresses import ClientCredentials
+from robot_bridge.core.reconnection import ClientCredentials
 from robot_bridge.gateway.auth import certificates
 from robot_bridge.links.base.errors import LinkError
 from robot_bridge.links.rosbridge.adapter import load

@@ -9,7 +9,7 @@ import json
 import pytest
 from websockets.sync.client import connect
 
-from robot_bridge.core.gateway_addresses import ClientCredentials
+from robot_bridge.core.reconnection import ClientCredentials
 from robot_bridge.links.rosbridge.connection import RosbridgeConnection, Subscription
 from robot_bridge.links.rosbridge.settings import Server
 from tests.support.bridge.bridge_programs import wait_until

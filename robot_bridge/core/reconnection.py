@@ -1,4 +1,4 @@
-"""Addresses of a fleet's gateways at a robot, link or desk: the next one, reconnect back-off, token, TLS."""
+"""Reconnection to a fleet's gateways: addresses to try, back-off, token and TLS of robots, links and desks."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parent process of a program: notifications to systemd (sd_notify(3)), and the end of standard input."""
+"""Notifications to systemd (sd_notify(3)), and the end of standard input when the parent process is gone."""
 
 from __future__ import annotations
 

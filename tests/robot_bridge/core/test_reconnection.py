@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from robot_bridge.core.gateway_addresses import DESK_PACE, ROBOT_PACE, SPREAD, GatewayAddresses
 from robot_bridge.core.messages.administration import Gateways
 from robot_bridge.core.messages.base import LONGEST_ADDRESS, MOST_GATEWAYS
 from robot_bridge.core.messages.robots import OpAck, Start
+from robot_bridge.core.reconnection import DESK_PACE, ROBOT_PACE, SPREAD, GatewayAddresses
 from robot_bridge.protocol.codec import decode_answer
 
 A, B, C = (f"ws://{name}:8765/robot" for name in ("127.0.0.1", "south.example.org", "[::1]"))
