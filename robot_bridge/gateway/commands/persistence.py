@@ -11,6 +11,7 @@ from collections.abc import AsyncIterator, Callable, Coroutine, Iterable, Mappin
 from typing import Any, NamedTuple, Protocol, TypeVar
 
 from sqlalchemy import Connection
+from sqlalchemy.exc import ProgrammingError
 
 from ...core.errors import RefusedError, StoreError, UncertainError
 from ...core.logs import log_and_continue
@@ -26,6 +27,8 @@ from ..storage.repositories.queues import QueueHold
 from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from ..storage.rows import BatchedWork, do_together
 from .active_command import ActiveCommand, CommandOrder, Recall, because, note
+
+log = logging.getLogger(__name__)
 
 # --- Writing commands and their messages in SA, in one transaction; called in the database's thread
 # Nothing here changes anything but the database, so that a transaction can be repeated.
@@ -208,6 +211,20 @@ def write_driven(connection: Connection, driven: Mapping[str, float]) -> None:
     commands.save_driven(connection, driven)
 
 
+def write_bare_aborts(
+    connection: Connection, robots: Sequence[str], withdrawn: Sequence[str], *, emergency: bool
+) -> None:
+    """Write Aborts that belong to no command, in place of operations ``withdrawn``: SA alone is needed."""
+    try:
+        with connection.begin_nested():
+            answers.remove_unlocked(connection, robots, withdrawn)
+    except ProgrammingError as error:
+        # A gateway's account of an older set-up may lock no rows. Without a lock it waits for those who do.
+        log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
+        answers.remove_kinds(connection, robots, withdrawn)
+    answers.add_answers(connection, [(robot, Abort(emergency=emergency)) for robot in robots])
+
+
 def opened(stored: StoredCommand, message: Command | None = None) -> ActiveCommand:
     """Return a stored command as an open one, not judged yet."""
     report = stored.report
@@ -371,8 +388,6 @@ class _FencedWork(BatchedWork[Any]):
 
 
 # --- Messages of a robot on its commands, in order: acknowledgements stored, positions judged after them
-
-log = logging.getLogger(__name__)
 
 MOST_WAITING = 500
 """messages of one robot that may wait; beyond that the oldest positions are dropped."""

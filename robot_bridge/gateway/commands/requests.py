@@ -7,6 +7,7 @@ import logging
 import uuid
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 from ...core.errors import DataRefusedError, RefusedError, StoreError, listed_names
 from ...core.logs import log_and_continue
@@ -27,13 +28,16 @@ from ..model.robots import Robots
 from ..site.places import ServedSite, check_places, command_in_site_frame, places_of, targets_in_site_frame
 from ..storage.database import Database
 from ..storage.repositories import commands
+from ..storage.repositories.requests import ORDERS
+from . import persistence
 from .active_command import CommandOrder
 from .service import CommandService
 
 log = logging.getLogger(__name__)
 
 STORED_WITHIN = 1.0
-"""seconds after which an Abort that is not stored yet is sent over open connections as well."""
+"""seconds after which an Abort that is not stored yet is sent over open connections as well, and written
+alone for robots that read the database: its command needs tables that somebody may have locked."""
 STORED_LATER = "it is stored and sent as soon as the database takes it"
 
 
@@ -112,20 +116,17 @@ class CommandRequests:
         return Commands(await self._database.run(commands.newest, request.robot, request.limit))
 
     async def _issue_aborts(self, orders: list[CommandOrder]) -> list[CommandReport]:
-        """Store Aborts; those that are not stored within a second are sent over open connections as well."""
+        """Store Aborts; those that are not stored within a second are sent by themselves as well."""
         storing = asyncio.ensure_future(self._commands.issue(orders))
         await asyncio.wait({storing}, timeout=STORED_WITHIN)
         sent: list[str] = []
         if not storing.done() or isinstance(storing.exception(), StoreError):
             sent = [order.robot for order in orders if self._send_unstored(order)]
+            sent += await self._write_unstored(orders)
         try:
             return await storing
         except StoreError as error:
-            recipients = (
-                f"sent to {listed_names(sent)} over the open connection all the same"
-                if sent
-                else "sent to no robot"
-            )
+            recipients = f"sent to {listed_names(sent)} all the same" if sent else "sent to no robot"
             then = "" if isinstance(error, DataRefusedError) else f"; {STORED_LATER}"
             raise StoreError(f"{error}. The Abort is not stored; it was {recipients}{then}") from error
 
@@ -135,6 +136,23 @@ class CommandRequests:
             with log_and_continue(log, f"sending robot {order.robot!r} an Abort that is not stored"):
                 is_sent |= link(order.robot, f"abort-{order.command}")
         return is_sent
+
+    async def _write_unstored(self, orders: list[CommandOrder]) -> list[str]:
+        """Write Aborts without their commands for robots on SQL; return those for which that was done."""
+        readers = [order for order in orders if self._robots.get(order.robot).link == "sql"]
+        done: list[str] = []
+        for withdrawn in ((), ORDERS):
+            # One that aborts a single command withdraws no other.
+            robots = [order.robot for order in readers if (order.aborts is None) == bool(withdrawn)]
+            work = partial(persistence.write_bare_aborts, emergency=False)
+            try:
+                if robots:
+                    # What keeps the commands from being stored may keep the other connection waiting.
+                    await self._database.run_aside(work, robots, withdrawn)
+                    done += robots
+            except StoreError as error:
+                log.error("Aborts of %s cannot be written: %s", listed_names(robots), error)
+        return done
 
     async def _issued_before(self, command: str, refusal: RefusedError) -> CommandReport:
         """Return the present state of a command if it was issued before; raises ``refusal`` otherwise.

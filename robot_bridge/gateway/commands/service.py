@@ -124,7 +124,7 @@ class CommandService(CommandReader):
         """
         known = True
         if sa_id in self._open.queued:
-            await to_its_end(self._delivered([sa_id]))
+            await to_its_end(self._hand_over(robot, sa_id))
             known = any(command.sa_id == sa_id for command in self._open.of(robot))
         else:
             await self._held.confirm([robot])
@@ -335,13 +335,22 @@ class CommandService(CommandReader):
                 await self._held.run([robot], write)
                 self._events.publish(OutboxChanged(robot))
 
+    async def _hand_over(self, robot: str, sa_id: int) -> None:
+        async with self._held.of([robot]):
+            # What waits from before an Abort that is not stored yet is ended by it, not sent behind it.
+            await self._store_unstored([robot])
+            await self._save_delivered([sa_id])
+
     async def _delivered(self, sa_ids: list[int]) -> None:
         # By now some may have a later state.
         robots = {self._open.queued[id].report.robot for id in sa_ids if id in self._open.queued}
         async with self._held.of(robots):
-            queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
-            now = self._clock.time()
-            await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
+            await self._save_delivered(sa_ids)
+
+    async def _save_delivered(self, sa_ids: list[int]) -> None:
+        queued = [self._open.queued[id] for id in sa_ids if id in self._open.queued]
+        now = self._clock.time()
+        await self._save([command.step(CommandState.DELIVERED, now, GATEWAY) for command in queued])
 
     async def _acknowledge(self, robot: str, ack: OpAck) -> float | None:
         async with self._held.of([robot]):

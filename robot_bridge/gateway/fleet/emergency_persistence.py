@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import errno
 import hashlib
@@ -17,7 +18,6 @@ from pathlib import Path
 from typing import Any
 
 from sqlalchemy import URL, Connection
-from sqlalchemy.exc import ProgrammingError
 
 from ...core.errors import BridgeError, DataRefusedError, StoreError, UncertainError
 from ...core.files import write_state, write_state_into
@@ -26,6 +26,7 @@ from ...core.logs import TroubleNews
 from ...core.messages.base import MessageError, check_command_id
 from ...core.messages.robots import Abort, SetPath, SetPosEnd
 from ..commands.active_command import CommandOrder
+from ..commands.persistence import write_bare_aborts
 from ..commands.service import CommandService
 from ..storage.database import Database
 from ..storage.dialects import sqlite_file_of
@@ -170,13 +171,16 @@ def _stop(noted: Any) -> StopRow | None:
     return StopRow(id, at, by, reason if isinstance(reason, str) else None)
 
 
-# --- Storing an emergency stop and the Aborts of its robots, whatever is wrong with one robot ---
+# --- Storing an emergency stop and the Aborts of its robots, whatever is wrong with one robot or table ---
 # All in one transaction where possible. Else every robot is first sent a bare Abort, which belongs to no
-# command: inserts alone, which wait for no lock. Then the robots are halved until the failing ones are found:
-# each group is a transaction of its own.
+# command: inserts into one table, over a second connection, which wait for no lock. Then the robots are
+# halved until the failing ones are found: each group is a transaction of its own.
 
 MOTIONS = (SetPosEnd, SetPath)
 HELD_BACK = tuple(cls.__name__ for cls in MOTIONS)
+BARE_AFTER_S = 1.0
+"""seconds after which robots that only read the database are sent a bare Abort of a stop that is not stored
+yet: somebody may have a table locked that they do not read."""
 
 
 class StopWriter:
@@ -187,8 +191,8 @@ class StopWriter:
         self._database = database
         self._news = TroubleNews()
         self._owed: dict[str, StopRow] = {}
-        self._have_bare: set[str] = set()
-        """robots that were sent a bare Abort."""
+        self._have_bare: dict[str, str] = {}
+        """robots that were sent a bare Abort, with the id of its stop."""
 
     @property
     def is_owing(self) -> bool:
@@ -205,22 +209,31 @@ class StopWriter:
             order for robot, stop in self._owed.items() for order in orders_of(stop, [robot])
         )
         self._owed.clear()
+        self._have_bare.clear()
         self._news = TroubleNews()
 
     def owe(self, stop: StopRow, robots: Sequence[str]) -> None:
         """Have the next :meth:`write_owed` send ``robots`` the Abort of ``stop``."""
         self._owed.update(dict.fromkeys(robots, stop))
-        self._have_bare.difference_update(robots)
+        for robot in robots:
+            self._have_bare.pop(robot, None)
 
-    async def write(self, stop: StopRow, robots: Sequence[str]) -> bool:
-        """Store a stop with the Aborts of ``robots``.
+    async def write(self, stop: StopRow, robots: Sequence[str], readers: Sequence[str] = ()) -> bool:
+        """Store a stop with the Aborts of ``robots``, of which ``readers`` hear of it by the database alone.
 
         Return false where the database refuses the stop as data; the Aborts are stored all the same.
 
         :raises StoreError: when the database cannot be used; the stop must then be written again.
         """
+        issuing = asyncio.ensure_future(
+            self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
+        )
+        issuing.add_done_callback(lambda done: done.cancelled() or done.exception())
+        await asyncio.wait({issuing}, timeout=BARE_AFTER_S)
+        if not issuing.done():
+            await self._add_bare(stop, readers)
         try:
-            await self._commands.issue(orders_of(stop, robots), partial(_write_stop, stop, robots))
+            await issuing
             return True
         except UncertainError:
             raise
@@ -229,10 +242,9 @@ class StopWriter:
             # On a full disk this is retried every few seconds for as long as that lasts.
             if self._news.has(stop.id, str(error)):
                 _explain(error, text)
+        self._owed.update(dict.fromkeys(robots, stop))
+        await self._add_bare(stop, robots)
         is_listed = await self._list(stop)
-        self.owe(stop, robots)
-        failed = await self._halve(robots, self._send_bare)
-        self._have_bare.update(set(robots).difference(failed))
         await self.write_owed()
         return is_listed
 
@@ -251,16 +263,17 @@ class StopWriter:
             failed = await self._halve(sorted(robots), partial(self._issue, stop))
             for robot in robots:
                 error = failed.get(robot)
-                if error is None or await self._is_settled(robot, error):
+                if error is None or await self._is_settled(stop, robot, error):
                     self._owed.pop(robot, None)
 
-    async def _is_settled(self, robot: str, error: Exception) -> bool:
+    async def _is_settled(self, stop: StopRow, robot: str, error: Exception) -> bool:
         if isinstance(error, FencedError):
             # The gateway that has the robot now knows of the stop, and sends it that Abort.
             return True
         if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
             return False
-        if robot not in self._have_bare and await self._halve([robot], self._send_bare):
+        await self._add_bare(stop, [robot])
+        if self._have_bare.get(robot) != stop.id:
             return False
         log.error("robot %r is sent an Abort that no command follows: look whether it stands", robot)
         return True
@@ -268,8 +281,20 @@ class StopWriter:
     async def _issue(self, stop: StopRow, robots: Sequence[str]) -> None:
         await self._commands.issue(orders_of(stop, robots), partial(_withdraw_motions, robots))
 
+    async def _add_bare(self, stop: StopRow, robots: Sequence[str]) -> None:
+        """Send a bare Abort to those of ``robots`` that were sent none of this stop; what fails is logged."""
+        without = [robot for robot in robots if self._have_bare.get(robot) != stop.id]
+        try:
+            failed = await self._halve(without, self._send_bare)
+        except StoreError as error:
+            if self._news.has("bare", str(error)):
+                _explain(error, "Aborts of an emergency stop cannot be stored")
+            return
+        self._have_bare.update((robot, stop.id) for robot in without if robot not in failed)
+
     async def _send_bare(self, robots: Sequence[str]) -> None:
-        await self._database.run(_write_bare, robots)
+        # What keeps the stop itself from being stored may keep the other connection waiting.
+        await self._database.run_aside(_write_bare, robots)
 
     async def _list(self, stop: StopRow) -> bool:
         """Store the stop alone; in ASCII and without a reason where the database refuses it."""
@@ -296,7 +321,8 @@ class StopWriter:
         except Exception as error:
             await self._database.run(_use)
             if len(robots) == 1:
-                _explain(error, f"the Abort of robot {robots[0]!r} cannot be stored")
+                if self._news.has(robots[0], str(error)):
+                    _explain(error, f"the Abort of robot {robots[0]!r} cannot be stored")
                 return {robots[0]: error}
         half = len(robots) // 2
         return {**await self._halve(robots[:half], write), **await self._halve(robots[half:], write)}
@@ -327,14 +353,7 @@ def _withdraw_motions(robots: Sequence[str], connection: Connection) -> None:
 
 
 def _write_bare(connection: Connection, robots: Sequence[str]) -> None:
-    try:
-        with connection.begin_nested():
-            requests.remove_unlocked(connection, robots, HELD_BACK)
-    except ProgrammingError as error:
-        # The account of an older set-up may not lock rows. Without a lock this waits for those who do.
-        log.warning("an administrator has to run: robot-bridge database upgrade (%s)", error.orig)
-        requests.remove_kinds(connection, robots, HELD_BACK)
-    requests.add_answers(connection, [(robot, Abort(emergency=True)) for robot in robots])
+    write_bare_aborts(connection, robots, HELD_BACK, emergency=True)
 
 
 def _use(connection: Connection) -> None:

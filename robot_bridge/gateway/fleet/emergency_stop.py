@@ -449,7 +449,9 @@ class EmergencyStops:
     async def _store(self) -> None:
         while self._unstored:
             stop = self._unstored[0]
-            if not await self._writer.write(stop, self._robots.commanded()):
+            robots = self._robots.commanded()
+            readers = [robot for robot in robots if self._robots.get(robot).link == "sql"]
+            if not await self._writer.write(stop, robots, readers):
                 self._unlisted.append(stop)
             self._unstored.remove(stop)
             with log_and_continue(log, "noting that an emergency stop is stored"):

@@ -101,6 +101,11 @@ LARGEST_GROUP = 64
 """Pieces of work in one transaction: a commit waits for the disk, and they may as well wait together."""
 ATTEMPTS = 5
 WRONG_AT_ONCE_S = 1.0
+LOCKED_FOR_S = 5.0
+"""How long after work that waited for a lock in vain other work waits for locks only briefly: somebody who is
+ended by nobody here, such as an administrator, may have a table for minutes, and most work needs another."""
+LOCKED_TOGETHER_S = 2.0
+"""How long work that waits together may wait for locks, one after the other: then one of a kind is enough."""
 
 
 class DatabaseJob(NamedTuple):
@@ -123,7 +128,8 @@ class DatabaseWorker:
     What waits together is committed together, reported in the order in which it was done, and fails by
     itself: it is done again by halves.
     A transaction that the database gave up, or whose connection turned out to be dead before its commit, is
-    done again: work changes nothing but the database.
+    done again: work changes nothing but the database. What needs something that somebody else has locked
+    fails, and holds up nothing else for longer than two seconds.
     """
 
     def __init__(
@@ -137,6 +143,7 @@ class DatabaseWorker:
         self._jobs: SimpleQueue[DatabaseJob | None] = SimpleQueue()
         self._connection: Connection | None = None
         self._since: float | None = None
+        self._locked_until = 0.0
         self._lock = threading.Lock()
         self._thread: threading.Thread | None = None
         self.backend: int | None = None
@@ -197,6 +204,8 @@ class DatabaseWorker:
         try:
             return [(jobs[done.number], done.result, None) for done in self._run_with_retry(jobs)]
         except StoreError as error:
+            if len(jobs) > 1 and self._is_locked(error.__cause__):
+                return self._one_by_one(jobs)
             # One piece of work may be at fault; but not each of them is to wait for the database as long.
             at_once = time.monotonic() - began < WRONG_AT_ONCE_S
             one_is_wrong = _is_of_work(error) or (at_once and self._connection is not None)
@@ -213,6 +222,22 @@ class DatabaseWorker:
         half = len(jobs) // 2
         return [*self._do(jobs[:half]), *self._do(jobs[half:])]
 
+    def _one_by_one(self, jobs: list[DatabaseJob]) -> list[Outcome]:
+        """Do jobs of which some need what somebody has locked: only those fail."""
+        began = time.monotonic()
+        outcomes: list[Outcome] = []
+        locked: dict[tuple[Any, ...], BaseException] = {}
+        for job in jobs:
+            kind = (job.work, *(one for one in job.arguments if callable(one)))
+            if kind in locked and time.monotonic() - began > LOCKED_TOGETHER_S:
+                outcomes.append((job, None, locked[kind]))
+                continue
+            outcomes += self._do([job])
+            error = outcomes[-1][2]
+            if error is not None and self._is_locked(error.__cause__):
+                locked[kind] = error
+        return outcomes
+
     def _run_with_retry(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""
         for attempt in range(1, ATTEMPTS + 1):
@@ -225,6 +250,8 @@ class DatabaseWorker:
                 raise DataRefusedError(f"database {self._where} refuses a value: {error}") from error
             except SQLAlchemyError as error:
                 if not self._worth_repeating(error, attempt, fresh, time.monotonic() - began):
+                    if self._is_locked(error):
+                        self._locked_until = time.monotonic() + LOCKED_FOR_S
                     raise self._explain(error) from error
         raise AssertionError("the last attempt ended the loop")
 
@@ -234,27 +261,37 @@ class DatabaseWorker:
         if self._dialect.deadlocked(error):
             return True
         if self._dialect.kept_waiting(error):
-            return self._end_blockers()
+            # Who is no robot is not ended, and may keep what is locked for minutes.
+            return self._end_blockers() or (attempt == 1 and not self._waits_briefly)
         # The server was restarted since this connection was last used; on a new one it may well go on.
         patience = self._patience or took
         return error.connection_invalidated and not fresh and took < patience
 
+    @property
+    def _waits_briefly(self) -> bool:
+        return time.monotonic() < self._locked_until
+
+    def _is_locked(self, error: BaseException | None) -> bool:
+        return isinstance(error, DBAPIError) and self._dialect.kept_waiting(error)
+
     def _end_blockers(self) -> bool:
-        """End robots' transactions that may hold what the gateway waits for; tell whether that was done."""
+        """End robots' transactions that may hold what the gateway waits for; tell whether there were any."""
         try:
             with self._connected().begin():
-                self._offences.add_blocking(blocking_robots(self._connected(), BLOCKING_S))
-                end_blocking_sessions(self._connected(), BLOCKING_S)
+                robots = blocking_robots(self._connected(), BLOCKING_S)
+                self._offences.add_blocking(robots)
+                ended = end_blocking_sessions(self._connected(), BLOCKING_S)
         except SQLAlchemyError as error:
             log.warning("database %s: %s", self._where, self._dialect.cause(error))
             return False
         finally:
             self._rest()
-        return True
+        return ended or bool(robots)
 
     def _attempt(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
         connection = self._connected()
         asked = [(job.work, job.arguments) for job in jobs]
+        self._dialect.wait_for_locks(connection, briefly=self._waits_briefly)
         try:
             if jobs[0].alone:
                 done = do_together(connection, asked)

@@ -32,6 +32,9 @@ from ...core.errors import in_one_line
 CONNECT_TIMEOUT_S = 5
 LOCK_TIMEOUT_S = 1
 """How long the gateway waits for a lock before it makes way (see :mod:`.roles.blocking_sessions`)."""
+BRIEF_LOCK_TIMEOUT_S = 0.02
+"""How long it waits while somebody is known to keep something locked: as long as another program's commit."""
+LOCKED = "somebody else has it locked: that goes on as soon as their transaction ends;"
 PATIENCE_S = 10
 """How long one statement may take: a server that is dead or frozen must not hold up the gateway for ever."""
 
@@ -99,6 +102,12 @@ class Dialect:
         """Tell whether somebody else held a lock for too long."""
         return False
 
+    def wait_for_locks(self, connection: Connection, *, briefly: bool) -> None:
+        """Have what comes next on ``connection`` wait for locks as usual, or only briefly.
+
+        Nothing where the kind of database has no such limit.
+        """
+
     def refuses_data(self, error: SQLAlchemyError) -> bool:
         """Tell whether the values were wrong, and not the database out of order."""
         if isinstance(error, (DataError, IntegrityError)):
@@ -157,6 +166,22 @@ class MariaDB(Dialect):
 
     def kept_waiting(self, error: DBAPIError) -> bool:
         return _code(error) == _MARIADB_LOCK_TIMEOUT
+
+    def wait_for_locks(self, connection: Connection, *, briefly: bool) -> None:
+        if connection.info.get("briefly", False) == briefly:
+            return
+        seconds = 0 if briefly else LOCK_TIMEOUT_S
+        driver: Any = connection.connection.driver_connection
+        # A connection that was lost is told of by the first statement.
+        with contextlib.suppress(connection.dialect.loaded_dbapi.Error), driver.cursor() as cursor:
+            # Rows as usual: for what skips locked ones MariaDB has an error where nobody waits at all.
+            cursor.execute(f"set session lock_wait_timeout = {seconds}")
+            connection.info["briefly"] = briefly
+
+    def advice_on(self, error: SQLAlchemyError) -> str:
+        if isinstance(error, DBAPIError) and self.kept_waiting(error):
+            return f"{LOCKED} show full processlist and information_schema.innodb_trx name who it is"
+        return self.advice
 
     def refuses_data(self, error: SQLAlchemyError) -> bool:
         return super().refuses_data(error) or _code(error) in _REFUSALS
@@ -262,7 +287,21 @@ class PostgreSQL(Dialect):
     def kept_waiting(self, error: DBAPIError) -> bool:
         return getattr(error.orig, "sqlstate", None) == _POSTGRESQL_LOCK_TIMEOUT
 
+    def wait_for_locks(self, connection: Connection, *, briefly: bool) -> None:
+        if connection.info.get("briefly", False) == briefly:
+            return
+        seconds = BRIEF_LOCK_TIMEOUT_S if briefly else LOCK_TIMEOUT_S
+        driver: Any = connection.connection.driver_connection
+        # A connection that was lost is told of by the first statement.
+        with contextlib.suppress(driver_error()):
+            # Outside of a transaction, which would take it back where it fails.
+            driver.autocommit = True
+            driver.execute(f"set lock_timeout = {round(seconds * 1000)}")
+            connection.info["briefly"] = briefly
+
     def advice_on(self, error: SQLAlchemyError) -> str:
+        if isinstance(error, DBAPIError) and self.kept_waiting(error):
+            return f"{LOCKED} pg_blocking_pids and pg_stat_activity name who it is"
         if getattr(getattr(error, "orig", None), "sqlstate", None) == _READ_ONLY:
             return (
                 "the server answers and takes no writes: have default_transaction_read_only off there, or "

@@ -1,4 +1,4 @@
-"""An Abort goes out over an open connection though the database takes nothing; whoever asked is told."""
+"""An Abort goes out though the database takes nothing, or has a table locked; whoever asked is told."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import sqlite3
 
 import pytest
 
+from tests.support.databases.database_client import DatabaseClient
+from tests.support.robots.robot_wires import SqlRobot
 from tests.support.wire import RefusedError
 
 
@@ -50,3 +52,89 @@ def test_an_abort_that_cannot_be_stored_is_sent_and_refused_visibly(bridge, aske
     robot.say(heard["id"])
     robot.say(robot.wait_for("Abort", 30.0)["id"])
     assert desk.wait_for_step("target-it-1", "aborted")
+
+
+LOCKS = {
+    "postgresql": ("begin", "lock table {} in access exclusive mode", "rollback"),
+    "mariadb": ("lock tables {} write", "unlock tables"),
+}
+
+
+@pytest.fixture(params=sorted(LOCKS))
+def served(start_bridge, sample_site, new_database, request):
+    bridge = start_bridge(sample_site, new_database(request.param))
+    yield bridge
+    bridge.end()
+
+
+@contextlib.contextmanager
+def tables_locked(bridge, *tables):
+    """Hold tables as an administrator's session does that adds a column, or was left in a transaction."""
+    kind = bridge.database.partition(":")[0]
+    joined = ", ".join(tables) if kind == "postgresql" else " write, ".join(tables)
+    *begin, end = LOCKS[kind]
+    with contextlib.closing(DatabaseClient(bridge.database)) as client:
+        for statement in begin:
+            client.sql(statement.format(joined))
+        yield
+        client.sql(end)
+
+
+@pytest.fixture
+def reader(served):
+    """A robot on SQL that drives to a target."""
+    robot = SqlRobot(served.database, "s1")
+    robot.ask("Ready", {"magic": 1})
+    robot.hear("SetMap")
+    desk = served.desk()
+    desk.send("target-it-1", "s1", "SetPosEnd", x=50.0, y=40.0)
+    robot.hear("SetPosEnd")
+    desk.wait_for_step("target-it-1", "acknowledged")
+    yield robot
+    robot.close()
+
+
+def test_a_stop_comes_to_robots_on_sql_while_tables_are_locked_that_they_do_not_read(served, reader):
+    desk = served.desk()
+    with tables_locked(served, "commands", "emergency_stops"):
+        state = desk.ask("emergency_stop", {"command": "stop-0001", "reason": "smoke"}, 30.0)
+        assert (state["in_force"], state["stored"]) == (True, False)
+        assert reader.hear("Abort") == {"emergency": True}
+    desk.until(lambda: desk.emergency["stored"], 60.0)
+    assert reader.hear("Abort") == {"emergency": True}
+    desk.wait_for_step("target-it-1", "aborted")
+
+
+@pytest.mark.parametrize("whom", [{"robot": "s1"}, {"aborts": "target-it-1"}])
+def test_an_abort_comes_to_a_robot_on_sql_while_no_command_can_be_stored(served, reader, whom):
+    desk = served.desk()
+    params = {"command": "abort-it-1", **whom}
+    text = r"somebody else has it locked.*The Abort is not stored; it was sent to s1 all the same; it is "
+    with tables_locked(served, "commands"):
+        with pytest.raises(RefusedError, match=text):
+            desk.ask("abort", params, 30.0)
+        assert reader.hear("Abort") == {"emergency": False}
+    assert reader.hear("Abort") == {"emergency": False}
+    desk.wait_for_step("target-it-1", "aborted")
+
+
+def test_what_one_session_has_locked_keeps_nobody_from_what_is_not_locked(served, reader):
+    """Robots come in and are shown, and desks are answered, whatever waits for the table beside them."""
+    driven, desk = served.robot("r1"), served.desk()
+    driven.plug_in(1)
+    desk.send("target-it-2", "r1", "SetPosEnd", x=50.0, y=40.0)
+    target = driven.wait_for("SetPosEnd")
+    desk.wait_for_step("target-it-2", "delivered")
+    with tables_locked(served, "commands"):
+        driven.say(target["id"])
+        asked = [desk.begin("get_commands", {"limit": 5}) for _ in range(3)]
+        new = served.robot("r2")
+        assert new.ask("Ready", {"magic": 2}, seconds=30.0)["ok"]
+        assert new.wait_for("SetMap")
+        for one in asked:
+            with pytest.raises(RefusedError, match="somebody else has it locked"):
+                desk.answer(one, 30.0)
+    # It is asked again for what could not be stored.
+    driven.say(driven.wait_for("SetPosEnd", 30.0)["id"])
+    desk.wait_for_step("target-it-2", "acknowledged")
+    assert len(desk.ask("get_commands", {"limit": 5})["commands"]) == 2

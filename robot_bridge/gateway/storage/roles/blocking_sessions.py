@@ -58,15 +58,17 @@ BLOCKING_S = 1
 """How long one may take that keeps the gateway waiting."""
 
 
-def end_blocking_sessions(connection: Connection, seconds: int = PATIENCE_S) -> None:
-    """End the connections of robots whose transaction is older than ``seconds``.
+def end_blocking_sessions(connection: Connection, seconds: int = PATIENCE_S) -> bool:
+    """End the connections of robots whose transaction is older than ``seconds``; tell whether any was.
 
-    Does nothing on a database in which robots have no accounts.
+    MariaDB tells it of those that somebody prepared and left alone. Does nothing on a database in which
+    robots have no accounts.
     """
     if connection.dialect.name == "postgresql":
         found = "select to_regprocedure('for_robots.end_stuck(integer)') is not null"
         if connection.execute(text(found)).scalar_one():
-            connection.execute(text("select for_robots.end_stuck(:seconds)"), {"seconds": seconds})
+            call = text("select for_robots.end_stuck(:seconds)")
+            return bool(connection.execute(call, {"seconds": seconds}).scalar_one())
     elif connection.dialect.name in ("mariadb", "mysql"):
         found = (
             "select count(*) from information_schema.routines "
@@ -74,22 +76,25 @@ def end_blocking_sessions(connection: Connection, seconds: int = PATIENCE_S) -> 
         )
         if connection.execute(text(found)).scalar_one():
             connection.execute(text("call end_stuck_robots(:seconds)"), {"seconds": seconds})
-            _roll_back_forsaken(connection, seconds)
+            return _roll_back_forsaken(connection, seconds)
+    return False
 
 
-def _roll_back_forsaken(connection: Connection, seconds: int) -> None:
+def _roll_back_forsaken(connection: Connection, seconds: int) -> bool:
     """Roll back what somebody prepared by XA and left: its locks outlive even a restart of the server.
 
     MariaDB cannot forbid XA to an account, nor tell whose such a transaction is; the bridge makes none.
+    Return whether there was any.
     """
     if not connection.execute(text("select forsaken(:seconds)"), {"seconds": seconds}).scalar_one():
-        return
+        return False
     found = connection.execute(text("xa recover format = 'sql'")).all()
     # XA ROLLBACK is refused inside a transaction, and without autocommit there is always one.
     statements = ["set autocommit = 1", *(f"xa rollback {row[3]}" for row in found), "set autocommit = 0"]
     for statement in statements:
         with contextlib.suppress(DBAPIError):
             connection.exec_driver_sql(statement, execution_options={"no_parameters": True})
+    return True
 
 
 # --- Robots' accounts that lose their connections for a while: who blocks the others, locked out, let in

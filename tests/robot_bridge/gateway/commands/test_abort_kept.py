@@ -70,6 +70,16 @@ async def test_what_was_not_fetched_is_taken_back(driving, lose):
     assert driving.waiting("r1") == ["Abort"]
 
 
+async def test_what_waits_to_be_sent_is_ended_by_it_and_not_sent_behind_it(driving, lose):
+    """Over an open connection the robot has the Abort already, and would drive off again."""
+    await driving.send("next")
+    (target,) = await driving.fleet.outboxes.outbox("r1", 0)
+    await abort_in_vain(driving, lose)
+    assert await driving.fleet.outboxes.mark_sending("r1", target.id) is False
+    assert driving.waiting("r1") == ["Abort"]
+    assert (await driving.states())["next"] == "aborted"
+
+
 async def test_asked_for_again_it_is_one(driving, lose):
     await abort_in_vain(driving, lose)
     report = await driving.fleet.orders.abort(AbortTask("command-abort", robot="r1"), "Ada")

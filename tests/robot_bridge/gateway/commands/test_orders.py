@@ -215,7 +215,7 @@ async def test_an_abort_that_is_stored_is_sent_by_the_outbox_alone(two, orders):
 
 @pytest.mark.parametrize(
     ("connected", "whom"),
-    [(["r1"], "sent to r1 over the open connection all the same"), ([], "sent to no robot")],
+    [(["r1"], "sent to r1 all the same"), ([], "sent to no robot")],
 )
 async def test_an_abort_that_no_database_takes_is_sent_over_open_connections(
     orders, monkeypatch, connected, whom
@@ -246,7 +246,7 @@ async def test_an_abort_that_is_sent_by_its_op_goes_over_open_connections_too_an
     asked = orders.send(Send("command-a", "r1", "SetPosEnd", TARGET), "Ada")
     assert await refusal(asked, StoreError) == "the database is away"
     asked = orders.send(Send("abort-0001", "r1", "Abort", {}), "Ada")
-    assert "sent to r1 over the open connection" in await refusal(asked, StoreError)
+    assert "sent to r1 all the same" in await refusal(asked, StoreError)
     assert connections.sent == others.sent == [("r1", "abort-abort-0001")]
 
 

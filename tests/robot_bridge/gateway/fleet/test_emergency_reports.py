@@ -271,7 +271,7 @@ async def test_a_stop_is_in_force_still_where_an_older_state_of_the_database_was
 
 
 async def test_a_stop_is_in_force_whatever_goes_wrong_as_it_is_stored(two, gateway, caplog, monkeypatch):
-    async def write(_stop, _robots):
+    async def write(*_):
         raise RuntimeError("unforeseen")
 
     emergency = gateway.fleet.emergency
@@ -301,7 +301,7 @@ async def test_a_noted_stop_is_in_force_at_the_next_gateway_which_stores_it(two,
     ]
     assert two.sql("select id from emergency_stops order by id") == [("stop-0001",), ("stop-0002",)]
     await gateway.until(["stop-0002"])
-    assert two.waiting("r1") == ["Abort"]
+    assert two.waiting("r1") == ["Abort"] * 2
 
 
 async def test_a_noted_stop_that_was_stored_and_cleared_is_not_made_again(two, gateway, caplog):

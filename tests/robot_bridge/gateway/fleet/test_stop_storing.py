@@ -54,6 +54,8 @@ class Database:
             raise error
         return await self.database.run(work, *arguments, **more)
 
+    run_aside = run
+
 
 class Storing:
     """A writer of stops on the yard, on whose book and database errors can be set."""
@@ -181,7 +183,7 @@ async def test_an_account_that_may_lock_nothing_waits_and_says_who_mends_that(
     assert storing_on.yard.waiting("r3") == ["Abort"]
     assert (
         "an administrator has to run: robot-bridge database upgrade (permission denied for table sa)"
-    ) in logged(caplog)
+    ) in caplog.text
 
 
 async def test_a_bare_abort_reads_as_that_of_a_command(storing_on):

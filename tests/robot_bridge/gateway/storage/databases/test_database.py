@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import shutil
 import sqlite3
 import time
@@ -17,6 +18,7 @@ from robot_bridge.gateway.storage.database import WRONG_AT_ONCE_S, Database
 from robot_bridge.gateway.storage.rows import BatchedWork
 from robot_bridge.gateway.storage.schema import robots, rr, sa
 from tests.support.bridge.busy_database import done_together
+from tests.support.databases.database_client import DatabaseClient
 
 
 @pytest.fixture
@@ -281,3 +283,39 @@ async def test_two_transactions_that_lock_each_other_out_are_both_done(url):
     assert met.is_set()
     await one.close()
     await two.close()
+
+
+LOCKS = {
+    "postgresql": ["begin", "lock table rr in access exclusive mode"],
+    "mariadb": ["lock tables rr write"],
+}
+"""What an administrator's session does to a table, who is ended by nobody."""
+
+
+@pytest.mark.parametrize("kind", sorted(LOCKS), indirect=True)
+async def test_what_waits_for_a_lock_in_vain_fails_alone_and_soon(url, kind, database):
+    def add_counted(connection, robot):
+        tried.append(robot)
+        add(connection, robot)
+
+    def answer(connection, robot):
+        connection.execute(insert(sa).values(robot=robot, op="Start"))
+
+    tried = []
+    with contextlib.closing(DatabaseClient(url)) as administrator:
+        for statement in LOCKS[kind]:
+            administrator.sql(statement)
+        asked = [database.run(add_counted, "r1"), database.run(answer, "r2"), database.read(names)]
+        refused, done, unread = await done_together(database, *asked)
+        assert done is None
+        for error in (refused, unread):
+            assert isinstance(error, StoreError) and "; somebody else has it locked" in str(error)
+        # Together twice, and then by itself.
+        assert tried == ["r1"] * 3
+        # Known to be locked it is waited for once.
+        with pytest.raises(StoreError):
+            await database.run(add_counted, "r3")
+        assert tried[3:] == ["r3"]
+    await database.run(add_counted, "r4")
+    assert await database.read(names) == ["r4"]
+    assert await database.read(lambda one: list(one.scalars(select(sa.c.robot)))) == ["r2"]
