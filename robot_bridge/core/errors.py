@@ -16,6 +16,10 @@ class StoreError(BridgeError):
     """The database cannot be opened, read or written."""
 
 
+class LockedError(StoreError):
+    """Somebody else had something locked that a transaction needed, which was not done."""
+
+
 class DataRefusedError(StoreError):
     """The database works but refuses a value: too long, or of a type that it cannot hold."""
 

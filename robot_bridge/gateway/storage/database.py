@@ -16,7 +16,7 @@ import sqlalchemy
 from sqlalchemy import URL, Connection, Engine
 from sqlalchemy.exc import ArgumentError, DBAPIError, NoSuchModuleError, SQLAlchemyError
 
-from ...core.errors import DataRefusedError, StoreError, UncertainError
+from ...core.errors import DataRefusedError, LockedError, StoreError, UncertainError
 from . import revisions
 from .dialects import PATIENCE_S, Dialect, Durability, MariaDB, PostgreSQL, SQLite
 from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_blocking_sessions
@@ -204,7 +204,7 @@ class DatabaseWorker:
         try:
             return [(jobs[done.number], done.result, None) for done in self._run_with_retry(jobs)]
         except StoreError as error:
-            if len(jobs) > 1 and self._is_locked(error.__cause__):
+            if len(jobs) > 1 and isinstance(error, LockedError):
                 return self._one_by_one(jobs)
             # One piece of work may be at fault; but not each of them is to wait for the database as long.
             at_once = time.monotonic() - began < WRONG_AT_ONCE_S
@@ -234,7 +234,7 @@ class DatabaseWorker:
                 continue
             outcomes += self._do([job])
             error = outcomes[-1][2]
-            if error is not None and self._is_locked(error.__cause__):
+            if isinstance(error, LockedError):
                 locked[kind] = error
         return outcomes
 
@@ -250,8 +250,6 @@ class DatabaseWorker:
                 raise DataRefusedError(f"database {self._where} refuses a value: {error}") from error
             except SQLAlchemyError as error:
                 if not self._worth_repeating(error, attempt, fresh, time.monotonic() - began):
-                    if self._is_locked(error):
-                        self._locked_until = time.monotonic() + LOCKED_FOR_S
                     raise self._explain(error) from error
         raise AssertionError("the last attempt ended the loop")
 
@@ -270,9 +268,6 @@ class DatabaseWorker:
     @property
     def _waits_briefly(self) -> bool:
         return time.monotonic() < self._locked_until
-
-    def _is_locked(self, error: BaseException | None) -> bool:
-        return isinstance(error, DBAPIError) and self._dialect.kept_waiting(error)
 
     def _end_blockers(self) -> bool:
         """End robots' transactions that may hold what the gateway waits for; tell whether there were any."""
@@ -350,6 +345,9 @@ class DatabaseWorker:
     def _explain(self, error: SQLAlchemyError) -> StoreError:
         if self._dialect.refuses_data(error):
             return DataRefusedError(f"database {self._where} refuses a value: {self._dialect.cause(error)}")
+        if isinstance(error, DBAPIError) and self._dialect.kept_waiting(error):
+            self._locked_until = time.monotonic() + LOCKED_FOR_S
+            return LockedError(self._text(error))
         return StoreError(self._text(error))
 
     def _text(self, error: SQLAlchemyError) -> str:
@@ -431,6 +429,7 @@ class Database:
         """Run ``work`` in a transaction.
 
         :raises DataRefusedError: when the database refuses a value, whoever gave it.
+        :raises LockedError: when somebody else has something locked that it needs.
         :raises UncertainError: when the connection was lost during the commit.
         :raises StoreError: when the database cannot be used; the transaction was not done.
         """
