@@ -143,8 +143,10 @@ def test_what_one_session_has_locked_keeps_nobody_from_what_is_not_locked(served
 
 def test_a_robot_comes_in_while_no_position_can_be_stored(served):
     """To pack a large table takes an administrator's session minutes."""
-    served.robot("r1").plug_in(1)
+    other = served.robot("r1")
+    other.plug_in(1)
     with tables_locked(served, "trajectories"):
+        other.tell("SendPos", {"x": 40.0, "y": 8.0, "theta": 0.5, "v": 0.0})
         robot = served.robot("r2")
         robot.plug_in(2)
         robot.tell("SendPos", {"x": 20.0, "y": 8.0, "theta": 0.5, "v": 0.0})
