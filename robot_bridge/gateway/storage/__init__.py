@@ -1,1 +1,1 @@
-"""SQL storage: the paper's tables RR and SA, and what the gateway keeps for itself."""
+"""SQL storage: the paper's tables RR and SA, and the gateway's own tables."""

@@ -1,4 +1,4 @@
-"""Backup and restoration of the database, also by the tools of its server."""
+"""Backup and restoration of the database; servers use their own dump tools."""
 
 from __future__ import annotations
 
@@ -31,12 +31,10 @@ from .repositories.metadata import ID
 from .schema import bridge, metadata
 from .singleton_lock import no_gateway
 
-# --- Backups of PostgreSQL and MariaDB: the rows as SQL, written and read by the server's own programs
-# A dump holds rows only: the tables are made by ``robot-bridge database create``, and accounts and rights
-# are
-# the server's. Two tables are left out: ``bridge``, whose facts are about one database, and ``rr``: what
-# waited
-# there is old by the time of a restore, and robots repeat what was not acknowledged.
+# --- Backups of PostgreSQL and MariaDB: rows as SQL, written and read by the server's own programs
+# A dump holds rows only: ``robot-bridge database create`` makes the tables; accounts and rights belong to the
+# server. Two tables are left out: ``bridge``, whose facts are about one database, and ``rr``: its requests
+# are old by the time of a restore, and robots repeat those not acknowledged.
 
 MARK = b"-- robot-bridge backup "
 LEFT_OUT = frozenset({"rr", "bridge", "gateways", "robot_owners", "relayed_requests"})
@@ -48,7 +46,7 @@ _PIECE = 1 << 20
 
 
 class ServerBackups:
-    """What PostgreSQL and MariaDB have in common: a program that writes SQL, and one that reads it."""
+    """Backups shared by PostgreSQL and MariaDB: one program writes SQL, another reads it."""
 
     kind: str
     writer: str
@@ -60,11 +58,11 @@ class ServerBackups:
         self._url = url
 
     def recognises(self, head: bytes) -> bool:
-        """Tell whether a file that begins so may be a backup of this kind; :meth:`check` looks inside."""
+        """Return whether a file with this head may be a backup of this kind; :meth:`check` reads it."""
         return head.startswith(_GZIP)
 
     def write(self, partial: Path, revision: str) -> None:
-        """Write the rows into ``partial``, a line about them first."""
+        """Write the rows into ``partial``, after a header line."""
         about = {"kind": self.kind, "revision": revision, "made_at": round(time.time())}
         program = self._program(self.writer)
         with gzip.open(partial, "wb", compresslevel=3) as target:
@@ -82,12 +80,12 @@ class ServerBackups:
         return str(about.get("revision"))
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of the rows there, under a new id, in one transaction."""
+        """Replace the rows by those in ``file`` and give the database a new id, in one transaction."""
         program, script = self._program(self.reader), self._script(file, self._tables())
         self._run([program, *self._reader_options()], script, None)
 
     def _tables(self) -> list[str]:
-        """Return those tables that are there: an older version had fewer of them."""
+        """Return the tables that exist: an older version had fewer."""
         return run_once(self._url, _present)
 
     def _about(self, file: Path) -> dict[str, Any]:
@@ -164,7 +162,7 @@ class ServerBackups:
 
 
 _PARTITIONS = ("trajectories_" + 8 * "[0-9]", "trajectories_other", "trajectories_before")
-"""The partitions of positions, as patterns that pg_dump holds against what it sees in its snapshot."""
+"""The partitions of positions, as patterns that pg_dump matches against its snapshot."""
 _BY_DAY = """
 do $$ begin
     if to_regproc('public.make_trajectory_days') is not null then
@@ -254,7 +252,8 @@ class MariaDbBackups(ServerBackups):
         return ["set autocommit = 0;", *(f"delete from `{name}`;" for name in (*tables, "rr"))]  # nosec B608 # names of ours
 
     def _after(self, tables: Collection[str], greeting: Sequence[str]) -> list[str]:
-        # Inserting moved the numbers of the others on; those of sa may be known to robots and gone from it.
+        # Inserts advanced the ids of other tables; ids of sa may be known to robots though their rows are
+        # gone.
         return [
             *greeting,
             "commit;",
@@ -284,14 +283,14 @@ def _present(connection: Connection) -> list[str]:
 
 
 def _has_id(connection: Connection) -> bool:
-    """Tell whether the database has an id: one of version 0.1.0 gets it when it is upgraded."""
+    """Return whether the database has an id: one of version 0.1.0 gets its id in the upgrade."""
     return bridge.name in inspect(connection).get_table_names()
 
 
 def _new_id(schema: str) -> tuple[list[str], list[str]]:
-    """Return SQL that gives the database another id: messages come again under numbers that robots know.
+    """Return SQL that gives the database a new id: message numbers known to robots will be reused.
 
-    And SQL that tells robots on SQL of that, who do not connect; for when numbers are given out again.
+    Also return SQL that notifies robots on SQL, which do not connect; to run when ids are given out again.
     """
     table, id = schema + bridge.name, str(uuid.uuid4())
     start = sqlite_file_metadata.GREETING.format(schema=schema).replace(
@@ -304,7 +303,7 @@ def _new_id(schema: str) -> tuple[list[str], list[str]]:
 
 
 def _highest(table: str) -> str:
-    """Return SQL for the highest id that was given out, as far as the rows know."""
+    """Return SQL for the highest id given out, as far as the rows show."""
     own = f"(select coalesce(max(id), 0) + 1 from {table})"  # nosec B608 # our tables
     if not table.endswith("sa"):
         return own
@@ -318,7 +317,7 @@ def _feed(target: IO[bytes], script: Iterable[bytes]) -> None:
             for piece in script:
                 target.write(piece)
     except BrokenPipeError:
-        pass  # it ended early, and says why
+        pass  # it ended early, and reports why
 
 
 # --- Backups of SQLite: a database file, copied while it is in use ---
@@ -327,7 +326,7 @@ _MAGIC = b"SQLite format 3\x00"
 
 
 class SqliteBackups:
-    """Copies by SQLite's own means, which see what still waits in the write-ahead log."""
+    """Copies by SQLite's backup API, which includes pages still in the write-ahead log."""
 
     kind = "sqlite"
 
@@ -335,16 +334,16 @@ class SqliteBackups:
         self._url = url
 
     def recognises(self, head: bytes) -> bool:
-        """Tell whether a file that begins so is a backup of this kind."""
+        """Return whether a file with this head is a backup of this kind."""
         return head.startswith(_MAGIC)
 
     def write(self, partial: Path, revision: str) -> None:
         """Copy the database into ``partial``."""
         with _connected(self._file()) as source, _connected(partial) as target:
-            # All in one step: one in several begins again whenever somebody has written in between, and a
-            # gateway always does. With its log SQLite lets others write meanwhile.
+            # All pages in one step: a copy in several steps restarts after every write, and a gateway always
+            # writes. In WAL mode SQLite lets others write meanwhile.
             source.backup(target)
-            # A file of its own: what would wait in a log beside it could be left behind.
+            # One file only: a log beside it could be left behind.
             target.execute("PRAGMA journal_mode = DELETE")
 
     def check(self, file: Path) -> str:
@@ -353,7 +352,7 @@ class SqliteBackups:
             found = source.execute("PRAGMA quick_check(1)").fetchone()[0]
         if found != "ok":
             raise StoreError(f"backup {file} is damaged: {found}")
-        # Not as the bridge opens a database: that would turn the backup into one with a log beside it.
+        # Not opened as the bridge opens a database: that would switch the backup to WAL mode.
         engine = create_engine(URL.create("sqlite", database=str(file)), poolclass=NullPool)
         with engine.connect() as connection:
             revision = revisions.current(connection)
@@ -362,10 +361,10 @@ class SqliteBackups:
         return revision
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of the database, under a new id, in one transaction."""
+        """Replace the database by ``file`` and give it a new id, in one transaction."""
         database = self._file()
         with tempfile.TemporaryDirectory(prefix=".restoring-", dir=database.parent) as folder:
-            # Renewed before it takes the place: between the two robots would know the old id.
+            # The id is renewed before the replacement: in between, robots would see the old id.
             renewed = Path(folder) / "backup"
             for made in (renewed, database):
                 make_sqlite_file(made)
@@ -387,7 +386,7 @@ class SqliteBackups:
 
 def _renew(connection: Connection) -> None:
     if bridge.name not in inspect(connection).get_table_names():
-        return  # a database of version 0.1.0, which gets its id when it is upgraded
+        return  # a database of version 0.1.0 gets its id in the upgrade
     sqlite_file_metadata.renew_id(connection, sqlite_file_metadata.database_id(connection))
 
 
@@ -406,12 +405,12 @@ def _connected(file: Path) -> Iterator[sqlite3.Connection]:
 
 
 class Backups(Protocol):
-    """How one kind of database is backed up; every method raises StoreError for what goes wrong."""
+    """Backup and restore of one kind of database; every method raises StoreError on failure."""
 
     kind: str
 
     def recognises(self, head: bytes) -> bool:
-        """Tell whether a file that begins so may be a backup of this kind."""
+        """Return whether a file with this head may be a backup of this kind."""
 
     def write(self, partial: Path, revision: str) -> None:
         """Write a backup into ``partial``."""
@@ -420,7 +419,7 @@ class Backups(Protocol):
         """Return the revision of the tables in ``file``; raises StoreError unless it is a whole backup."""
 
     def load(self, file: Path) -> None:
-        """Put what ``file`` holds in the place of what is there, under a new id, in one transaction."""
+        """Replace the contents by those of ``file`` and give the database a new id, in one transaction."""
 
 
 KINDS: dict[str, Callable[[URL], Backups]] = {
@@ -441,7 +440,7 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
     revision = run_once(url, _revision, shown(url))
     try:
         with replacement(file) as partial:
-            # It holds what the database does, and nobody else's eyes are meant for it.
+            # It is as confidential as the database itself.
             os.close(os.open(partial, os.O_CREAT | os.O_WRONLY, 0o600))
             kind = KINDS[url.get_backend_name()](url)
             kind.write(partial, revision)
@@ -452,7 +451,7 @@ def back_up(url: URL, file: Path, *, replace: bool = False) -> int:
 
 
 def revision_in(url: URL, file: Path) -> str:
-    """Return which tables a backup for the database at ``url`` holds; raises BridgeError and StoreError."""
+    """Return the revision of a backup for the database at ``url``; raises BridgeError and StoreError."""
     _refuse_itself(url, file)
     _check_kind(url, file)
     revision = KINDS[url.get_backend_name()](url).check(file)
@@ -465,11 +464,10 @@ def revision_in(url: URL, file: Path) -> str:
 
 
 async def restore(url: URL, file: Path, *, replace: bool = False) -> str:
-    """Put the backup in ``file`` in the place of the database; return the revision of its tables.
+    """Replace the database by the backup in ``file``; return the revision of its tables.
 
-    The database gets a new id, so that robots forget the numbers of messages that may come again. Refused
-    while a gateway runs on it, and where it holds anything unless ``replace``. Raises BridgeError and
-    StoreError.
+    The database gets a new id, so that robots forget message ids that may be reused. Refused while a gateway
+    runs on it, and, unless ``replace``, where it holds any data. Raises BridgeError and StoreError.
     """
     revision = revision_in(url, file)
     async with no_gateway(url, "robot-bridge database restore"):
@@ -490,7 +488,7 @@ def _restore(url: URL, file: Path, revision: str, replace: bool) -> None:
 
 
 def _check_fits(url: URL, file: Path, revision: str, found: str) -> None:
-    """Raise StoreError unless the tables that were found are those whose rows are in the backup."""
+    """Raise StoreError unless the tables found match those of the backup."""
     if found == revision:
         return
     advice = (
@@ -515,7 +513,7 @@ def _revision(connection: Connection, where: str) -> str:
 
 
 def _held(connection: Connection) -> str | None:
-    """Return how much of what the database holds, None for nothing; that it was made is in its audit log."""
+    """Return a count of what the database holds, None if empty; its creation is in its audit log."""
     present = set(inspect(connection).get_table_names())
     for name in ("commands", "trajectories", "robots", "operators", "observations"):
         if name not in present:
@@ -528,7 +526,7 @@ def _held(connection: Connection) -> str | None:
 
 
 def _refuse_itself(url: URL, file: Path) -> None:
-    """Raise BridgeError for the database's own file: a copy in its place would take it from a gateway."""
+    """Raise BridgeError for the database's own file: replacing it would take it from a running gateway."""
     database = Path(url.database or "") if url.get_backend_name() == "sqlite" else None
     if database is not None and database.is_file() and file.exists() and file.samefile(database):
         raise BridgeError(f"{file} is the database itself; name another file for the backup")

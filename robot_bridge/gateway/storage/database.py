@@ -1,4 +1,4 @@
-"""Database: its address, connections, transactions and retries."""
+"""Database access: address, connections, transactions and retries."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .roles.blocking_sessions import BLOCKING_S, Offences, blocking_robots, end_
 from .rows import WorkDone, do_together
 from .wakeups import GATEWAY_CHANNEL, AdaptiveWakeup, LogWakeup, NotifiedWakeup, PollingWakeup, Wakeup
 
-# --- Where a database is: reading its URL, and writing it so that no password is in it ---
+# --- Database URLs: read, and shown without a password ---
 
 FORMS = "sqlite:////path/fleet.db, postgresql://account@host/database or mariadb://account@host/database"
 _OTHERS = 0o007
@@ -34,12 +34,12 @@ def read_address(text: str, password_file: Path | None = None) -> URL:
     try:
         url = sqlalchemy.make_url(text)
     except (ArgumentError, ValueError):
-        # Whatever stands before an @ may be a password.
+        # Anything before an @ may be a password.
         raise StoreError(
             f"database URL {text.rpartition('@')[2]!r} cannot be read; write it like {FORMS}"
         ) from None
     if isinstance(_dialect(url), SQLite) and url.database in (None, "", ":memory:"):
-        # SQLite would keep it in memory: what is told as queued would go with the process.
+        # SQLite would keep it in memory: commands reported as queued would be lost with the process.
         raise StoreError(f"database {shown(url)}: no file is named; write it like sqlite:////path/fleet.db")
     secret = sorted({"password", "passwd", "passfile"} & {key.lower() for key in url.query})
     if secret:
@@ -51,14 +51,14 @@ def read_address(text: str, password_file: Path | None = None) -> URL:
 
 
 def shown(url: URL) -> str:
-    """Return ``url`` as it may be printed: without its password, and without what is asked of the driver."""
+    """Return ``url`` for printing: without its password and driver options."""
     if url.get_backend_name() != "sqlite":
         url = url.set(query={})
     return url.render_as_string(hide_password=True)
 
 
 def open_engine(url: URL, patience: float | None = PATIENCE_S) -> tuple[Engine, Dialect]:
-    """Return an engine on ``url`` and what is particular to its database; raises StoreError."""
+    """Return an engine on ``url`` and the dialect of its database; raises StoreError."""
     dialect = _dialect(url)
     try:
         return dialect.engine(url, patience), dialect
@@ -79,7 +79,7 @@ def _dialect(url: URL) -> Dialect:
 
 
 def read_password(file: Path) -> str:
-    """Return the first line of a file that is closed to others; raises StoreError."""
+    """Return the first line of a file that other accounts cannot read; raises StoreError."""
     try:
         open_to_others = file.stat().st_mode & _OTHERS
         lines = file.read_text(encoding="utf-8").splitlines()
@@ -93,12 +93,12 @@ def read_password(file: Path) -> str:
     return lines[0]
 
 
-# --- The database's thread: one connection, and the pieces of work that wait for it, together where they can
+# --- The database thread: one connection, and the queued jobs, grouped into transactions where possible
 
 log = logging.getLogger(__name__)
 
 LARGEST_GROUP = 64
-"""Pieces of work in one transaction: a commit waits for the disk, and they may as well wait together."""
+"""Jobs in one transaction: a commit waits for the disk, so that jobs share the wait."""
 ATTEMPTS = 5
 WRONG_AT_ONCE_S = 1.0
 LOCKED_FOR_S = 5.0
@@ -109,7 +109,7 @@ LOCKED_TOGETHER_S = 2.0
 
 
 class DatabaseJob(NamedTuple):
-    """A piece of work and who waits for it; ``alone`` keeps it out of any transaction."""
+    """A piece of work with its future; ``alone`` keeps it out of any transaction."""
 
     work: Callable[..., Any]
     arguments: tuple[Any, ...]
@@ -123,7 +123,7 @@ Outcome = tuple[DatabaseJob, Any, BaseException | None]
 
 
 class DatabaseWorker:
-    """Does jobs in the order they came, batched work with the first of its kind.
+    """Runs jobs in their order of arrival, batched work with the first of its kind.
 
     What waits together is committed together, reported in the order in which it was done, and fails by
     itself: it is done again by halves.
@@ -148,10 +148,10 @@ class DatabaseWorker:
         self._thread: threading.Thread | None = None
         self.backend: int | None = None
         self.session = 0
-        """how many connections there have been, the present one included."""
+        """number of connections so far, the present one included."""
 
     def submit(self, job: DatabaseJob) -> None:
-        """Have ``job`` done; its future tells when."""
+        """Queue ``job``; its future resolves when it is done."""
         if self._thread is None:
             self._thread = threading.Thread(target=self._serve, name="database", daemon=True)
             self._thread.start()
@@ -159,11 +159,11 @@ class DatabaseWorker:
 
     @property
     def waiting(self) -> int:
-        """Return how many jobs wait."""
+        """Return the number of waiting jobs."""
         return self._jobs.qsize()
 
     def close(self, timeout: float) -> None:
-        """Close the connection when all is done that was submitted, and end the thread."""
+        """Close the connection once all submitted jobs are done, and end the thread."""
         if self._thread is not None:
             self._jobs.put(None)
             self._thread.join(timeout)
@@ -197,7 +197,7 @@ class DatabaseWorker:
         last = group.pop() if group and group[-1].alone else None
         for jobs in (group, [last] if last else []):
             if jobs:
-                _tell(self._do(jobs))
+                _report(self._do(jobs))
 
     def _do(self, jobs: list[DatabaseJob]) -> list[Outcome]:
         began = time.monotonic()
@@ -210,7 +210,7 @@ class DatabaseWorker:
             at_once = time.monotonic() - began < WRONG_AT_ONCE_S
             one_is_wrong = _is_of_work(error) or (at_once and self._connection is not None)
             if len(jobs) == 1 or not one_is_wrong:
-                # A full disk takes no commit, and can be read.
+                # A full disk refuses commits but can be read.
                 reads = [job for job in jobs if job.mode is Durability.READ] if at_once else []
                 others = [job for job in jobs if job not in reads]
                 if not (reads and others):
@@ -239,14 +239,14 @@ class DatabaseWorker:
         return outcomes
 
     def _run_with_retry(self, jobs: Sequence[DatabaseJob]) -> list[WorkDone]:
-        """Do ``jobs`` in one transaction, again where that helps; raises StoreError and what they raise."""
+        """Run ``jobs`` in one transaction, with retries; raises StoreError and what they raise."""
         for attempt in range(1, ATTEMPTS + 1):
             fresh = self._connection is None
             began = time.monotonic()
             try:
                 return self._attempt(jobs)
             except (UnicodeEncodeError, OverflowError) as error:
-                # What a driver raises for a text or a number that it cannot even send.
+                # Raised by a driver for a text or number that it cannot even send.
                 raise DataRefusedError(f"database {self._where} refuses a value: {error}") from error
             except SQLAlchemyError as error:
                 if not self._worth_repeating(error, attempt, fresh, time.monotonic() - began):
@@ -334,7 +334,7 @@ class DatabaseWorker:
             self._rest()
 
     def _drop(self) -> None:
-        """Let go of the connection, whatever state it is in."""
+        """Discard the connection, whatever state it is in."""
         with self._lock:
             connection, self._connection = self._connection, None
             self._since = None
@@ -355,14 +355,14 @@ class DatabaseWorker:
 
 
 def _is_of_work(error: StoreError) -> bool:
-    """Whether a piece of work, or a value of one, is what is wrong, and not the database."""
+    """Return whether the work or a value in it is at fault, not the database."""
     return isinstance(error, DataRefusedError) or not isinstance(error.__cause__, SQLAlchemyError)
 
 
-def _tell(outcomes: list[Outcome]) -> None:
+def _report(outcomes: list[Outcome]) -> None:
     loops = {outcome[0].loop for outcome in outcomes}
     for loop in loops:
-        # A loop that was closed has nobody left who waits.
+        # On a closed loop nobody waits any more.
         with contextlib.suppress(RuntimeError):
             loop.call_soon_threadsafe(_settle, [outcome for outcome in outcomes if outcome[0].loop is loop])
 
@@ -377,8 +377,8 @@ def _settle(outcomes: list[Outcome]) -> None:
             job.future.set_exception(error)
 
 
-# --- The database: one connection in one thread of its own, so that the event loop never waits for a disk.
-# A second one, opened when it is first used, ends what keeps the first one waiting.
+# --- The database: one connection in a thread of its own, so that the event loop never waits for a disk.
+# A second one, opened on first use, ends whatever blocks the first one.
 
 T = TypeVar("T")
 WATCH_INTERVAL_S = 1.0
@@ -388,18 +388,18 @@ class Database:
     """Runs pieces of work, each in a transaction: ``await database.run(work, *arguments)``.
 
     ``work`` is called as ``work(connection, *arguments)`` in the database's thread. Its transaction is
-    committed when ``run`` returns and rolled back when it raises. It must do nothing but use the database:
-    where a transaction has to be done again, it is called again; work that waits together shares one, and
-    its statements where it is a :class:`.BatchedWork`.
+    committed when ``run`` returns and rolled back when it raises. It must do nothing but use the database: a
+    repeated transaction calls it again. Work that waits together shares a transaction, and a
+    :class:`.BatchedWork` its statements too.
 
-    ``patience`` is how many seconds a statement may take; None is for work that takes long.
+    ``patience`` is the limit of one statement in seconds; None is for long work.
     """
 
     def __init__(self, address: str | URL, patience: float | None = PATIENCE_S) -> None:
         self.url = read_address(address) if isinstance(address, str) else address
         self._engine, self.dialect = open_engine(self.url, patience)
         self.offences = Offences()
-        """What robots' accounts do to others."""
+        """Offences of robots' accounts against others."""
         self._worker, self._aside = (
             DatabaseWorker(self._engine, self.dialect, shown(self.url), patience, self.offences)
             for _ in range(2)
@@ -413,13 +413,13 @@ class Database:
         return shown(self.url)
 
     def add_observer(self, observe: Callable[[float], None]) -> None:
-        """Call ``observe`` with the seconds that each piece of work takes, waiting included."""
+        """Call ``observe`` with the duration of each piece of work in seconds, waiting included."""
         self._observers.append(observe)
 
     async def open(self) -> None:
-        """Check that the tables are those of this version; SQLite's are made where there are none.
+        """Check that the tables match this version; on SQLite, create missing ones.
 
-        :raises StoreError: when the database cannot be used, or has to be created or upgraded first.
+        :raises StoreError: when the database cannot be used, or must be created or upgraded first.
         """
         create = await self.run(revisions.must_create, self.where, self.dialect.made_by_serve)
         if create:
@@ -436,7 +436,7 @@ class Database:
         return await self._timed(work, arguments, Durability.WRITE)
 
     async def write_relaxed(self, work: Callable[..., T], *arguments: Any) -> T:
-        """As :meth:`run`, but a power cut may undo it, though never before what was done earlier."""
+        """As :meth:`run`, but a power cut may undo it, though never before earlier work."""
         return await self._timed(work, arguments, Durability.RELAXED)
 
     async def read(self, work: Callable[..., T], *arguments: Any) -> T:
@@ -444,14 +444,14 @@ class Database:
         return await self._timed(work, arguments, Durability.READ)
 
     async def version(self) -> int | None:
-        """Return a number that changes when another connection wrote, or None where there is none."""
+        """Return a number that changes when another connection wrote, or None without such a number."""
         if not self.dialect.has_version:
             return None
         result: int | None = await self._submit(self.dialect.version, (), Durability.READ, alone=True)
         return result
 
     async def run_aside(self, work: Callable[..., T], *arguments: Any) -> T:
-        """As :meth:`run`, on a second connection: what keeps the first one waiting does not delay it."""
+        """As :meth:`run`, on a second connection: a blocked first one does not delay it."""
         result: T = await self._submit(work, arguments, Durability.WRITE, worker=self._aside)
         return result
 
@@ -460,7 +460,7 @@ class Database:
         await self.run_aside(end_blocking_sessions)
 
     def wakeup(self, channel: str) -> Wakeup:
-        """Return what tells when it is time to look for new rows; ``channel`` is one of the triggers'."""
+        """Return a waiter for new rows; ``channel`` is one that the triggers notify."""
         if not self.dialect.listens:
             log = self.dialect.log_of(self.url)
             return PollingWakeup() if log is None else LogWakeup(log)
@@ -470,21 +470,21 @@ class Database:
         return AdaptiveWakeup(listening, self)
 
     async def enable_notifications(self) -> bool:
-        """Let those that write tell of new rows; false while somebody writes who does not. See StoreError."""
+        """Have writers notify of new rows; return false while a writer does not yet. Raises StoreError."""
         return await self.read(self.dialect.enable_notifications)
 
     async def disable_notifications(self) -> None:
-        """Let those that write tell of nothing; raises StoreError."""
+        """Have writers stop notifying; raises StoreError."""
         await self.read(self.dialect.disable_notifications)
 
     @property
     def session(self) -> int:
-        """Return a number that changes whenever the connection is a new one."""
+        """Return a number that changes with every new connection."""
         return self._worker.session
 
     @property
     def waiting(self) -> int:
-        """Return how many pieces of work wait for the database."""
+        """Return the number of pieces of work that wait for the database."""
         return self._worker.waiting
 
     async def close(self, within: float = 2 * PATIENCE_S) -> None:
@@ -522,7 +522,7 @@ class Database:
         return await future
 
     async def _watch_over(self) -> None:
-        """Cut the connection to a server that does not answer: a frozen one keeps no limits of its own."""
+        """Cut the connection to a server that does not answer: a frozen one enforces no limits of its own."""
         while True:
             await asyncio.sleep(WATCH_INTERVAL_S)
             for worker in (self._worker, self._aside):
@@ -530,14 +530,14 @@ class Database:
 
 
 async def to_its_end(work: Coroutine[Any, Any, T]) -> T:
-    """Await ``work``, which goes on when the waiting is cancelled: what is stored must be known here, too."""
+    """Await ``work``, which continues when the wait is cancelled: the gateway must know what is stored."""
     task = asyncio.ensure_future(work)
     task.add_done_callback(lambda done: done.cancelled() or done.exception())
     return await asyncio.shield(task)
 
 
 def run_once(address: str | URL, work: Callable[..., T], *arguments: Any) -> T:
-    """Run ``work`` in a transaction of a connection of its own, for programs that end after it."""
+    """Run ``work`` in a transaction on its own connection, for programs that end afterwards."""
 
     async def once() -> T:
         async with contextlib.AsyncExitStack() as stack:

@@ -27,7 +27,7 @@ from sqlalchemy.pool import NullPool
 
 from ...core.errors import in_one_line
 
-# --- What the bridge asks of a kind of database; the default is a database that needs nothing special ---
+# --- Interface to one kind of database; the defaults are for one that needs nothing special ---
 
 CONNECT_TIMEOUT_S = 5
 LOCK_TIMEOUT_S = 1
@@ -36,33 +36,33 @@ BRIEF_LOCK_TIMEOUT_S = 0.02
 """How long it waits while somebody is known to keep something locked: as long as another program's commit."""
 LOCKED = "somebody else has it locked: that goes on as soon as their transaction ends;"
 PATIENCE_S = 10
-"""How long one statement may take: a server that is dead or frozen must not hold up the gateway for ever."""
+"""Longest time of one statement: a dead or frozen server must not block the gateway for ever."""
 
 
 class Durability(IntEnum):
-    """What a transaction is for; of several that are done together the highest counts."""
+    """Durability of a transaction; the highest counts where several are done together."""
 
     READ = 1
-    """It changes nothing."""
+    """Read only."""
     RELAXED = 2
-    """What it changes may be lost in a power cut, though never before what was changed earlier."""
+    """Changes may be lost in a power cut, though never before earlier changes."""
     WRITE = 3
-    """What it changes outlives a power cut."""
+    """Changes survive a power cut."""
 
 
 class Dialect:
-    """One kind of database. ``patience`` is seconds for a statement, or None where a long one is expected."""
+    """One kind of database. ``patience`` is the limit of a statement in seconds, or None for long ones."""
 
     name: ClassVar[str]
     advice: ClassVar[str] = "check that the server runs and that this account may use the database"
     made_by_serve: ClassVar[bool] = False
-    """Whether a gateway makes a database that is missing."""
+    """Whether the gateway creates a missing database."""
     has_version: ClassVar[bool] = False
-    """Whether it can be asked cheaply if another connection wrote (see :meth:`version`)."""
+    """Whether it is cheap to ask if another connection wrote (see :meth:`version`)."""
     listens: ClassVar[bool] = False
-    """Whether the database tells its readers of new rows (see :mod:`.wakeups`)."""
+    """Whether the database notifies its readers of new rows (see :mod:`.wakeups`)."""
     partitions_days: ClassVar[bool] = False
-    """Whether positions are kept in partitions of a day, which have to be made before it begins."""
+    """Whether positions are kept in daily partitions, which must exist before the day begins."""
 
     def engine(self, url: URL, patience: float | None) -> Engine:
         """Return an engine on ``url``; raises ModuleNotFoundError when its driver is not installed."""
@@ -73,33 +73,33 @@ class Dialect:
         return connection.begin()
 
     def version(self, connection: Connection) -> int | None:
-        """Return a number that changes when another connection wrote, or None where there is none."""
+        """Return a number that changes when another connection wrote, or None without such a number."""
         return None
 
     def log_of(self, url: URL) -> Path | None:
-        """Return the file that every write to the database changes, or None where this computer has none."""
+        """Return the local file that every write to the database changes, or None."""
         return None
 
     def backend(self, connection: Connection) -> int | None:
-        """Return the number under which notifications of this connection come, or None."""
+        """Return the backend number in notifications of this connection, or None."""
         return None
 
     def enable_notifications(self, connection: Connection) -> bool:
-        """Have those who write into RR tell of it from now on; false while one writes who does not."""
+        """Have writers into RR notify from now on; return false while one writes without."""
         return False
 
     def disable_notifications(self, connection: Connection) -> None:
-        """Let those who write into RR tell nobody of it."""
+        """Have writers into RR stop notifying."""
 
     def interrupt(self, driver_connection: Any) -> None:
         """End the wait of another thread for a server that does not answer."""
 
     def deadlocked(self, error: DBAPIError) -> bool:
-        """Tell whether the database gave up this transaction for another's sake: it may be repeated."""
+        """Return whether the database aborted this transaction in favour of another: it may be repeated."""
         return False
 
     def kept_waiting(self, error: DBAPIError) -> bool:
-        """Tell whether somebody else held a lock for too long."""
+        """Return whether another session held a lock for too long."""
         return False
 
     def wait_for_locks(self, connection: Connection, *, briefly: bool) -> None:
@@ -109,17 +109,17 @@ class Dialect:
         """
 
     def refuses_data(self, error: SQLAlchemyError) -> bool:
-        """Tell whether the values were wrong, and not the database out of order."""
+        """Return whether the values were at fault, not the database."""
         if isinstance(error, (DataError, IntegrityError)):
             return True
         return isinstance(error, StatementError) and not isinstance(error, DBAPIError)
 
     def cause(self, error: SQLAlchemyError) -> str:
-        """Return in one line what the database said."""
+        """Return the database's error text in one line."""
         return in_one_line(getattr(error, "orig", None) or error)
 
     def advice_on(self, error: SQLAlchemyError) -> str:
-        """Return what to do about an error."""
+        """Return advice on an error."""
         return self.advice
 
 
@@ -129,12 +129,12 @@ _DEADLOCK = 1213
 _MARIADB_LOCK_TIMEOUT = 1205
 _RECORD_CHANGED = 1020
 _REFUSALS = (1153, 1366, 4025)
-"""Packet too large, text that is no text, a constraint: the driver takes these for other errors."""
+"""Packet too large, invalid text, a violated constraint: the driver classes these as other errors."""
 _LARGEST_PACKET = 64 << 20
 
 
 class MariaDB(Dialect):
-    """READ COMMITTED: the default level locks gaps, in which inserts and deletes of others meet."""
+    """READ COMMITTED: the default level locks gaps, in which inserts and deletes of others collide."""
 
     name = "mariadb"
 
@@ -143,7 +143,7 @@ class MariaDB(Dialect):
             url.set(drivername="mariadb+pymysql"),
             connect_args={
                 "connect_timeout": CONNECT_TIMEOUT_S,
-                # The server's own limit comes first; this one is for a server that does not answer at all.
+                # The server's own limit is shorter; this one is for a server that does not answer at all.
                 "read_timeout": None if patience is None else round(patience) + 1,
                 "write_timeout": None if patience is None else round(patience) + 1,
                 "charset": "utf8mb4",
@@ -212,20 +212,20 @@ CONNECT_ARGUMENTS: dict[str, Any] = {
     "connect_timeout": CONNECT_TIMEOUT_S,
     "application_name": "robot-bridge",
     "client_encoding": "utf8",
-    # A cable that was pulled is noticed within seconds, not within the system's two hours.
+    # A pulled cable is noticed within seconds, not after the system's two hours.
     "keepalives_idle": 5,
     "keepalives_interval": 2,
     "keepalives_count": 3,
 }
 NOTIFICATIONS_LOCK = 0x666C656574
-"""The number of the lock that a gateway holds while it wants to be told of new rows ('fleet')."""
+"""The number of the lock that a gateway holds while it wants notifications of new rows ('fleet')."""
 _REPEATABLE = ("40001", "40P01")
 _READ_ONLY = "25006"
 _POSTGRESQL_LOCK_TIMEOUT = "55P03"
 
 
 class PostgreSQL(Dialect):
-    """The server ends statements that take too long; a server that is frozen has its connection cut."""
+    """The server ends statements that take too long; the connection to a frozen server is cut."""
 
     name = "postgresql"
     listens = True
@@ -248,7 +248,7 @@ class PostgreSQL(Dialect):
     def begin(self, connection: Connection, mode: Durability) -> Transaction:
         driver = connection.connection.driver_connection
         assert driver is not None
-        # A connection that was lost is told of by the first statement.
+        # The first statement reports a lost connection.
         with contextlib.suppress(driver_error()):
             # Saves a reader two of three round trips to the server.
             driver.autocommit = mode is Durability.READ
@@ -263,7 +263,7 @@ class PostgreSQL(Dialect):
         return int(driver.info.backend_pid)
 
     def enable_notifications(self, connection: Connection) -> bool:
-        # Taken twice the lock would have to be given back twice.
+        # A lock taken twice would have to be released twice.
         if not connection.info.get("notified"):
             text = f"select pg_try_advisory_lock({NOTIFICATIONS_LOCK})"
             connection.info["notified"] = connection.exec_driver_sql(text).scalar_one()
@@ -274,9 +274,9 @@ class PostgreSQL(Dialect):
             connection.exec_driver_sql(f"select pg_advisory_unlock({NOTIFICATIONS_LOCK})")
 
     def interrupt(self, driver_connection: Any) -> None:
-        # One that was lost meanwhile has no number any more, which is the driver's error.
+        # A connection lost meanwhile has no descriptor, which is the driver's error.
         with contextlib.suppress(OSError, driver_error()):
-            # A second number for the same socket: this one may be closed while the other thread uses its own.
+            # A second descriptor of the socket: it may be closed while the other thread uses its own.
             twin = socket.socket(fileno=os.dup(driver_connection.fileno()))
             with twin:
                 twin.shutdown(socket.SHUT_RDWR)
@@ -307,7 +307,7 @@ class PostgreSQL(Dialect):
                 "the server answers and takes no writes: have default_transaction_read_only off there, or "
                 "name the primary where this one is a standby"
             )
-        # A connection that is refused has no code.
+        # A refused connection has no error code.
         if "no password supplied" in self.cause(error):
             return "give the file with the account's password: --database-password-file"
         if "too many" in self.cause(error) or "remaining connection slots" in self.cause(error):
@@ -316,7 +316,7 @@ class PostgreSQL(Dialect):
 
 
 def driver_error() -> type[Exception]:
-    """Return the driver's errors; the driver is imported where it is used, for it may be missing."""
+    """Return the driver's base error; the driver is imported where used, since it may be missing."""
     import psycopg
 
     return psycopg.Error
@@ -339,15 +339,15 @@ log = logging.getLogger(__name__)
 
 LOCK_PAUSE_S = 0.0005
 _DESCRIPTORS = Path("/proc/self/fd")
-"""The files that this process has open, where the system has that."""
+"""The open files of this process, where the system lists them."""
 _BESIDE = ("", "-wal", "-shm")
-"""How the names end of a database's file, of its log and of the index of that."""
+"""Suffixes of the database file, of its log and of the log's index."""
 GONE = "was taken away or replaced while it was in use: put it back, or end whatever uses it"
-"""What is said of a file of SQLite where another one, or none, is by now."""
+"""Message about an SQLite file that was replaced or removed."""
 
 
 class SQLite(Dialect):
-    """Waits for a lock as long as its patience lasts."""
+    """SQLite; waits for a lock as long as its patience lasts."""
 
     name = "sqlite"
     advice = "check that it exists, that it may be written and that its disk has room"
@@ -367,7 +367,7 @@ class SQLite(Dialect):
         event.listen(engine, "connect", _prepare)
         event.listen(engine, "connect", self._keep_open)
         event.listen(engine, "connect", self._close_to_others)
-        event.listen(engine, "engine_disposed", self._let_go)
+        event.listen(engine, "engine_disposed", self._release)
         event.listen(engine, "begin", self._begin)
         return engine
 
@@ -376,7 +376,7 @@ class SQLite(Dialect):
         return connection.begin()
 
     def version(self, connection: Connection) -> int | None:
-        # Through the driver: SQLAlchemy would begin a transaction, and take the lock of all writers for it.
+        # Through the driver: SQLAlchemy would begin a transaction and take the write lock for it.
         driver = connection.connection.driver_connection
         assert driver is not None
         return int(driver.execute("PRAGMA data_version").fetchone()[0])
@@ -389,17 +389,17 @@ class SQLite(Dialect):
         if opened is not None and (gone := opened.missing()) is not None:
             raise OperationalError("BEGIN", None, sqlite3.OperationalError(f"{gone} {GONE}"))
         mode = connection.info.get("mode", Durability.WRITE)
-        # Through the driver, here and below: through SQLAlchemy each takes several times as long.
+        # By the driver, here and below: by SQLAlchemy each call takes several times as long.
         driver = connection.connection.driver_connection
         assert driver is not None
         if mode is Durability.READ:
-            # Readers hold up nobody, and nobody holds them up.
+            # Readers block nobody, and nobody blocks them.
             try:
                 driver.execute("BEGIN")
             except sqlite3.OperationalError as error:
                 raise OperationalError("BEGIN", None, error) from error
             return
-        # A command that an operator was told is queued must outlive a power cut, not only a crash.
+        # A command reported to an operator as queued must survive a power cut, not only a crash.
         synchronous = "FULL" if mode is Durability.WRITE else "NORMAL"
         if connection.info.get("synchronous") != synchronous:
             connection.exec_driver_sql(f"PRAGMA synchronous = {synchronous}")
@@ -413,28 +413,29 @@ class SQLite(Dialect):
             make_sqlite_file(Path(path))
 
     def _keep_open(self, _connection: Any, record: Any) -> None:
-        """Have a connection that does nothing stay open beside others, and the disk hold SQLite's index.
+        """Keep an idle connection open beside the others, and allocate SQLite's index on the disk.
 
-        With the last one SQLite removes its index; where a commit fails, the connection is a new one, and a
-        full disk takes the new index in part only: whoever writes there ends by SIGBUS.
+        SQLite removes its index with the last connection. After a failed commit the connection is a new one,
+        and on a full disk the new index is allocated in part only: a process that writes there ends by
+        SIGBUS.
         """
         opened: _Opened | None = record.info.get("opened")
         if opened is None or (self._keeper is not None and self._keeper[0] == opened):
             return
-        self._let_go()
+        self._release()
         keeper = sqlite3.connect(opened.path, timeout=self._timeout, check_same_thread=False)
         keeper.execute("PRAGMA schema_version").fetchone()
         self._keeper = opened, keeper
         _hold_room_of_index(Path(f"{opened.path}-shm"))
 
-    def _let_go(self, _engine: Any = None) -> None:
+    def _release(self, _engine: Any = None) -> None:
         keeper, self._keeper = self._keeper, None
         if keeper is not None:
             keeper[1].close()
 
     @staticmethod
     def _close_to_others(_connection: Any, record: Any) -> None:
-        """Take the file, and what SQLite keeps beside it, from every account that is not of its group."""
+        """Deny the file, its log and index to accounts outside its group."""
         opened: _Opened | None = record.info.get("opened")
         if opened is None:
             return
@@ -454,7 +455,7 @@ class SQLite(Dialect):
             log.warning("every account of this computer could open %s; now its owner and group may", path)
 
     def _lock(self, connection: Connection) -> None:
-        """Take the lock of all writers as soon as it is free; SQLite itself would sleep up to 0.1 s."""
+        """Take the write lock as soon as it is free; SQLite itself would sleep up to 0.1 s."""
         until = time.monotonic() + self._timeout
         driver = connection.connection.driver_connection
         assert driver is not None
@@ -473,15 +474,15 @@ class SQLite(Dialect):
 
 
 class _Opened(NamedTuple):
-    """The file that a connection has open, with its log and the index of that, as found at their paths.
+    """The database file that a connection has open, with its log and index, as found at their paths.
 
-    What goes into a log that was taken away is there for whoever has it open, and for nobody who comes later:
-    neither the next gateway nor a robot that opens the file then.
+    Writes to a log that was removed are seen by those who have it open, and by nobody later: neither by the
+    next gateway nor by a robot that opens the file then.
     """
 
     path: Path
     found: tuple[tuple[Path, tuple[int, int] | None], ...]
-    """The path of each, and its device and inode; None where there is none."""
+    """The path of each, and its device and inode; None if it is missing."""
 
     @classmethod
     def by(cls, connection: sqlite3.Connection) -> _Opened | None:
@@ -490,13 +491,13 @@ class _Opened(NamedTuple):
         file = next((file for _number, name, file in rows if name == "main"), "")
         if not file:
             return None
-        # The log and its index are made by whoever reads first.
+        # The first reader creates the log and its index.
         connection.execute("PRAGMA schema_version").fetchone()
         paths = [Path(f"{file}{end}") for end in _BESIDE]
         return cls(paths[0], tuple((path, _inode(path)) for path in paths))
 
     def missing(self) -> Path | None:
-        """Return the path where another file, or none, is by now: what is written next would be lost."""
+        """Return a path whose file was replaced or removed: further writes would be lost."""
         for path, inode in self.found:
             if inode is not None and _inode(path) != inode:
                 return path
@@ -512,25 +513,25 @@ def _inode(path: Path) -> tuple[int, int] | None:
 
 
 def _prepare(connection: Any, record: Any) -> None:
-    # The driver would begin transactions late, when a reader can no longer become a writer.
+    # The driver would begin transactions too late: a reader can then no longer become a writer.
     connection.isolation_level = None
-    # Anyone may write anything into RR: text that is no UTF-8 is refused row by row, not by the driver.
+    # Robots may write anything into RR: invalid UTF-8 is refused row by row, not by the driver.
     connection.text_factory = _decode_leniently
     cursor = connection.cursor()
     cursor.execute("PRAGMA journal_mode = WAL")
-    # Some distributions have SQLite write zeros over what is deleted: the map of a city, page by page, for
-    # which everybody else would wait.
+    # Some distributions have SQLite overwrite deleted data with zeros: the map of a city, page by page, while
+    # everybody else waits.
     cursor.execute("PRAGMA secure_delete = FAST")
     cursor.close()
     record.info["opened"] = _Opened.by(connection)
 
 
 def _hold_room_of_index(path: Path) -> None:
-    """Have the disk hold all of SQLite's index at ``path``, which lies in memory.
+    """Allocate all of SQLite's memory-mapped index at ``path`` on the disk.
 
-    Where it does not, the process ends when it writes there and the disk is full.
-    SQLite writes a byte of each 4 kB, which a file system of smaller blocks takes for that block alone. Its
-    own descriptor does it: to open and close another one would end its locks.
+    Otherwise the process is killed when it writes there and the disk is full. SQLite writes one byte per 4
+    kB, which allocates one block only where blocks are smaller. SQLite's own descriptor is used: closing
+    another one would release its locks.
     """
     for name in _DESCRIPTORS.iterdir() if _DESCRIPTORS.is_dir() else ():
         with contextlib.suppress(OSError):
@@ -540,7 +541,7 @@ def _hold_room_of_index(path: Path) -> None:
 
 
 def make_sqlite_file(path: Path) -> None:
-    """Make a new database's file for its owner alone, whatever the umask: who may write it, commands."""
+    """Create a database file for its owner alone, whatever the umask: who may write it, commands robots."""
     with contextlib.suppress(OSError):
         os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600))
 
@@ -550,9 +551,9 @@ def _decode_leniently(text: bytes) -> str:
 
 
 def sqlite_path_in(url: URL) -> Path | None:
-    """Return the path that the address of a SQLite database has; None in memory, and for other databases.
+    """Return the path in an SQLite address; None for one in memory and for other databases.
 
-    Nothing is opened, where :func:`sqlite_file_of` would make the file.
+    Opens nothing, whereas :func:`sqlite_file_of` would create the file.
     """
     database = url.database if url.get_backend_name() == SQLite.name else None
     if not database or database == ":memory:" or database.startswith("file:"):

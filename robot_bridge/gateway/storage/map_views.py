@@ -1,7 +1,7 @@
-"""Views of the fleet with places in the site's CRS, for GIS programs that know nothing of the bridge.
+"""Views of the fleet with coordinates in the site's CRS, for GIS programs without the plugin.
 
 On PostgreSQL they are PostGIS geometries, in the site's CRS and in WGS 84, in a schema of their own; on
-SQLite they are columns of coordinates, which GDAL's virtual format (VRT) makes points of.
+SQLite they are coordinate columns, from which GDAL's virtual format (VRT) makes points.
 """
 
 from __future__ import annotations
@@ -22,20 +22,20 @@ from ...core.sites.frame import SiteFrame, crs_of
 from .schema import bridge
 
 SCHEMA = "fleet_map"
-"""The schema of the views on PostgreSQL; no account has its name, since it would find them before tables."""
+"""The schema of the views on PostgreSQL. No account may have this name: it would find them before tables."""
 PREFIX = "map_"
-"""What the names of the views begin with on SQLite, which has no schemas."""
+"""Prefix of the views' names on SQLite, which has no schemas."""
 _FACT = "map_views"
-"""The name under which the frame of the views is kept, so that an upgrade makes them again."""
+"""Name of the stored fact with the frame of the views, by which an upgrade recreates them."""
 WGS84 = 4326
 
 
 class MapViewError(BridgeError):
-    """Views that cannot be made on a database, or of a site."""
+    """Views cannot be created on this database or for this site."""
 
 
 class PlacedRows(NamedTuple):
-    """Rows with a place in the site frame, as SQL that all databases read.
+    """Rows with a position in the site frame, as SQL for all databases.
 
     In ``source``, ``{newest}`` joins the newest position ``t`` of robot ``r``, by :attr:`MapViews._NEWEST`.
     ``columns`` are expressions by name; those in ``times`` are seconds since 1970. ``x`` and ``y`` are
@@ -103,20 +103,20 @@ _ROWS = {
 
 
 class MapViews(abc.ABC):
-    """The views of one database, over the connection of whoever owns its tables."""
+    """The views of one database, over a connection of the owner of its tables."""
 
     _PARAMS: Mapping[str, str]
-    """Where the goal of a command stands, by axis."""
+    """SQL for the goal of a command, by axis."""
     _SCHEMA: str = ""
-    """What stands before the names of tables."""
+    """Prefix of table names."""
     _NEWEST: str
-    """How the newest position of a robot is joined."""
+    """SQL that joins the newest position of a robot."""
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def make(self, frame: SiteFrame) -> list[str]:
-        """Make the views of a site with ``frame``, in place of those that there are; return their names.
+        """Create the views of a site with ``frame``, replacing existing ones; return their names.
 
         :raises MapViewError: on MariaDB, without PostGIS, and for a CRS without an EPSG code.
         """
@@ -128,7 +128,7 @@ class MapViews(abc.ABC):
         return names
 
     def frame(self) -> SiteFrame | None:
-        """Return the frame of the views that there are, None where there are none."""
+        """Return the frame of the existing views, or None."""
         kept = self._connection.scalar(select(bridge.c.value).where(bridge.c.name == _FACT))
         if kept is None:
             return None
@@ -137,13 +137,13 @@ class MapViews(abc.ABC):
 
     @abc.abstractmethod
     def remove(self) -> None:
-        """Remove the views; where there are none it does nothing."""
+        """Remove the views, if there are any."""
 
     @abc.abstractmethod
     def _make(self, frame: SiteFrame, srid: int) -> list[str]: ...
 
     def _source(self, rows: PlacedRows) -> str:
-        """Return where the rows come from."""
+        """Return the FROM clause of the rows."""
         return rows.source.format(schema=self._SCHEMA, newest=self._NEWEST)
 
     def _axes(self, rows: PlacedRows) -> tuple[str, str]:
@@ -155,7 +155,7 @@ class MapViews(abc.ABC):
         self._connection.execute(delete(bridge).where(bridge.c.name == _FACT))
 
     def _do(self, statement: str) -> None:
-        # Without parameters the drivers leave percent signs alone.
+        # Without parameters the drivers do not interpret percent signs.
         self._connection.exec_driver_sql(statement, execution_options={"no_parameters": True})
 
 
@@ -181,11 +181,11 @@ _PATHS = """
 
 
 class PostGisViews(MapViews):
-    """Views in the schema ``fleet_map``; whoever may use that schema may read all of them."""
+    """Views in the schema ``fleet_map``; accounts that may use that schema may read all of them."""
 
     _PARAMS = _POSTGIS_PARAMS
     _SCHEMA = "public."
-    # By the index of each partition on robot and time; there is none on the ids.
+    # Uses the index of each partition on robot and time; there is none on ids.
     _NEWEST = (
         "cross join lateral (select * from public.trajectories n where n.robot = r.name "
         "order by n.received_at desc, n.id desc limit 1) t"
@@ -197,7 +197,7 @@ class PostGisViews(MapViews):
         self._forget()
 
     def require(self) -> None:
-        """Raise MapViewError where there are no views."""
+        """Raise MapViewError if there are no views."""
         if self.frame() is None:
             raise MapViewError(
                 "there are no views yet for an account to read; make them with: "
@@ -205,7 +205,7 @@ class PostGisViews(MapViews):
             )
 
     def readers(self) -> list[str]:
-        """Return the accounts that may read the views and are not their owner."""
+        """Return the accounts, other than the owner, that may read the views."""
         found = self._connection.exec_driver_sql(
             "select a.grantee::regrole::text from pg_namespace n, aclexplode(n.nspacl) a "  # nosec B608 # names of ours
             f"where n.nspname = '{SCHEMA}' and a.privilege_type = 'USAGE' "
@@ -214,7 +214,7 @@ class PostGisViews(MapViews):
         return sorted(set(found.scalars()))
 
     def let_read(self, role: str) -> None:
-        """Let the account ``role``, quoted where its name has to be, read the views and use PostGIS."""
+        """Grant the account ``role`` (quoted if needed) the views and PostGIS."""
         self._do(f"grant usage on schema {SCHEMA}, {self._gis()} to {role}")
         self._do(f"grant select on all tables in schema {SCHEMA} to {role}")
 
@@ -247,7 +247,7 @@ class PostGisViews(MapViews):
         return f"select {_listed(columns)} from {self._source(rows)}"  # nosec B608 # names of ours
 
     def _gis(self) -> str:
-        """Return the schema that PostGIS is in, quoted where it has to be."""
+        """Return the schema of PostGIS, quoted if needed."""
         found = self._connection.exec_driver_sql(
             "select extnamespace::regnamespace::text from pg_extension where extname = 'postgis'"
         ).scalar()
@@ -311,7 +311,7 @@ def map_views_on(connection: Connection) -> MapViews:
 
 @contextmanager
 def views_made_again(connection: Connection) -> Iterator[None]:
-    """Remove the views while their tables are changed inside, and make them again behind that."""
+    """Remove the views while the block changes their tables, then create them again."""
     known = connection.dialect.name in _KINDS and inspect(connection).has_table(bridge.name)
     views = map_views_on(connection) if known else None
     frame = None if views is None else views.frame()
@@ -324,12 +324,12 @@ def views_made_again(connection: Connection) -> Iterator[None]:
 
 
 def virtual_layers(database: str, frame: SiteFrame) -> str:
-    """Return the VRT file in which GDAL and QGIS find the views of the SQLite file ``database`` as points."""
+    """Return a VRT file that shows GDAL and QGIS the views of the SQLite file ``database`` as points."""
     srid = _epsg_code(frame)
     layers = "".join(
         f'  <OGRVRTLayer name="{name}">\n'
         f"    <SrcDataSource>{quoteattr(database)[1:-1]}</SrcDataSource>\n"
-        # What has no place would stand at (0, 0).
+        # Rows without a position would appear at (0, 0).
         f"    <SrcSQL>select * from {PREFIX}{name} where easting is not null</SrcSQL>\n"
         "    <GeometryType>wkbPoint</GeometryType>\n"  # nosec B608 # a name of ours
         f"    <LayerSRS>EPSG:{srid}</LayerSRS>\n"
@@ -342,7 +342,7 @@ def virtual_layers(database: str, frame: SiteFrame) -> str:
 
 
 def _virtual_fields(rows: PlacedRows, frame: SiteFrame) -> str:
-    """Return the fields of a layer with their types: SQLite knows none of times, which it has as texts."""
+    """Return the fields of a layer with their types: SQLite has no type for times, which it keeps as text."""
     names = [*rows.columns, *rows.times, *_heading(rows, frame), "easting", "northing"]
     kinds = dict.fromkeys(rows.times, "DateTime") | dict.fromkeys(_NUMBERS, "Real") | {"id": "Integer64"}
     return "".join(
@@ -374,7 +374,7 @@ def _heading(rows: PlacedRows, frame: SiteFrame) -> dict[str, str]:
     """Return the column of degrees clockwise from the CRS's north, in [0, 360), where there is a heading."""
     if rows.theta is None:
         return {}
-    # Both angles are within a half turn, so that one turn more or less is enough.
+    # Both angles are within half a turn, so that adding one turn is enough.
     rotation = math.remainder(frame.rotation, math.tau)
     degrees = f"(90.0 - (({rows.theta}) + ({rotation!r})) * {180 / math.pi!r})"
     cases = f"when {degrees} < 0 then {degrees} + 360 when {degrees} >= 360 then {degrees} - 360"

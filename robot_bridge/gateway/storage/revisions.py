@@ -1,4 +1,4 @@
-"""Which version of the tables a database has, and how it gets this program's (Alembic)."""
+"""Revisions of the tables: check, create and upgrade them (Alembic)."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ if TYPE_CHECKING:
     from alembic.config import Config
 
 NEEDED = "0014"
-"""The revision that this program works with."""
+"""The revision that this program needs."""
 FIRST = "0001"
-"""Version 0.1.0, which did not write down its revision."""
+"""The revision of version 0.1.0, which did not store its revision."""
 MIGRATIONS = Path(__file__).with_name("migrations")
 
 
@@ -28,19 +28,19 @@ class RevisionError(StoreError):
 
 @dataclass(frozen=True)
 class RevisionReport:
-    """The revision that a database has (None: no tables), and where it differs from what is needed."""
+    """The revision of a database (None: no tables), and its differences from the needed tables."""
 
     found: str | None
     differences: list[str]
 
     @property
     def good(self) -> bool:
-        """Whether this program can work with it."""
+        """Whether this program can use the database."""
         return self.found == NEEDED and not self.differences
 
     @property
     def advice(self) -> str:
-        """The work to do."""
+        """Advice on what must be done."""
         if self.found == NEEDED and self.differences:
             return "somebody changed the tables: put them back, or restore a backup"
         return _advice(self.found)
@@ -48,7 +48,7 @@ class RevisionReport:
 
 _version = Table("alembic_version", MetaData(), Column("version_num", String(32), primary_key=True))
 _ON_POSTGRESQL_ONLY = frozenset({"ix_trajectories_id"})
-"""An index in the place of the primary key, which a table of partitions has none of."""
+"""An index instead of the primary key, which a partitioned table lacks."""
 _MARKS = frozenset({"rr", "sa", "commands", "trajectories"})
 
 
@@ -61,7 +61,7 @@ def current(connection: Connection) -> str | None:
 
 
 def must_create(connection: Connection, where: str, made_by_serve: bool) -> bool:
-    """Tell whether the tables have to be made; raises StoreError when somebody has to decide."""
+    """Return whether the tables must be created; raises StoreError if an administrator must decide."""
     found = current(connection)
     if found == NEEDED:
         return False
@@ -73,7 +73,7 @@ def must_create(connection: Connection, where: str, made_by_serve: bool) -> bool
 
 
 def create(connection: Connection, revision: str = NEEDED) -> None:
-    """Make the tables of ``revision`` in an empty database; raises StoreError when it has some."""
+    """Create the tables of ``revision`` in an empty database; raises StoreError if it has tables."""
     found = current(connection)
     if found is not None:
         raise RevisionError(f"the tables are there already, at revision {found}; {_advice(found)}")
@@ -81,7 +81,7 @@ def create(connection: Connection, revision: str = NEEDED) -> None:
 
 
 def upgrade(connection: Connection) -> str:
-    """Bring the tables up to date with all that is in them; return the revision that was there."""
+    """Upgrade the tables with their contents; return the revision before."""
     found = current(connection)
     if found is None:
         raise RevisionError(f"there are no tables to upgrade; {_advice(found)}")
@@ -94,13 +94,13 @@ def upgrade(connection: Connection) -> str:
 
 
 def report(connection: Connection) -> RevisionReport:
-    """Return how the tables are."""
+    """Return a report on the tables."""
     found = current(connection)
     return RevisionReport(found, differences(connection) if found == NEEDED else [])
 
 
 def differences(connection: Connection) -> list[str]:
-    """Return in words where the tables differ from those that this program works with."""
+    """Return in words how the tables differ from those that this program needs."""
     from alembic.autogenerate import compare_metadata
     from alembic.runtime.migration import MigrationContext
 
@@ -155,7 +155,7 @@ def _differs(
     inspected: TypeEngine[Any],
     expected: TypeEngine[Any],
 ) -> bool | None:
-    """Tell whether two types of a column differ; SQLite only knows whole families of types."""
+    """Return whether two types of a column differ; SQLite only has families of types."""
     if context.dialect.name != "sqlite":
         return None
     return inspected._type_affinity is not expected._type_affinity and _family(inspected) != _family(expected)

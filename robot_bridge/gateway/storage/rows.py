@@ -1,4 +1,4 @@
-"""Rows in bulk: thousands written or read at once, work of many done together, old rows deleted in pieces."""
+"""Rows in bulk: written or read by thousands, batched for several callers, deleted in pieces when old."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from sqlalchemy.exc import DBAPIError
 
 from ...core.errors import DataRefusedError
 
-# --- Many rows into a table or out of it at once: thousands come a second, and drivers take them as they are
+# --- Many rows into or out of a table at once: thousands come per second, passed to the driver unchanged
 
 log = logging.getLogger(__name__)
 
 TOGETHER = 100
-"""rows in one statement: what the driver and the interpreter do for each is then done for all of them."""
+"""rows in one statement: the driver's and interpreter's cost per statement is shared by all of them."""
 
 _DELETE_BY_KEY = (
     "DELETE {table} FROM JSON_TABLE(%s, '$[*]' COLUMNS (id BIGINT PATH '$')) AS gone "
@@ -50,13 +50,13 @@ R = TypeVar("R")
 
 
 class BatchedWork(ABC, Generic[T]):
-    """Work that is done in the same statements for all that wait for it; called, it is done for one."""
+    """Work that shares its statements among all waiting callers; a direct call does it for one."""
 
     @abstractmethod
     def do_all(self, connection: Connection, asked: Sequence[Any]) -> Sequence[T]:
-        """Do it for some, of which ``asked`` has the arguments of each; return a result for each.
+        """Do it for several callers; ``asked`` has the arguments of each. Return a result for each.
 
-        Where this raises nothing was done for anybody: it is called again for fewer.
+        If it raises, nothing was done for any caller: it is called again for fewer.
         """
 
     def __call__(self, connection: Connection, *arguments: Any) -> T:
@@ -66,7 +66,7 @@ class BatchedWork(ABC, Generic[T]):
 
 
 class WorkDone(NamedTuple):
-    """What came of a piece of work, by its number."""
+    """Outcome of a piece of work, by its number."""
 
     number: int
     result: Any
@@ -75,9 +75,9 @@ class WorkDone(NamedTuple):
 def do_together(
     connection: Connection, asked: Sequence[tuple[Callable[..., Any], tuple[Any, ...]]]
 ) -> list[WorkDone]:
-    """Do pieces of work in their order, those of one batched work at the place of the first of them.
+    """Do pieces of work in order, all of one batched work at the place of its first.
 
-    Return what came of them in the order in which they were done.
+    Return their outcomes in the order in which they were done.
     """
     together: dict[BatchedWork[Any], list[int]] = {}
     for number, (work, _) in enumerate(asked):
@@ -94,9 +94,9 @@ def do_together(
 
 
 def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]) -> Iterator[T]:
-    """Yield what ``read`` makes of each row; one that it cannot read is logged by its ``name`` and left out.
+    """Yield ``read(row)`` of each row; a row that it cannot read is logged by its ``name`` and skipped.
 
-    A row that somebody damaged must not keep the gateway from all others, nor from its start.
+    A damaged row must not keep the gateway from the others, nor from starting.
     """
     for row in rows:
         try:
@@ -106,9 +106,9 @@ def readable(rows: Iterable[R], read: Callable[[R], T], name: Callable[[R], str]
 
 
 def add_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Insert ``rows`` in their order; each holds the values of the columns ``names``, several no bytes.
+    """Insert ``rows`` in their order; each has the values of the columns ``names``, without bytes if several.
 
-    All other columns keep their default in the database.
+    All other columns get their database default.
     """
     if len(rows) > 1 and _takes_json(connection):
         for text in _as_json(rows):
@@ -126,7 +126,7 @@ _COPY_END = b"\xff\xff"
 def copy_rows(connection: Connection, table: Table, names: Sequence[str], rows: Iterable[bytes]) -> None:
     """Insert ``rows`` on PostgreSQL; each is a row of its binary format of COPY with the columns ``names``.
 
-    The driver is asked itself, whose errors become those that a statement of SQLAlchemy raises.
+    The driver is called directly; its errors are converted to those of SQLAlchemy.
     """
     driver: Any = connection.connection.driver_connection
     dialect = connection.dialect
@@ -144,9 +144,9 @@ def copy_rows(connection: Connection, table: Table, names: Sequence[str], rows: 
 
 
 def add_messages(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Insert ``rows`` in their order; those with a ``payload`` each by itself.
+    """Insert ``rows`` in their order; those with a ``payload`` one by one.
 
-    A server takes no statement of any size, and a map may be of megabytes.
+    A server limits the size of a statement, and a map may have megabytes.
     """
     payload = names.index("payload")
     for large, some in itertools.groupby(rows, lambda row: row[payload] is not None):
@@ -155,7 +155,7 @@ def add_messages(connection: Connection, table: Table, names: Sequence[str], row
 
 
 def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Insert ``rows`` in place of those with the same value in the first of ``names``, all of its columns."""
+    """Insert ``rows``, replacing those with the same first of ``names``, which are all columns."""
     if _takes_json(connection):
         for text in _as_json(_last_of_each(rows)):
             connection.exec_driver_sql(_upsert_json(table, tuple(names), connection.dialect), (text,))
@@ -165,8 +165,8 @@ def put_rows(connection: Connection, table: Table, names: Sequence[str], rows: S
 
 
 def change_rows(connection: Connection, table: Table, names: Sequence[str], rows: Sequence[Row]) -> None:
-    """Write ``rows`` into those with the same value in the first of ``names``; what is not there stays so."""
-    # For a few PostgreSQL would read the whole table, as for the hundred that it expects in any text.
+    """Update the rows with the same value in the first of ``names``; missing ones are not inserted."""
+    # For a few, PostgreSQL would read the whole table: it expects a hundred rows in any text.
     if len(rows) >= FEW and _takes_json(connection):
         for text in _as_json(_last_of_each(rows)):
             connection.exec_driver_sql(_update_json(table, tuple(names), connection.dialect), (text,))
@@ -176,10 +176,10 @@ def change_rows(connection: Connection, table: Table, names: Sequence[str], rows
 
 
 def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) -> None:
-    """Delete the rows of RR or SA that have one of ``ids``, and wait for no other row.
+    """Delete the rows of RR or SA with one of ``ids``, without waiting for any other row.
 
-    For ``id in (...)`` MariaDB goes through the whole of a small table, and waits at every row that a robot
-    has not committed. Told to begin with the ids it takes each from the primary key.
+    For ``id in (...)`` MariaDB scans a small table and waits at every row that a robot has not committed.
+    With a join that begins with the ids it finds each by the primary key.
     """
     if connection.dialect.name != "mariadb":
         _delete_rows(connection, table, "id", ids)
@@ -190,9 +190,9 @@ def delete_messages(connection: Connection, table: Table, ids: Sequence[int]) ->
 def is_one_of(
     connection: Connection, column: ColumnElement[str], values: Collection[str]
 ) -> ColumnElement[bool]:
-    """Return the condition that ``column`` is one of ``values``, however many there are.
+    """Return the condition that ``column`` is one of ``values``, of any number.
 
-    PostgreSQL takes 65535 values in a statement, and a list as one of them.
+    PostgreSQL takes 65535 values in a statement; a list counts as one.
     """
     if connection.dialect.name == "postgresql":
         return column == any_(cast(literal(list(values), ARRAY(Text)), ARRAY(Text)))
@@ -202,7 +202,7 @@ def is_one_of(
 def padded_pieces(values: Sequence[T]) -> Iterator[list[T]]:
     """Yield pieces of ``values`` for an IN, the last one of each repeated until they are 1, 2, 4, 8 … .
 
-    Drivers and servers keep a statement ready for each number that comes up, and take so many at most.
+    Drivers and servers cache one statement per number of values, and limit that number.
     """
     for begin in range(0, len(values), TOGETHER):
         some = values[begin : begin + TOGETHER]
@@ -217,8 +217,8 @@ def _delete_rows(connection: Connection, table: Table, name: str, values: Sequen
 def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
     """Yield ``rows`` in pieces of at most ``TOGETHER``, on SQLite of 1, 2, 4, 8 … rows.
 
-    Python keeps 128 statements of SQLite ready: one for every number of rows that ever came up is
-    megabytes, and takes an hour to fill. On a server each further piece is a way there and back.
+    Python caches 128 statements of SQLite: one for every number of rows takes megabytes, and an hour to fill.
+    On a server each further piece costs a round trip.
     """
     few_kinds = connection.dialect.name == "sqlite"
     begin = 0
@@ -228,7 +228,7 @@ def _pieces(connection: Connection, rows: Sequence[T]) -> Iterator[Sequence[T]]:
         begin += size
 
 
-# Statements by the names that they are made of.
+# Statement texts, cached by table and column names.
 
 
 @lru_cache
@@ -262,7 +262,7 @@ def _quoted(names: Iterable[str], dialect: Dialect) -> list[str]:
     return [dialect.identifier_preparer.quote(name) for name in names]
 
 
-# --- Rows as one text, for PostgreSQL: its driver takes ten times as long for each value by itself ---
+# --- Rows as one JSON text, for PostgreSQL: its driver takes ten times as long for single values ---
 
 FEW = 16
 MOST_IN_TEXT = 5000
@@ -274,7 +274,7 @@ def _takes_json(connection: Connection) -> bool:
 
 
 def _last_of_each(rows: Sequence[Row]) -> list[Row]:
-    """Return of rows with the same first value the last: one statement writes each row once."""
+    """Return the last of the rows with the same first value: one statement writes each row once."""
     return list({row[0]: row for row in rows}.values())
 
 
@@ -317,14 +317,15 @@ _ELEMENTS = "json_array_elements(cast(%s AS json)) WITH ORDINALITY AS e (r, n) O
 def _values(table: Table, names: Sequence[str], dialect: Dialect) -> str:
     """Return the values of a row that is a JSON array.
 
-    Texts are of any length here: a cast to a shorter one would cut them off, where an insertion refuses them.
+    Texts have no length limit here: a cast to a shorter type would truncate them, whereas an insertion
+    refuses them.
     """
     kinds = [table.columns[name].type for name in names]
     texts = ["text" if isinstance(kind, String) else kind.compile(dialect) for kind in kinds]
     return ", ".join(f"cast(r ->> {number} AS {text})" for number, text in enumerate(texts))
 
 
-# --- Deleting what is old: a few rows at a time, so that nobody waits for the database ---
+# --- Deletion of old rows: a few at a time, so that nobody waits for the database ---
 
 
 def delete_oldest(
@@ -348,8 +349,8 @@ def delete_oldest(
 
 
 def beside_the_time(column: Column[str]) -> ColumnElement[str]:
-    """Return a text column for a condition beside that on the time, which the database is to go by.
+    """Return a text column for a condition beside that on the time, whose index the database should use.
 
-    By the index of a state it would have to read nearly every row to see how old that is.
+    By an index on a state it would have to read nearly every row to see its age.
     """
     return column.concat("")

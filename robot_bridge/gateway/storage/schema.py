@@ -1,9 +1,9 @@
 """The tables.
 
 ``rr`` and ``sa`` are the paper's (section IV): robots write requests to the one and read and delete their
-answers in the other. The rest belongs to the gateway. ``params`` is JSON text, read by the gateway itself,
-so that one robot's bad JSON spoils no other row. Ids are never used twice: a robot tells a repeated answer
-from a new one by them. Times are seconds since 1970-01-01 UTC, but for ``created_at`` of rr and sa.
+answers in the other. The rest belongs to the gateway. ``params`` is JSON text, read by the gateway itself, so
+that one robot's bad JSON affects no other row. Ids are never reused: by them a robot distinguishes a repeated
+answer from a new one. Times are seconds since 1970-01-01 UTC, but for ``created_at`` of rr and sa.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from sqlalchemy.dialects import mysql
 
 metadata = MetaData()
 
-# SQLite numbers rows by itself only where the column's type is INTEGER.
+# SQLite numbers rows only if the column's type is INTEGER.
 _Id = BigInteger().with_variant(Integer, "sqlite")
 # MariaDB's TEXT and BLOB end at 64 KiB, which a path or an image exceeds.
 _LongText = Text().with_variant(mysql.MEDIUMTEXT, "mysql", "mariadb")
@@ -37,7 +37,7 @@ _LongBytes = LargeBinary().with_variant(mysql.LONGBLOB, "mysql", "mariadb")
 
 
 def _id() -> Column[int]:
-    # On PostgreSQL an identity: robots need no right on its sequence, and can neither read nor wind it on.
+    # On PostgreSQL an identity: robots need no right on its sequence, and can neither read nor advance it.
     return Column("id", _Id, Identity(), primary_key=True, autoincrement=True)
 
 
@@ -64,7 +64,7 @@ rr = _messages("rr")
 # Robots read their rows "order by urgent desc, id": an emergency stop overtakes what waits.
 sa = _messages("sa", Column("urgent", SmallInteger, nullable=False, server_default="0"))
 
-# Facts about the database itself: "id" tells it from every other database.
+# Facts about the database itself: "id" distinguishes it from every other database.
 bridge = Table(
     "bridge",
     metadata,
@@ -146,7 +146,7 @@ closures = Table(
     Column("opened_by", String(128), nullable=True),
 )
 
-# A robot that waits at the end of ``command`` for another to pass; ``rest`` is the SetPath it is sent then.
+# A robot that waits at the end of ``command`` for another to pass; ``rest`` is the SetPath sent afterwards.
 holds = Table(
     "holds",
     metadata,
@@ -170,7 +170,7 @@ queues = Table(
     Column("at", Double, nullable=True),
 )
 
-# ``content`` is what the operator gave, JSON; ``place`` orders the open tasks of a robot.
+# ``content`` is the operator's input, JSON; ``place`` orders the open tasks of a robot.
 queue_tasks = Table(
     "queue_tasks",
     metadata,
@@ -191,9 +191,9 @@ queue_tasks = Table(
     Index("ix_queue_tasks_robot_ended_at", "robot", "ended_at"),
 )
 
-# Cone plans; ``content`` is what they were submitted with beside the plan, ``document`` the plan itself,
-# ``proposal`` that of what is left, ``held`` the robots that wait for it, all JSON. ``meetings`` and
-# ``closed`` count what speaks against the proposal, ``try_again`` says whether failed cones are in it.
+# Cone plans; ``content`` is the rest of the submission, ``document`` the plan itself, ``proposal`` the plan
+# of what is left, ``held`` the robots that wait for it, all JSON. ``meetings`` and ``closed`` count the
+# objections to the proposal; ``try_again``: whether it includes failed cones.
 plans = Table(
     "plans",
     metadata,
@@ -269,7 +269,7 @@ trajectories = Table(
     sqlite_autoincrement=True,
 )
 
-# ``source`` is the robot's own number of what it saw: told twice, stored once.
+# ``source`` is the robot's own number of the observation: reported twice, stored once.
 observations = Table(
     "observations",
     metadata,
@@ -353,8 +353,8 @@ audit = Table(
 )
 
 # The gateways of a fleet that several serve. Each lives until ``lease_until``, by the database's own clock,
-# unless it renews that; ``run`` tells one process from the next of the same name. ``address`` is where robots
-# reach it, ``ws://host:port``, null where that is not known.
+# unless it renews that; ``run`` distinguishes processes of the same name. ``address`` is where robots reach
+# it, ``ws://host:port``, null if unknown.
 gateways = Table(
     "gateways",
     metadata,
@@ -368,7 +368,8 @@ gateways = Table(
     Column("address", String(256), nullable=True),
 )
 
-# Which run of which gateway has a robot: only that one writes what concerns it. ``fence`` counts its owners.
+# The run of the gateway that owns each robot: only that run writes the robot's rows. ``fence`` counts its
+# owners.
 robot_owners = Table(
     "robot_owners",
     metadata,
@@ -378,8 +379,8 @@ robot_owners = Table(
     Column("fence", BigInteger, nullable=False),
 )
 
-# What an operator asked at one gateway of a robot that another one has. ``answer`` is JSON, null until there
-# is one; ``begun_by`` is the run that began to do it.
+# Operators' requests at one gateway about a robot of another one. ``answer`` is JSON, null until there is
+# one; ``begun_by`` is the run that began it.
 relayed_requests = Table(
     "relayed_requests",
     metadata,

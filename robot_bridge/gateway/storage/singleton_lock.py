@@ -1,7 +1,7 @@
 """One gateway at a time on a database: a lock that ends with the process that holds it.
 
 SQLite: a lock on a file beside the database. PostgreSQL: a lock on table ``bridge``; MariaDB: a lock on a row
-of it; each in a transaction that stays open and changes nothing, so that it is in nobody's way. Advisory
+of it; each in a transaction that stays open and changes nothing, so that it blocks nobody. Advisory
 locks would do as well if robots' accounts could not take them.
 """
 
@@ -38,44 +38,44 @@ log = logging.getLogger(__name__)
 
 PING_INTERVAL = 2.0
 GHOST_S = 15
-"""seconds after which a server takes the lock from a gateway that it does not hear of any more."""
+"""seconds after which a server takes the lock from a gateway that it no longer hears from."""
 PATIENCE_AT_START = 2.0
-"""seconds for a server to notice that the gateway before was killed."""
+"""seconds for a server to notice that the previous gateway was killed."""
 GATEWAY = "gateway"
-"""What a gateway says that it does."""
+"""The purpose that a gateway states."""
 RUN, ROW = "gateway", "gateway_lock"
-"""The rows of ``bridge`` that say which gateway runs, and that is locked."""
+"""The rows of ``bridge`` with the running gateway, and with the lock."""
 
 _TAKEN = {"55P03", 1205}
-"""What PostgreSQL and MariaDB answer when somebody else holds the lock."""
+"""Error codes of PostgreSQL and MariaDB when the lock is held elsewhere."""
 
 
 class GatewayLock(Protocol):
-    """A lock of one kind of database; all of it waits, so it is called in a thread."""
+    """A lock on one kind of database; all methods block, so they are called in a thread."""
 
     def acquire(self) -> bool:
-        """Take the lock; return false when somebody else holds it."""
+        """Take the lock; return false when it is held elsewhere."""
 
     def ping(self) -> None:
         """Raise StoreError when the lock is not held any more."""
 
     def write(self, run: dict[str, Any]) -> None:
-        """Write down which gateway runs."""
+        """Store which gateway runs."""
 
     def read(self) -> dict[str, Any]:
-        """Return which gateway wrote itself down last."""
+        """Return the gateway that was stored last."""
 
     def fleet(self) -> list[str]:
         """Return the gateways that serve the database together, without this lock."""
 
     def release(self) -> None:
-        """Give the lock back."""
+        """Release the lock."""
 
 
 class SingletonLock:
-    """Sees to it that this is the only gateway on its database.
+    """Ensures that this is the only gateway on its database.
 
-    ``does`` says what else holds it: work under which no gateway may run.
+    ``does`` names any other holder: work during which no gateway may run.
     """
 
     def __init__(self, url: URL, does: str = GATEWAY) -> None:
@@ -98,7 +98,7 @@ class SingletonLock:
                 other = await asyncio.to_thread(self._lock.read)
                 raise BridgeError(f"database {self._where}: {_taken(self._does, other)}")
             await asyncio.sleep(0.1)
-        # After the lock: a gateway of a fleet enters itself first, and looks for the lock then.
+        # After the lock: a gateway of a fleet registers first, and checks the lock then.
         if fleet := await asyncio.to_thread(self._lock.fleet):
             await self.release()
             raise BridgeError(f"database {self._where}: {_serve_together(self._does, fleet)}")
@@ -115,13 +115,13 @@ class SingletonLock:
                 await asyncio.to_thread(self._lock.ping)
             except StoreError as error:
                 log.error("%s; its lock is taken anew as soon as it is back", error)
-                await self._take_again()
+                await self._reacquire()
 
     async def release(self) -> None:
-        """Give the database back."""
+        """Release the database."""
         await asyncio.to_thread(self._lock.release)
 
-    async def _take_again(self) -> None:
+    async def _reacquire(self) -> None:
         while True:
             try:
                 taken = await asyncio.to_thread(self._lock.acquire)
@@ -136,15 +136,15 @@ class SingletonLock:
                 )
             if taken:
                 return
-            # The server has not noticed yet that the connection before is gone.
+            # The server has not noticed yet that the previous connection is gone.
             await asyncio.sleep(PING_INTERVAL)
 
 
 @contextlib.asynccontextmanager
 async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
-    """Keep gateways off a database as long as a command ``does`` its work there.
+    """Keep gateways off a database while a command ``does`` its work there.
 
-    What it does must leave table ``bridge`` itself alone, which is locked.
+    The work must not alter table ``bridge`` itself, which is locked.
 
     :raises BridgeError: when a gateway runs on it; StoreError when the database cannot be used.
     """
@@ -160,7 +160,7 @@ async def no_gateway(url: URL, does: str) -> AsyncIterator[None]:
 
 
 class FileLock:
-    """A lock on a file beside an SQLite database; the system ends it with the process."""
+    """A lock on a file beside an SQLite database; the system releases it with the process."""
 
     def __init__(self, url: URL) -> None:
         self._url = url
@@ -191,13 +191,13 @@ class FileLock:
         """Do nothing: the lock is held as long as the process lives."""
 
     def write(self, run: dict[str, Any]) -> None:
-        """Write down which gateway runs."""
+        """Store which gateway runs."""
         if self._file is not None:
             os.ftruncate(self._file, 0)
             os.pwrite(self._file, json.dumps(run).encode(), 0)
 
     def read(self) -> dict[str, Any]:
-        """Return which gateway wrote itself down last."""
+        """Return the gateway that was stored last."""
         path = self._path()
         with contextlib.suppress(OSError):
             return _run_in(path.read_text(encoding="utf-8") if path else None)
@@ -208,7 +208,7 @@ class FileLock:
         return []
 
     def release(self) -> None:
-        """Give the lock back; its file stays, since somebody may wait for it already."""
+        """Give the lock back; its file stays, since another process may wait for it already."""
         if self._file is not None:
             os.close(self._file)
             self._file = None
@@ -220,7 +220,7 @@ class FileLock:
 
 
 class ServerLock:
-    """A lock in a transaction of its own connection, which the server ends when it hears no more of it."""
+    """A lock in a transaction of its own connection, which the server ends when the connection is silent."""
 
     def __init__(self, url: URL) -> None:
         self._url = url
@@ -246,18 +246,18 @@ class ServerLock:
         return True
 
     def ping(self) -> None:
-        """Use the connection, so that the server knows that somebody is there."""
+        """Use the connection, so that the server knows that it is alive."""
         with _explained(self._url, self._dialect):
             assert self._connection is not None
             self._connection.execute(text("select 1"))
 
     def write(self, run: dict[str, Any]) -> None:
-        """Write down which gateway runs."""
+        """Store which gateway runs."""
         with _explained(self._url, self._dialect), self._engine.begin() as connection:
             connection.execute(update(bridge).where(bridge.c.name == RUN).values(value=json.dumps(run)))
 
     def read(self) -> dict[str, Any]:
-        """Return which gateway wrote itself down last."""
+        """Return the gateway that was stored last."""
         with _explained(self._url, self._dialect), self._engine.connect() as connection:
             return _run_in(connection.scalar(select(bridge.c.value).where(bridge.c.name == RUN)))
 
@@ -271,14 +271,14 @@ class ServerLock:
             return sorted(member.gw for member in stored_gateways.members(connection) if member.alive)
 
     def is_free(self) -> bool:
-        """Tell whether nobody holds the lock, without taking it for longer than that takes."""
+        """Return whether the lock is free; it is held only during the check."""
         try:
             return self.acquire()
         finally:
             self.release()
 
     def release(self) -> None:
-        """Give the lock back."""
+        """Release the lock."""
         connection, self._connection = self._connection, None
         if connection is not None:
             with contextlib.suppress(SQLAlchemyError):
@@ -286,12 +286,12 @@ class ServerLock:
 
 
 def check_no_sole_gateway(url: URL) -> None:
-    """Raise BridgeError where a gateway has a database alone, or a command works there that wants none.
+    """Raise BridgeError if a sole gateway, or a command that excludes gateways, holds the database.
 
-    To be called by a gateway that has entered itself among those that serve it together. Waits.
+    Called by a gateway that has registered among those that serve it together. Blocks.
     """
     lock, until = ServerLock(url), time.monotonic() + PATIENCE_AT_START
-    # Another one that looks, too, holds it for a moment.
+    # Another gateway that checks holds it for a moment, too.
     while not lock.is_free():
         if time.monotonic() > until:
             found = _taken(GATEWAY, lock.read())
@@ -304,7 +304,7 @@ def check_no_sole_gateway(url: URL) -> None:
 _LOCKING = {
     "postgresql": (
         f"set idle_in_transaction_session_timeout = {GHOST_S * 1000}",
-        # Shuts out itself, and changes of the table; neither readers nor writers.
+        # Conflicts with itself and with changes of the table; neither with readers nor with writers.
         "lock table bridge in share update exclusive mode nowait",
     ),
     "mariadb": (
@@ -315,7 +315,7 @@ _LOCKING = {
 
 
 def _has_lock(url: URL) -> bool:
-    """Tell whether gateways lock this database; those of version 0.1.0 did not."""
+    """Return whether gateways lock this database; those of version 0.1.0 did not."""
     if url.get_backend_name() == "sqlite":
         return True
     engine, dialect = open_engine(url)
@@ -352,7 +352,7 @@ def _run_in(text: str | None) -> dict[str, Any]:
 
 
 def _taken(does: str, other: dict[str, Any]) -> str:
-    """Return in words who has the database, and what has to be done by whoever ``does`` something there."""
+    """Return a message on who has the database, and what to do first, for a user who ``does`` something."""
     found = other.get("does", GATEWAY)
     if found != GATEWAY:
         return f"'{found}' is under way on it{_named(other)}; wait for its end, then try again"
@@ -369,7 +369,7 @@ def _taken(does: str, other: dict[str, Any]) -> str:
 
 
 def _serve_together(does: str, fleet: list[str]) -> str:
-    """Return in words that gateways serve the database together, to whoever ``does`` something there."""
+    """Return a message that gateways serve the database together, for a user who ``does`` something there."""
     names = f"{'gateway' if len(fleet) == 1 else 'gateways'} {listed_names(fleet)}"
     if does == GATEWAY:
         return (
@@ -388,20 +388,19 @@ def _named(run: dict[str, Any]) -> str:
     return ""
 
 
-# --- An older state of the database, which somebody put back by other means than ``database restore``
+# --- Detection of an older database state, restored by other means than ``database restore``
 
 
 class MessageNote:
-    """The newest message that a database gave out, noted in a file of this computer under the database's id.
+    """The newest message id of a database, recorded in a local file under the database's id.
 
     A database that has given out fewer was put back to an older state, and its next messages have ids that
-    robots know. A robot acknowledges such a message and does nothing, be it an Abort. So the database counts
-    as another one from then on, and robots forget.
+    robots know. A robot acknowledges such a message and does nothing, even for an Abort. So the database gets
+    a new id, and robots forget the old ids.
 
-    That is so too where other gateways serve it: to leave it as it is would leave their robots in that
-    danger. They find the new id in :data:`PING_INTERVAL`, and end to be started again with it; meanwhile
-    their robots can connect to this one. ``folder`` is None for a database in memory, of which nothing is
-    noted.
+    That also holds if other gateways serve it: otherwise their robots would stay in that danger. They find
+    the new id within :data:`PING_INTERVAL`, and end to be restarted with it; meanwhile their robots can
+    connect to this one. ``folder`` is None for a database in memory, for which nothing is recorded.
     """
 
     def __init__(self, database: Database, folder: Path | None, gateway: str | None = None) -> None:
@@ -412,7 +411,7 @@ class MessageNote:
         self._news = TroubleNews()
 
     async def check(self) -> None:
-        """Have a database count as another one that is older than what is noted of it; raises StoreError."""
+        """Give a new id to a database that is older than its record; raises StoreError."""
         self._id = await self._database.run(database_id)
         if (count := await self._database.run(message_count)) is None:
             return
@@ -424,15 +423,15 @@ class MessageNote:
         await self._write(newest)
 
     async def hold(self) -> None:
-        """Note the newest message until cancelled.
+        """Record the newest message until cancelled.
 
-        :raises FatalError: when the database was put back to an older state. What this gateway knows of
-            commands and robots is of another one; when it is started again it does what is needed.
+        :raises FatalError: when the database was put back to an older state. The commands and robots known
+        here are not of that state; a restart puts it right.
         """
         while True:
             await asyncio.sleep(PING_INTERVAL)
             count = None
-            # Who needs the database says that it is away; meanwhile it gives out no messages.
+            # The users of the database report that it is away; meanwhile it gives out no messages.
             with contextlib.suppress(StoreError):
                 count = await self._database.read(message_count)
             if count is None:
@@ -446,7 +445,7 @@ class MessageNote:
             await self._write(newest)
 
     async def close(self, timeout: float) -> None:
-        """Note the newest message once more, unless the database does not answer by then."""
+        """Record the newest message once more, if the database answers in time."""
         with contextlib.suppress(StoreError, TimeoutError):
             async with asyncio.timeout(timeout):
                 count = await self._database.read(message_count)
@@ -479,7 +478,7 @@ class MessageNote:
             await asyncio.to_thread(write_state, file, content, 0o600)
             self._written = newest
         except OSError as error:
-            # It must not keep the gateway from its work.
+            # A failed record must not disturb the gateway.
             if self._news.has("note", str(error)):
                 log.warning(
                     "%s cannot be written: %s; an older state of the database that is put back may not be "
@@ -489,7 +488,7 @@ class MessageNote:
                 )
 
     def _read(self) -> int | None:
-        """Return the newest message that a gateway of this computer noted, None where nothing is noted."""
+        """Return the newest message recorded on this computer, None without a record."""
         found = []
         for file in [] if self._folder is None else self._folder.glob(f"{self._stem()}*.json"):
             try:
@@ -506,7 +505,7 @@ class MessageNote:
 
 
 def _renewed(connection: Connection, before: str) -> tuple[bool, list[str]]:
-    """Have the database count as another one; tell whether that was new, and who serves it together."""
+    """Give the database a new id; return whether it was not yet renewed, and the gateways that serve it."""
     is_shared = connection.dialect.name == "postgresql"
     members = stored_gateways.members(connection) if is_shared else []
     return renew_id(connection, before), sorted(member.gw for member in members if member.alive)

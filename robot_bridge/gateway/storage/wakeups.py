@@ -1,4 +1,4 @@
-"""How a reader learns that there are new rows: the database says so, or it looks again and again."""
+"""Wake-ups of readers of new rows: by a notification of the database, or by polling."""
 
 from __future__ import annotations
 
@@ -27,63 +27,63 @@ GATEWAY_CHANNEL = "rr"
 SHORTEST_S = 0.0003
 LONGEST_S = 0.02
 SELDOM_S, QUIET_AFTER_S = 0.1, 5.0
-"""The pause where nothing was found for so many seconds: robots that report by SQL do so more often."""
+"""The polling pause after so many seconds without rows: robots that report by SQL do so more often."""
 UNSEEN_S = 0.25
-"""How long a write may go unseen that left its log as it was."""
+"""Longest delay of a write that did not change the log's time and size."""
 FALLBACK_S = 1.0
-"""How long a reader that is told of new rows trusts that it would have been."""
+"""How long a notified reader trusts the absence of notifications."""
 RETRY_AFTER_S = 1.0
 FLOOD, FLOOD_WITHIN_S = 300, 1.0
 """Notifications of one backend in so many seconds: a robot sends one each time the gateway dozes."""
 FLOOD_PAUSE_S = 10.0
-"""How long nobody listens after a flood: the server keeps its notifications to itself, the reader looks."""
+"""How long the listener is off after a flood: no notifications are received, the reader polls."""
 FIRST_PACE_S = 0.001
-"""Seconds that the reader waits after a notification if there was nothing behind the last one."""
+"""Seconds that the reader waits after a notification if it found no row after the last one."""
 
 
 def robot_channel(robot: str) -> str:
-    """Return the channel on which ``robot`` is told of its answers."""
+    """Return the channel on which ``robot`` is notified of its answers."""
     return f"sa_{robot}"[:63]
 
 
 class Wakeup(Protocol):
-    """Tells when to look for new rows."""
+    """Waits for the time to check for new rows."""
 
     async def enable_notifications(self) -> bool:
-        """Ask to be told of new rows from now on; false where nobody tells, or not yet.
+        """Enable notifications of new rows from now on; return false where there are none, or not yet.
 
-        When it is true, look once more before :meth:`wait`: what came before it may not be told.
+        If true, check once more before :meth:`wait`: earlier rows may not be notified.
         """
 
     async def wait(self, *, found: bool) -> None:
-        """Return when it is time to look again; ``found``: there was something the last time."""
+        """Return when it is time to check again; ``found``: the last check found rows."""
 
     async def close(self) -> None:
         """Stop."""
 
 
 class OwnBackend(Protocol):
-    """What writes for this program."""
+    """The connection that writes for this program."""
 
     @property
     def backend(self) -> int | None:
-        """The number of its backend at the server, None while there is none."""
+        """The number of its backend at the server, None while not connected."""
 
 
 class ReaderLock(Protocol):
-    """The lock by which those that write know whether the reader is awake."""
+    """The lock by which writers know whether the reader is awake."""
 
     async def enable_notifications(self) -> bool:
-        """Hold it; false while somebody writes who thinks that the reader is awake."""
+        """Take it; return false while a writer still assumes that the reader is awake."""
 
     async def disable_notifications(self) -> None:
-        """Let it go."""
+        """Release it."""
 
 
 class PollingWakeup:
-    """Looks again at once where there was something, else less and less often.
+    """Polls at once after rows were found, else less and less often.
 
-    That is down to every 20 ms, and every 100 ms after five seconds without anything.
+    The pause grows to 20 ms, and to 100 ms after five seconds without rows.
     """
 
     def __init__(self) -> None:
@@ -91,7 +91,7 @@ class PollingWakeup:
         self._found_at = time.monotonic()
 
     async def enable_notifications(self) -> bool:
-        """Return false: nobody tells."""
+        """Return false: there are no notifications."""
         return False
 
     async def wait(self, *, found: bool) -> None:
@@ -110,15 +110,15 @@ class PollingWakeup:
 class LogWakeup(PollingWakeup):
     """Returns when the file ``log``, SQLite's write-ahead log, was written to, or after :data:`UNSEEN_S`.
 
-    To stat a file takes a twentieth of the time of a question to the database. Two writes within one tick of
-    the file system's clock may leave the same time and size: hence the limit.
+    A stat takes a twentieth of the time of a query. Two writes within one tick of the file system's clock may
+    leave the same time and size: hence the limit.
     """
 
     def __init__(self, log: Path) -> None:
         super().__init__()
         self._log = log
         self._seen: tuple[int, int] | None = None
-        """What the log was before the reader last began to look at the tables."""
+        """Time and size of the log before the reader last began to read the tables."""
 
     async def wait(self, *, found: bool) -> None:
         """Return when the log was written to; without a log after a pause."""
@@ -139,10 +139,10 @@ class LogWakeup(PollingWakeup):
 
 
 class NotifiedWakeup:
-    """LISTEN on a channel of PostgreSQL. What a notification carries is never looked at: anyone may send one.
+    """LISTEN on a channel of PostgreSQL. Payloads of notifications are ignored: anyone may send one.
 
-    Those of its ``own`` backend are passed over: what this program wrote itself is no news to it. A backend
-    that sends a flood of them is noted in ``offences``, and for a while nobody listens: the reader looks.
+    Those of its ``own`` backend are skipped: they report this program's own writes. A backend that floods is
+    recorded in ``offences``, and for a while the listener is off: the reader polls.
     """
 
     def __init__(self, engine: Engine, channel: str, own: OwnBackend, offences: Offences) -> None:
@@ -151,12 +151,12 @@ class NotifiedWakeup:
         self._own = own
         self._offences = offences
         self.is_flooded = False
-        """Whether nobody listens because of a flood."""
+        """Whether the listener is off because of a flood."""
         self._news = asyncio.Event()
         self._task: asyncio.Task[None] | None = None
 
     async def enable_notifications(self) -> bool:
-        """Return true: every new row is told of."""
+        """Return true: every new row is notified."""
         return True
 
     async def wait(self, *, found: bool) -> None:
@@ -181,9 +181,9 @@ class NotifiedWakeup:
         while True:
             try:
                 with await asyncio.to_thread(self._connect) as connection:
-                    # Something may have been written while nobody listened.
+                    # Rows may have been written while the listener was off.
                     self._news.set()
-                    await self._hear(connection)
+                    await self._receive(connection)
             except FloodError as flood:
                 log.warning("%s; nobody listens for %g s", flood, FLOOD_PAUSE_S)
                 self._offences.add_flood(flood.backend)
@@ -208,13 +208,13 @@ class NotifiedWakeup:
         connection.execute(sql.SQL("listen {}").format(sql.Identifier(self._channel)))
         return connection
 
-    async def _hear(self, connection: Connection[Any]) -> None:
-        """Take in notifications until the connection is lost, which raises psycopg.Error."""
+    async def _receive(self, connection: Connection[Any]) -> None:
+        """Receive notifications until the connection is lost, which raises psycopg.Error."""
         loop = asyncio.get_running_loop()
         lost: asyncio.Future[None] = loop.create_future()
         own, rate = self._own, NotificationRate()
 
-        def take_in() -> None:
+        def receive() -> None:
             try:
                 connection.pgconn.consume_input()
                 while notice := connection.pgconn.notifies():
@@ -225,12 +225,12 @@ class NotifiedWakeup:
                 if not lost.done():
                     lost.set_exception(error)
 
-        # By the socket itself: the driver's own way takes ten times the processor time for each notification.
-        # By a second number for it: libpq closes its own as soon as the connection is lost, and a client that
-        # is accepted while the loop still watches that one would be given the same number, and not be heard.
+        # Watches the socket itself: the driver's own way takes ten times the processor time per notification.
+        # Uses a second descriptor: libpq closes its own as soon as the connection is lost, and a client
+        # accepted while the loop still watches that one would get the same number, and not be served.
         number = os.dup(connection.fileno())
         try:
-            loop.add_reader(number, take_in)
+            loop.add_reader(number, receive)
             await lost
         finally:
             loop.remove_reader(number)
@@ -238,7 +238,7 @@ class NotifiedWakeup:
 
 
 class FloodError(Exception):
-    """One backend sends notifications without end."""
+    """One backend floods the channel with notifications."""
 
     def __init__(self, backend: int) -> None:
         super().__init__(f"backend {backend} sends more than {FLOOD} notifications in {FLOOD_WITHIN_S:g} s")
@@ -246,7 +246,7 @@ class FloodError(Exception):
 
 
 class NotificationRate:
-    """How many notifications came from each backend of late."""
+    """Counts recent notifications of each backend."""
 
     def __init__(self) -> None:
         self._since = 0.0
@@ -263,11 +263,11 @@ class NotificationRate:
 
 
 class AdaptiveWakeup:
-    """Looks again and again while there is much to do, and is told of new rows when there is not.
+    """Polls while there is much to do, and is notified of new rows when there is not.
 
-    Telling costs: PostgreSQL lets transactions that notify commit one after the other, each waiting for the
-    disk by itself. So those that write look first whether the reader is awake, by a lock that it holds only
-    while it dozes (migration 0006), and that none of them may hold while it begins to: so nothing is missed.
+    Notifications cost: PostgreSQL serialises the commits of transactions that notify, each waiting for the
+    disk by itself. So writers check first whether the reader is awake, by a lock that it holds only while it
+    dozes (migration 0006), and that none of them may hold while it begins to: so nothing is missed.
     """
 
     def __init__(
@@ -280,11 +280,11 @@ class AdaptiveWakeup:
         self._lock = lock
         self._is_notified = False
         self._pace = 0.0
-        """Seconds to wait after a notification, as long as there was nothing behind the last ones."""
+        """Seconds to wait after a notification, as long as no rows followed the last ones."""
 
     async def enable_notifications(self) -> bool:
-        """Begin to doze; false while somebody writes who thinks that the reader is awake."""
-        # While nobody listens it would sleep until the second is over.
+        """Begin to doze; return false while a writer still assumes that the reader is awake."""
+        # With the listener off it would sleep until the second is over.
         self._is_notified = not self._listening.is_flooded and await self._lock.enable_notifications()
         return self._is_notified
 
@@ -297,7 +297,7 @@ class AdaptiveWakeup:
             return
         if not found:
             await self._listening.wait(found=False)
-            # However many come, each look at the tables answers all of them.
+            # One read of the tables serves any number of notifications.
             await asyncio.sleep(self._pace)
             self._pace = min(max(2 * self._pace, FIRST_PACE_S), LONGEST_S)
         self._is_notified = False

@@ -364,7 +364,7 @@ def add_requests(
 
 
 def is_asked(connection: Connection, me: Member) -> bool:
-    """Tell whether there are requests that :func:`begin_requests` would return."""
+    """Return whether there are requests that :func:`begin_requests` would return."""
     return bool(connection.execute(_IS_ASKED, {"gw": me.gw, "run": me.run}).scalar_one())
 
 

@@ -304,7 +304,7 @@ def find_placements(connection: Connection, ids: Sequence[int]) -> list[Placemen
 
 
 def has_any(connection: Connection, kind: str, name: str) -> bool:
-    """Tell whether a cone is stored of the layout, plan or robot ``name``; ``kind`` says which that is."""
+    """Return whether a cone is stored of the layout, plan or robot ``name``; ``kind`` says which that is."""
     c = placements.c
     return connection.scalar(select(c.id).where(c[kind] == name).limit(1)) is not None
 

@@ -146,10 +146,10 @@ class OwnerFence(Protocol):
     """Tells which robots this gateway has. Those methods that take a connection are called in its thread."""
 
     def owns(self, robot: str) -> bool:
-        """Tell whether this gateway has the robot, for all that it knows."""
+        """Return whether this gateway has the robot, for all that it knows."""
 
     def may_command(self, robot: str) -> bool:
-        """Tell whether the robot may be set in motion now: this gateway has it, and may trust that."""
+        """Return whether the robot may be set in motion now: this gateway has it, and may trust that."""
 
     def check(self, connection: Connection, robots: Collection[str]) -> None:
         """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""

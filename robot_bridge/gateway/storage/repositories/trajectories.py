@@ -195,7 +195,7 @@ def forget(connection: Connection, before: float, limit: int) -> int:
 
 
 def is_known_within(connection: Connection, robot: str, since: float, until: float) -> bool:
-    """Tell whether a position of ``robot`` is stored from ``since`` up to ``until``."""
+    """Return whether a position of ``robot`` is stored from ``since`` up to ``until``."""
     query = select(trajectories.c.id).where(*_conditions(TrajectoryQuery((robot,), since, until))).limit(1)
     return connection.scalar(query) is not None
 

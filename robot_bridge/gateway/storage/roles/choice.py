@@ -16,7 +16,7 @@ _KINDS: dict[str, type[RoleManager]] = {
 
 
 def has_accounts(backend: str) -> bool:
-    """Tell whether a kind of database (sqlite, postgresql, mariadb) has accounts."""
+    """Return whether a kind of database (sqlite, postgresql, mariadb) has accounts."""
     return backend in _KINDS
 
 
