@@ -1,1 +1,1 @@
-"""Many gateways, one fleet: who lives, who has which robot, and what they tell each other."""
+"""Several gateways on one fleet: membership, ownership of robots, and messages between them."""

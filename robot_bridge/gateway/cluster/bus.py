@@ -1,7 +1,7 @@
-"""The bus between the gateways of a fleet: what may be lost travels over it. None, PostgreSQL, or NATS.
+"""The bus between the gateways of a fleet, for messages that may be lost: none, PostgreSQL, or NATS.
 
-What may not be lost is in the database; a bus only makes it known sooner. A message is handed over while the
-bus is connected, or not at all: what waited for a connection would arrive as if it were new.
+Data that must not be lost is in the database; a bus only makes it known sooner. A message is handed over
+while the bus is connected, or not at all: queued messages would arrive as if they were new.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 log = logging.getLogger(__name__)
 
 Receive = Callable[[str, bytes], None]
-"""Takes in a message: its subject and its content. It must not block."""
+"""Receives the subject and the content of a message. It must not block."""
 STOP, EVERYBODY, POSITIONS = "stop", "all", "positions"
 """Subjects that every gateway listens to; one of its own is :func:`own_subject`."""
 RIGHTS_PROBE = b"?"
-"""By this a gateway that starts sees whether it may publish on a subject; it says nothing to who hears it."""
+"""A starting gateway sends this to see if it may publish on a subject; receivers ignore it."""
 MOST_WAITING = 256
-"""messages that wait to be handed to the bus; of what is beyond that the oldest are dropped, stops last."""
+"""messages that wait for the bus; beyond that the oldest are dropped, stops last."""
 RETRY_S = 1.0
-"""seconds from one attempt to connect to the next."""
+"""seconds between attempts to connect."""
 
 
 def own_subject(gateway: str) -> str:
@@ -43,24 +43,24 @@ def own_subject(gateway: str) -> str:
 
 
 class Bus(Protocol):
-    """Carries messages from each gateway to the others, as long as it is connected."""
+    """Carries messages from each gateway to the others while it is connected."""
 
     name: ClassVar[str]
-    """What it is, as ``--bus`` has it."""
+    """Its name in the option ``--bus``."""
 
     @property
     def connected(self) -> bool:
-        """Whether messages get out at the moment, as far as is known."""
+        """Whether messages can be sent now, as far as is known."""
 
     def publish(self, subject: str, content: bytes) -> bool:
-        """Send a message; return at once, false where it cannot be sent now. Raises nothing."""
+        """Send a message; return at once, false if it cannot be sent now. Raises nothing."""
 
     async def run(self, receive: Receive) -> None:
-        """Connect, and hand what comes in to ``receive``, until cancelled; connects again by itself."""
+        """Connect, and pass received messages to ``receive``, until cancelled; reconnects by itself."""
 
 
 class NoBus:
-    """The bus of a gateway that serves its fleet alone, or whose fleet is content to look once a second."""
+    """No bus: for a sole gateway, or a fleet whose gateways only poll the database each second."""
 
     name: ClassVar[str] = "none"
     connected = False
@@ -75,7 +75,7 @@ class NoBus:
 
 
 class OutgoingMessages:
-    """Messages that wait to be sent, in their order; a stop is before all others."""
+    """Queue of messages to send, in order; a stop is before all others."""
 
     def __init__(self) -> None:
         self._stops: deque[tuple[str, bytes]] = deque(maxlen=MOST_WAITING)
@@ -83,17 +83,17 @@ class OutgoingMessages:
         self._some = asyncio.Event()
 
     def add(self, subject: str, content: bytes) -> None:
-        """Have a message sent."""
+        """Queue a message."""
         (self._stops if subject == STOP else self._others).append((subject, content))
         self._some.set()
 
     def clear(self) -> None:
-        """Forget all: the connection is gone, and what was said is old by the next one."""
+        """Drop all: the connection is lost, and the messages are old by the next one."""
         self._stops.clear()
         self._others.clear()
 
     async def next(self) -> tuple[str, bytes]:
-        """Return the next message once there is one."""
+        """Wait for the next message and return it."""
         while not (self._stops or self._others):
             self._some.clear()
             await self._some.wait()
@@ -112,8 +112,8 @@ _NOTIFY = "select pg_notify(%s, %s)"
 class NotifyBus:
     """One connection that listens, one that notifies, and one that notifies of stops alone.
 
-    All are opened anew when one of the first two fails. Stops have a thread of their own: a turn of the
-    loop comes after those of thousands of robots, and a notification takes several.
+    All are reopened when one of the first two fails. Stops have their own thread: an iteration of the loop
+    follows those of thousands of robots, and a notification takes several.
     """
 
     name: ClassVar[str] = "postgresql"
@@ -129,11 +129,11 @@ class NotifyBus:
 
     @property
     def connected(self) -> bool:
-        """Whether both connections stand."""
+        """Whether both connections are open."""
         return self._connected
 
     def publish(self, subject: str, content: bytes) -> bool:
-        """Send a message; false while there is no connection, and for one that is too long to be notified."""
+        """Send a message; return false without a connection, and for one too long for a notification."""
         if not self._connected or len(content) > LARGEST_NOTIFICATION:
             return False
         if subject == STOP and self._stopping is not None:
@@ -172,11 +172,11 @@ class NotifyBus:
                 log.warning("bus on PostgreSQL: connected again")
             self._connected, self._said = True, ""
             tasks = [
-                asyncio.create_task(self._hear(listening, receive)),
+                asyncio.create_task(self._listen(listening, receive)),
                 asyncio.create_task(self._send(sending)),
             ]
             try:
-                # The first that fails ends both.
+                # The first failure ends both.
                 await asyncio.gather(*tasks)
             finally:
                 for task in tasks:
@@ -205,7 +205,7 @@ class NotifyBus:
     def _notify_of_stop(
         self, connection: Connection[Any], content: bytes, loop: asyncio.AbstractEventLoop
     ) -> None:
-        """Notify in the thread of stops; where that fails the loop does it in its turn."""
+        """Notify in the thread of stops; if that fails, the loop sends it in its turn."""
         try:
             connection.execute(_NOTIFY, _notification(STOP, content))
         except Exception as error:
@@ -218,11 +218,11 @@ class NotifyBus:
         if connection is None:
             return
         with contextlib.suppress(Exception), socket.socket(fileno=os.dup(connection.fileno())) as own:
-            # The thread may wait for a server that hangs: it is to wait no more.
+            # The thread may wait for a server that hangs: end that wait.
             own.shutdown(socket.SHUT_RDWR)
         self._thread.submit(connection.close)
 
-    async def _hear(self, connection: AsyncConnection[Any], receive: Receive) -> None:
+    async def _listen(self, connection: AsyncConnection[Any], receive: Receive) -> None:
         async for notification in connection.notifies():
             try:
                 content = b64decode(notification.payload, validate=True)

@@ -1,4 +1,4 @@
-"""Cluster: one gateway's part in a fleet that several serve, put together and kept going."""
+"""Cluster: one gateway's part in a fleet that several serve, with its background tasks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from .ownership import Ownership
 log = logging.getLogger(__name__)
 
 LONGEST_PUBLIC = LONGEST_ADDRESS - 16
-"""characters of an address, which has the path of an endpoint behind it where robots are told."""
+"""characters of an address; an endpoint's path is appended in the form sent to robots."""
 BUSES = "none, postgresql, or nats://HOST:PORT (several with commas between them; tls:// with TLS)"
 
 
@@ -32,10 +32,10 @@ BUSES = "none, postgresql, or nats://HOST:PORT (several with commas between them
 class ClusterSettings:
     """The name of a gateway among those that serve one fleet, and the bus between them.
 
-    ``bus`` is ``none``, ``postgresql``, or the URLs of NATS servers with commas between them; ``password`` is
-    that of the account in those. ``stops_when_cut_off``: whether the robots of this gateway stop when it
+    ``bus`` is ``none``, ``postgresql``, or the URLs of NATS servers with commas between them; ``password``
+    belongs to the account in those. ``stops_when_cut_off``: whether this gateway's robots stop when it
     reaches neither the database nor any other gateway. ``public_address`` is where robots reach it, such as
-    ``wss://north.example.org:8765``; None for where it listens.
+    ``wss://north.example.org:8765``; None for the address that it listens on.
     """
 
     name: str
@@ -45,12 +45,12 @@ class ClusterSettings:
     public_address: str | None = None
 
     def check(self, database: URL) -> None:
-        """Raise BridgeError for what cannot be."""
+        """Raise BridgeError for invalid settings."""
         self.check_gateway(database)
         self.check_bus()
 
     def check_gateway(self, database: URL) -> None:
-        """Raise BridgeError for a name, a database or an address that cannot be."""
+        """Raise BridgeError for an invalid name, database or address."""
         check_gateway_name(self.name)
         if database.get_backend_name() != "postgresql":
             raise BridgeError(
@@ -66,7 +66,7 @@ class ClusterSettings:
             )
 
     def check_bus(self) -> None:
-        """Raise BridgeError for a bus that cannot be, or a password that is for none."""
+        """Raise BridgeError for an invalid bus, or a password without use."""
         if self.bus not in ("none", "postgresql") and not self.servers():
             raise BridgeError(f"bus {self.bus!r:.80} is none of these: {BUSES}")
         if self.password is not None and not (
@@ -78,7 +78,7 @@ class ClusterSettings:
             )
 
     def servers(self) -> list[str]:
-        """Return the URLs of NATS servers, none for another bus or for what is no such URL."""
+        """Return the URLs of NATS servers, none for another bus or an invalid URL."""
         return nats_urls(self.bus)
 
     def nats_bus(self, fleet: str) -> NatsBus:
@@ -104,7 +104,7 @@ class Cluster:
         self.lease = lease
 
     def listens(self, address: str, *, everywhere: bool) -> None:
-        """Note that this gateway listens on ``address``, to which nobody can connect if ``everywhere``."""
+        """Record that this gateway listens on ``address``; if ``everywhere``, it is not one to connect to."""
         if self.settings.public_address is not None:
             self.membership.reached_at(self.settings.public_address.rstrip("/"))
         elif not everywhere:
@@ -118,7 +118,7 @@ class Cluster:
             )
 
     def report(self) -> dict[str, Any]:
-        """Return how the fleet's gateways are, as far as this one knows."""
+        """Return the states of the fleet's gateways, as far as this one knows."""
         membership, heard = self.membership, set(self.exchange.heard())
         others = [member for member in membership.members if member.gw != membership.name]
         return {
@@ -141,14 +141,14 @@ class Cluster:
 
     @property
     def largest_message(self) -> int:
-        """How many bytes of a message the bus takes, which may have to fit into a notification."""
+        """Largest message of the bus in bytes; it may have to fit into a notification."""
         return LARGEST_NOTIFICATION if self.settings.bus == "postgresql" else LARGEST
 
 
 KEY = "bus_key"
-"""The fact of the database that is the secret by which messages are signed."""
+"""The database fact that holds the secret for signing messages."""
 PLACE = "place"
-"""The fact of a database that says which one it is on which server; a copy has that of the first one."""
+"""The database fact that names the database and its server; a copy has that of the original."""
 _HERE = text(
     "select (select system_identifier from pg_control_system()) || '/' || oid from pg_database "
     "where datname = current_database() and has_function_privilege('pg_control_system()', 'execute')"
@@ -156,10 +156,10 @@ _HERE = text(
 
 
 def fleet_id(connection: Connection) -> str:
-    """Return the id of the fleet on this database; a copy of another one is given its own, and its own key.
+    """Return the id of the fleet on this database; a copy of another database gets its own id and key.
 
-    Two fleets of one id and key that share a bus would hear each other's stops, and count each other's
-    answers. Nothing changes while a gateway lives: it knows what there was.
+    Two fleets of one id and key that share a bus would receive each other's stops, and count each other's
+    answers. Nothing changes while a gateway lives: it knows the old values.
     """
     here = connection.scalar(_HERE)
     if here is not None and (before := metadata.fact(connection, PLACE, here)) != here:
@@ -177,7 +177,7 @@ def fleet_id(connection: Connection) -> str:
 
 
 def fleet_key(connection: Connection) -> bytes:
-    """Return the secret of the fleet on this database; one that has none yet is given it."""
+    """Return the secret of the fleet on this database; create it if missing."""
     return bytes.fromhex(metadata.fact(connection, KEY, secrets.token_hex(32)))
 
 
@@ -191,7 +191,7 @@ async def join_cluster(settings: ClusterSettings, database: Database, lease: Dat
     if settings.servers():
         nats = settings.nats_bus(fleet)
         await nats.check()
-        # Stops and wakes go both ways: each is enough.
+        # Stops and wakes go over both: each is enough.
         buses = [nats, notify]
     else:
         buses = [notify] if settings.bus == "postgresql" else [NoBus()]
@@ -203,5 +203,5 @@ async def join_cluster(settings: ClusterSettings, database: Database, lease: Dat
 
 
 def lease_database(url: URL) -> Database:
-    """Return the connection by which a gateway renews its lease, and looks for stops."""
+    """Return the connection by which a gateway renews its lease, and polls for stops."""
     return Database(url, patience=LEASE_PATIENCE_S)

@@ -1,6 +1,6 @@
-"""Feeds of what is stored at other gateways: steps of commands, observations, placed cones, queues.
+"""Feeds of data stored by other gateways: steps of commands, observations, placed cones, queues.
 
-Each is looked up when it has changed: see :mod:`.followers`.
+Each is read when it has changed: see :mod:`.followers`.
 """
 
 from __future__ import annotations
@@ -38,22 +38,22 @@ from .followers import LOOK_S, ChangeNumbers, Follower, LookSchedule
 from .messages import MOST_NAMED, Exchange, QueuesChanged
 
 PIECE = 50
-"""steps that operators hear of before others have their turn: some milliseconds."""
+"""steps sent to operators before other tasks have their turn: some milliseconds."""
 
 
-# --- Steps of commands, told to the operators of this gateway ---
+# --- Steps of commands, sent to the operators of this gateway ---
 
 LEFT_AT_ONCE = 1000
 """robots whose commands are read together: PostgreSQL takes 65535 values in a statement."""
 MET_WITHIN_S, MOST_UNMET = 10.0, 2000
-"""Seconds for which a command waits for its robot to be known here, which takes one or two, and how many do.
-A robot that was removed never is."""
+"""Seconds for which a command waits for its robot to be known here, which takes one or two, and how many
+wait; a removed robot never is."""
 MOVING = (SetPosEnd.__name__, SetPath.__name__)
-"""The commands that robots are busy with."""
+"""The commands that move robots."""
 
 
 class StepFeed:
-    """Follows the steps of commands of others' robots, and wakes others when robots here take one."""
+    """Follows command steps of robots elsewhere, and wakes other gateways on steps of robots here."""
 
     goes_on = False
 
@@ -76,17 +76,17 @@ class StepFeed:
         """commands of robots that are not known here yet, and since when on the loop's clock."""
         self._meeting: asyncio.TimerHandle | None = None
         self._left: set[str] = set()
-        """robots that were here: of what they are doing no step may come for long."""
+        """robots that were here: their current commands may give no step for long."""
         self._follower = Follower("steps", self, exchange, numbers)
-        events.subscribe(CommandChanged, self._note)
-        events.subscribe(RobotLeft, self._note_left)
+        events.subscribe(CommandChanged, self._record_change)
+        events.subscribe(RobotLeft, self._record_left)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
         await self._follower.run()
 
     async def follow(self) -> None:
-        """Tell operators of the steps since the last look; raises StoreError."""
+        """Send operators the steps since the last check; raises StoreError."""
         if self._newest is None:
             await self._begin()
             return
@@ -98,17 +98,17 @@ class StepFeed:
         for begin in range(0, len(new), PIECE):
             for command in new[begin : begin + PIECE]:
                 if command in reports:
-                    self._tell(reports[command].report)
+                    self._announce(reports[command].report)
             await asyncio.sleep(0)
         self._keep_unmet()
         self._newest = max([self._newest, *(id for id, _ in found)])
         self._seen = {id for id in self._seen | {id for id, _ in found} if id > self._margin()}
         if len(found) == commands.STEPS_AT_ONCE:
-            # There may be more, which are no new change to anybody.
+            # There may be more, for which no new change is announced.
             self._follower.wake()
 
     async def _begin(self) -> None:
-        """Know the steps that there are, and what robots are doing; raises StoreError."""
+        """Read the existing steps, and the robots' current commands; raises StoreError."""
         newest = await self._database.read(commands.newest_step)
         known = await self._database.read(commands.steps_after, newest - commands.STEP_MARGIN)
         self._left.update(self._robots.commanded_elsewhere())
@@ -116,7 +116,7 @@ class StepFeed:
         self._newest, self._seen = newest, {id for id, _ in known}
 
     async def _learn_open(self) -> None:
-        """Tell what robots are doing that came to be another gateway's; raises StoreError."""
+        """Announce the commands of robots that moved to another gateway; raises StoreError."""
         while some := set(islice(self._left, LEFT_AT_ONCE)):
             self._left -= some
             try:
@@ -125,13 +125,13 @@ class StepFeed:
                 self._left |= some
                 raise
             for one in found:
-                self._note_doing(one.report)
+                self._record_doing(one.report)
 
     def _margin(self) -> int:
         return (self._newest or 0) - commands.STEP_MARGIN
 
     def _keep_unmet(self) -> None:
-        """Look again soon at commands of robots that are not known here yet."""
+        """Check again soon the commands of robots that are not known here yet."""
         loop = asyncio.get_running_loop()
         since = loop.time() - MET_WITHIN_S
         self._unmet = {command: at for command, at in self._unmet.items() if at > since}
@@ -139,7 +139,7 @@ class StepFeed:
             self._meeting.cancel()
         self._meeting = loop.call_later(LOOK_S, self._follower.wake) if self._unmet else None
 
-    def _tell(self, report: CommandReport) -> None:
+    def _announce(self, report: CommandReport) -> None:
         if report.robot not in self._robots:
             if len(self._unmet) < MOST_UNMET:
                 self._unmet.setdefault(report.command, asyncio.get_running_loop().time())
@@ -147,10 +147,10 @@ class StepFeed:
         self._unmet.pop(report.command, None)
         if self._robots.gateway_of(report.robot) is None:
             return
-        self._note_doing(report)
+        self._record_doing(report)
         self._listeners.announce("command", report.command, to_json(report))
 
-    def _note_doing(self, report: CommandReport) -> None:
+    def _record_doing(self, report: CommandReport) -> None:
         if self._robots.gateway_of(report.robot) is None or report.op not in MOVING:
             return
         if report.state.is_open:
@@ -159,56 +159,56 @@ class StepFeed:
             self._robots.assign(report.robot, None)
         self._events.publish(CommandChangedElsewhere(report))
 
-    def _note(self, changed: CommandChanged) -> None:
+    def _record_change(self, changed: CommandChanged) -> None:
         if self._robots.gateway_of(changed.report.robot) is None:
             self._follower.note_change()
 
-    def _note_left(self, left: RobotLeft) -> None:
+    def _record_left(self, left: RobotLeft) -> None:
         self._left.add(left.robot)
         self._follower.wake()
 
 
-# --- Records, of which the newest are told: those alone that have not been told here ---
+# --- Records: the newest are sent, unless they were sent here already ---
 
 NEWEST = 200
-"""records whose changes operators are told: of older observations those alone that are on the maps."""
+"""records whose changes operators receive; of older observations only those on the maps."""
 Told = TypeVar("Told", ObservationReport, PlacementReport)
 
 
 class RecordAnnouncer(Generic[Told]):
-    """Tells operators of those records that have changed by ``method``, unless they have heard of it."""
+    """Notifies operators of changed records by ``method``, unless they have received the change."""
 
     def __init__(self, method: str, listeners: Listeners) -> None:
         self._method = method
         self._listeners = listeners
         self._versions: Mapping[int, str] | None = None
-        self._told: dict[int, Told] = {}
-        """what the operators of this gateway heard of the newest."""
+        self._reported: dict[int, Told] = {}
+        """the newest records as sent to the operators of this gateway."""
 
     def note(self, id: int, report: Told) -> None:
-        """Note that operators have been told of a record."""
-        self._told[id] = report
+        """Record that operators have received a record."""
+        self._reported[id] = report
 
     def changed(self, versions: Mapping[int, str]) -> list[int]:
-        """Return which records have changed since the last look, none of them at the first."""
+        """Return the records changed since the last check; none at the first."""
         before = self._versions
         return [] if before is None else [id for id, is_now in versions.items() if before.get(id) != is_now]
 
     def announce(self, reports: Mapping[int, Told], versions: Mapping[int, str]) -> None:
-        """Announce what has changed, by id, and know the newest by their ``versions`` from then on."""
+        """Announce changes by id, and keep the ``versions`` of the newest."""
         for id, report in reports.items():
-            if self._told.get(id) != report:
-                self._told[id] = report
+            if self._reported.get(id) != report:
+                self._reported[id] = report
                 self._listeners.announce(self._method, str(id), to_json(report))
-        self._told = {id: report for id, report in self._told.items() if id in versions}
+        self._reported = {id: report for id, report in self._reported.items() if id in versions}
         self._versions = versions
 
 
-# --- Placed cones, told to the operators of this gateway ---
+# --- Placed cones, sent to the operators of this gateway ---
 
 
 class PlacementRelay:
-    """Follows which cones robots of other gateways put down and collect, and wakes others."""
+    """Follows cones placed and collected by robots of other gateways, and wakes others."""
 
     goes_on = False
 
@@ -223,36 +223,36 @@ class PlacementRelay:
         self._database = database
         self._announcer = RecordAnnouncer[PlacementReport]("placement", listeners)
         self._follower = Follower("placements", self, exchange, numbers)
-        events.subscribe(PlacementChanged, self._note)
+        events.subscribe(PlacementChanged, self._record_change)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
         await self._follower.run()
 
     async def follow(self) -> None:
-        """Tell operators of the cones since the last look; raises StoreError."""
+        """Send operators the cones changed since the last check; raises StoreError."""
         versions = await self._database.read(records.placement_changes, NEWEST)
         changed = self._announcer.changed(versions)
         found = await self._database.read(records.find_placements, changed) if changed else []
         self._announcer.announce({report.placement: report for report in found}, versions)
 
-    def _note(self, changed: PlacementChanged) -> None:
+    def _record_change(self, changed: PlacementChanged) -> None:
         self._announcer.note(changed.report.placement, changed.report)
         self._follower.note_change()
 
 
-# --- Observations: drawn onto the maps of this gateway, and told to its operators ---
+# --- Observations: drawn onto the maps of this gateway, and sent to its operators ---
 
 
 class ObservedMaps(Protocol):
     """The maps that accepted objects are drawn on."""
 
     async def redraw(self) -> None:
-        """Draw what is accepted by now; raises StoreError."""
+        """Draw the objects accepted by now; raises StoreError."""
 
 
 class ObservationRelay:
-    """Follows what robots of other gateways saw and operators there accepted, and wakes others."""
+    """Follows observations of robots of other gateways and their acceptance, and wakes others."""
 
     goes_on = False
 
@@ -270,16 +270,16 @@ class ObservationRelay:
         self._on_map: tuple[int, int] | None = None
         self._announcer = RecordAnnouncer[ObservationReport]("observation", listeners)
         self._reviewed_here = False
-        """whether the maps may show what was reviewed here since the last look, and is otherwise by now."""
+        """whether the maps may show reviews made here since the last check that are outdated by now."""
         self._follower = Follower("observations", self, exchange, numbers)
-        events.subscribe(ObservationChanged, self._note)
+        events.subscribe(ObservationChanged, self._record_change)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
         await self._follower.run()
 
     async def follow(self) -> None:
-        """Draw and tell what has changed since the last look; raises StoreError."""
+        """Draw and announce changes since the last check; raises StoreError."""
         found = await self._database.read(records.changes, NEWEST)
         if self._reviewed_here or found.on_map != self._on_map:
             self._reviewed_here = False
@@ -293,33 +293,33 @@ class ObservationRelay:
         reports = await self._database.read(records.find_each, changed) if changed else []
         self._announcer.announce({report.observation: report for report in reports}, found.newest)
 
-    def _note(self, changed: ObservationChanged) -> None:
+    def _record_change(self, changed: ObservationChanged) -> None:
         self._announcer.note(changed.report.observation, changed.report)
         self._reviewed_here |= changed.report.state is not ObservationState.PENDING
         self._follower.note_change()
 
 
-# --- Queues of robots elsewhere, told to the operators of this gateway ---
+# --- Queues of robots elsewhere, sent to the operators of this gateway ---
 
 TELL_S = 0.05
-"""seconds for which changes wait for one another before others are told of them, and before they are read."""
+"""seconds for which changes are collected before others are notified, and before they are read."""
 
 
 class OwnQueues(Protocol):
     """The queues that this gateway works on."""
 
     def get(self, robot: str) -> Queue:
-        """Return a robot's queue as it was stored last."""
+        """Return a robot's queue as last stored."""
 
     def doubt(self, robot: str) -> None:
-        """Read a robot's queue from the database before it is used again."""
+        """Have a robot's queue read from the database before its next use."""
 
 
 class QueueFeed:
-    """Tells other gateways which queues have changed here, and operators here of those that changed there.
+    """Notifies other gateways of queues changed here, and operators here of those changed there.
 
-    The robots are named over the bus, and their queues read: a queue may be larger than a message. Queues of
-    this gateway that another one has edited are read before they are used again.
+    The bus carries robots' names, and their queues are read: a queue may be larger than a message. Queues of
+    this gateway that another one has edited are read before their next use.
     """
 
     def __init__(
@@ -339,20 +339,20 @@ class QueueFeed:
         self._numbers = numbers
         self._schedule = LookSchedule("queues", numbers)
         self._must_look = False
-        """whether to look whatever others say: robots that were here have left since the last look began, or
-        it has failed."""
+        """whether a check is due in any case: robots have left since the last check began, or it has
+        failed."""
         self._database = database
         self._changed: set[str] = set()
         self._has_changed = asyncio.Event()
         self._named: set[str] = set()
         self._is_named = asyncio.Event()
         self._versions: dict[str, str] | None = None
-        self._told: dict[str, tuple[int, str]] = {}
-        """a hash of what operators were told of each queue, and the state of its robot in that."""
-        events.subscribe(QueueReported, self._note)
+        self._reported: dict[str, tuple[int, str]] = {}
+        """a hash of each queue's report as sent to operators, and the robot's state in it."""
+        events.subscribe(QueueReported, self._record_change)
         events.subscribe(QueueEditedElsewhere, self._call_owner)
-        events.subscribe(RobotLeft, self._note_left)
-        exchange.subscribe(QueuesChanged, self._hear)
+        events.subscribe(RobotLeft, self._record_left)
+        exchange.subscribe(QueuesChanged, self._receive)
 
     async def run(self) -> None:
         """Follow until cancelled; raises StoreError."""
@@ -366,14 +366,14 @@ class QueueFeed:
                     self._name_changed_robots()
                     looked_at = loop.time()
                 self._is_named.clear()
-                await self._tell_named()
+                await self._announce_named()
                 await wait_at_most(self._is_named, LOOK_S)
                 await asyncio.sleep(TELL_S)
         finally:
             telling.cancel()
 
     async def _find_changes(self) -> None:
-        """Find the queues that have changed since the last look, whoever told of that; raises StoreError."""
+        """Find the queues changed since the last check, announced or not; raises StoreError."""
         self._must_look = False
         self._schedule.begin_look()
         try:
@@ -393,16 +393,20 @@ class QueueFeed:
             self._named.update(robot for robot, version in found.items() if before.get(robot) != version)
 
     def _name_changed_robots(self) -> None:
-        """Have operators told of the queues whose robots are not as they were: that stands in the report."""
-        self._told = {robot: told for robot, told in self._told.items() if self._is_elsewhere(robot)}
+        """Report again the queues whose robots changed state, which is part of the report."""
+        self._reported = {
+            robot: reported for robot, reported in self._reported.items() if self._is_elsewhere(robot)
+        }
         self._named.update(
-            robot for robot, (_, state) in self._told.items() if self._robots.get(robot).state.value != state
+            robot
+            for robot, (_, state) in self._reported.items()
+            if self._robots.get(robot).state.value != state
         )
 
-    async def _tell_named(self) -> None:
-        """Tell operators of the queues that were named; raises StoreError, and tries again next time."""
+    async def _announce_named(self) -> None:
+        """Send operators the named queues; raises StoreError, and retries next time."""
         names = sorted(robot for robot in self._named if self._is_elsewhere(robot))
-        # One that is not known yet will be in a moment; those that are here are told of by this gateway.
+        # A robot not known yet will be in a moment; queues of robots here are reported on their changes.
         self._named = {robot for robot in self._named if robot not in self._robots}
         if not names:
             return
@@ -412,16 +416,16 @@ class QueueFeed:
             self._named.update(names)
             raise
         for queue, ended in found:
-            self._tell(queue, ended)
+            self._announce(queue, ended)
 
-    def _tell(self, queue: Queue, ended: Iterable[QueuedTask]) -> None:
+    def _announce(self, queue: Queue, ended: Iterable[QueuedTask]) -> None:
         if not self._is_elsewhere(queue.robot):
             return
         state = self._robots.get(queue.robot).state
         report = to_json(queue_report(queue, state, ended))
-        told = hash(msgspec.json.encode(report)), state.value
-        if self._told.get(queue.robot) != told:
-            self._told[queue.robot] = told
+        reported = hash(msgspec.json.encode(report)), state.value
+        if self._reported.get(queue.robot) != reported:
+            self._reported[queue.robot] = reported
             self._listeners.announce("queue", queue.robot, report)
 
     def _is_here(self, robot: str) -> bool:
@@ -430,7 +434,7 @@ class QueueFeed:
     def _is_elsewhere(self, robot: str) -> bool:
         return self._robots.gateway_of(robot) is not None
 
-    def _hear(self, changed: QueuesChanged) -> None:
+    def _receive(self, changed: QueuesChanged) -> None:
         for robot in changed.robots:
             if self._is_here(robot):
                 self._own.doubt(robot)
@@ -443,15 +447,15 @@ class QueueFeed:
         if gateway is not None:
             self._numbers.add_change("queues")
             self._exchange.send(own_subject(gateway), QueuesChanged(self._exchange.gateway, [edited.robot]))
-            # An Abort may have been asked with it.
+            # An Abort may have been requested with it.
             self._exchange.wake("requests", gateway)
         self._named.add(edited.robot)
         self._is_named.set()
 
-    def _note_left(self, _left: RobotLeft) -> None:
+    def _record_left(self, _left: RobotLeft) -> None:
         self._must_look = True
 
-    def _note(self, reported: QueueReported) -> None:
+    def _record_change(self, reported: QueueReported) -> None:
         self._numbers.add_change("queues")
         self._changed.add(reported.robot)
         self._has_changed.set()

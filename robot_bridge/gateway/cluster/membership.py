@@ -1,9 +1,8 @@
-"""Membership: a gateway enters the fleet, renews its lease each second, and knows who else lives.
+"""Membership: a gateway joins the fleet, renews its lease each second, and knows which others live.
 
 A gateway lives in the database for :data:`LEASE_S` after each renewal, by the database's clock. By its own
-steady clock it counts on that for :data:`TRUST_S` after it *asked* for the renewal, which was earlier: so it
-stops commanding robots at least a second before another gateway may claim them. No clock of day is compared
-with another.
+steady clock it trusts that for :data:`TRUST_S` after it *requested* the renewal, which was earlier: so it
+stops commanding robots at least a second before another gateway may claim them. No wall clocks are compared.
 """
 
 from __future__ import annotations
@@ -27,17 +26,17 @@ from ..storage.singleton_lock import check_no_sole_gateway
 
 log = logging.getLogger(__name__)
 
-# --- Leases and ownership as one gateway knows of them; no I/O ---
+# --- Leases and ownership as known to one gateway; no I/O ---
 
 LEASE_S, TRUST_S, RENEW_S = 5.0, 4.0, 1.0
-"""seconds that a renewal is valid for in the database, that a gateway counts on it, and between two."""
+"""seconds that a renewal is valid in the database, that a gateway trusts it, and between renewals."""
 BREAK_S = LEASE_S - 1.5 * RENEW_S
 """seconds between two renewals of a gateway in which the leases of others may have run out as well."""
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
 
 
 def check_gateway_name(name: str) -> str:
-    """Return ``name``; raises BridgeError for one that no gateway can have."""
+    """Return ``name``; raises BridgeError for an invalid name."""
     if not _NAME.fullmatch(name):
         raise BridgeError(
             f"gateway name {name!r:.60} cannot be; use up to 32 letters, digits, _ and -, such as gateway-1"
@@ -46,7 +45,7 @@ def check_gateway_name(name: str) -> str:
 
 
 class LeaseTrust:
-    """Until when a gateway may count on its lease, by its own steady clock, which counts sleep."""
+    """How long a gateway may trust its lease, by its own steady clock, which counts sleep."""
 
     def __init__(self, clock: Clock) -> None:
         self._clock = clock
@@ -55,7 +54,7 @@ class LeaseTrust:
         self._unbroken_since = math.inf
 
     def renewed(self, asked_at: float) -> None:
-        """Note that a renewal succeeded that was asked for at ``asked_at``, on the steady clock."""
+        """Record that a renewal requested at ``asked_at``, on the steady clock, succeeded."""
         now = self._clock.steady()
         if now - self._succeeded_at > BREAK_S:
             self._unbroken_since = now
@@ -63,17 +62,17 @@ class LeaseTrust:
         self._asked_at = max(self._asked_at, asked_at)
 
     def lost(self) -> None:
-        """Count on nothing any more, until the next renewal."""
+        """Trust nothing until the next renewal."""
         self._asked_at = -math.inf
 
     @property
     def holds(self) -> bool:
-        """Whether the lease can still be counted on."""
+        """Whether the lease can still be trusted."""
         return self._clock.steady() - self._asked_at < TRUST_S
 
     @property
     def is_unbroken(self) -> bool:
-        """Whether it has been renewed for so long that others that could not renew theirs have by now."""
+        """Whether it has been renewed for so long that others had time to renew theirs."""
         return self._clock.steady() - self._unbroken_since >= LEASE_S
 
 
@@ -90,9 +89,9 @@ class OwnedRobots:
         return len(self._fences)
 
     def claimed(self, me: Member, claims: Mapping[str, Claimed]) -> set[str]:
-        """Take over robots that were claimed; return those of which nothing is known here any more.
+        """Take over claimed robots; return those whose known state is out of date.
 
-        What was known of the others still holds: nobody else has had them since.
+        The known state of the others is still valid: nobody else has owned them since.
         """
         unknown = {
             robot
@@ -105,46 +104,46 @@ class OwnedRobots:
         return unknown
 
     def gained(self, fences: Mapping[str, int]) -> None:
-        """Take over robots that nobody had."""
+        """Take over robots that had no owner."""
         self._fences.update(fences)
 
     def compare(self, stored: Mapping[str, int]) -> tuple[set[str], set[str]]:
-        """Return which robots are lost and which are new, by what is ``stored`` of this gateway.
+        """Return the lost and the new robots, by the ``stored`` ones of this gateway.
 
-        A robot whose fence is another is both: somebody has had it in between.
+        A robot with another fence is both: another gateway has owned it in between.
         """
         if self._fences == stored:
-            # As most often; a tenth of the time of what follows.
+            # The usual case; it takes a tenth of the time of what follows.
             return set(), set()
         lost = {robot for robot, fence in self._fences.items() if stored.get(robot) != fence}
         return lost, {robot for robot, fence in stored.items() if self._fences.get(robot) != fence}
 
     def others(self, robots: Iterable[str]) -> set[str]:
-        """Return those of ``robots`` that this gateway has not."""
+        """Return those of ``robots`` that this gateway does not own."""
         return set(robots).difference(self._fences)
 
     def forget(self, robots: Iterable[str]) -> None:
-        """Have these robots no more."""
+        """Remove these robots."""
         for robot in robots:
             self._fences.pop(robot, None)
 
     def fences(self, robots: Iterable[str]) -> dict[str, int]:
-        """Return the fences of those of ``robots`` that this gateway has."""
+        """Return the fences of those of ``robots`` that this gateway owns."""
         fences = self._fences
         return {robot: fence for robot in robots if (fence := fences.get(robot)) is not None}
 
 
 def leads(me: Member, members: Sequence[Member]) -> bool:
-    """Tell whether a gateway does what is to be done once per database: the oldest that lives does."""
+    """Return whether a gateway does the tasks done once per database: the oldest living one does."""
     alive = [member for member in members if member.alive]
     return bool(alive) and min(alive, key=lambda member: member.since).run == me.run
 
 
 def spared_runs(members: Sequence[Member], trust: LeaseTrust) -> list[str]:
-    """Return the runs of gateways whose robots are not claimed, whatever their leases are by now.
+    """Return the runs of gateways whose robots must not be claimed, whatever their leases are by now.
 
     When the database was away for longer than a lease, all gateways seem dead to the first one that reaches
-    it again, and have their robots still.
+    it again, yet still own their robots.
     """
     return [member.run for member in members if member.alive or not trust.is_unbroken]
 
@@ -152,20 +151,20 @@ def spared_runs(members: Sequence[Member], trust: LeaseTrust) -> list[str]:
 # --- The gateway in the database ---
 
 LEASE_PATIENCE_S = 2.0
-"""seconds that a renewal may take: the next one is to have its turn while the lease still counts."""
+"""seconds that a renewal may take: the next one must have its turn while the lease still holds."""
 CLAIMED_S = 3 * RENEW_S
-"""seconds after the end of a lease by which the robots of that gateway are another one's."""
+"""seconds after the end of a lease by which another gateway owns the robots."""
 CLOCK_TOLERANCE_S = 1.0
-"""seconds that this computer's clock may be off the database's before the log is told."""
+"""seconds that this computer's clock may differ from the database's before that is logged."""
 OFF_AGAIN_S = 60.0
 MOST_STRANGE = 100
-"""runs that were not read and are known to have been heard."""
+"""limit of remembered runs that were heard but not read."""
 GONE_S = 7 * 24 * 3600.0
-"""seconds after the end of its lease until a gateway is struck off: until then it may be started again."""
+"""seconds after the end of its lease until a gateway is removed: until then it may be restarted."""
 
 
 class SharedClock(Clock):
-    """The database's clock as a gateway knows it: what one notes by it others compare with what they did."""
+    """The database's clock as a gateway knows it: times that gateways record by it are comparable."""
 
     def __init__(self, membership: Membership, clock: Clock) -> None:
         self._membership = membership
@@ -183,7 +182,7 @@ class SharedClock(Clock):
 class Membership:
     """One gateway among those of a fleet.
 
-    The lease has a connection of its own: what is stored at the same time must not keep it waiting. After
+    The lease has a connection of its own: other writes must not delay it. After
     :meth:`join` it is renewed by :meth:`renew`, to be called every :data:`.RENEW_S` seconds.
     """
 
@@ -193,7 +192,7 @@ class Membership:
         )
         self.trust = LeaseTrust(clock)
         self.members: Sequence[Member] = ()
-        """all gateways, as they were at the last renewal."""
+        """all gateways, as read at the last renewal."""
         self.clock_offset = 0.0
         """seconds that the database's clock is ahead of this computer's."""
         self.shared_clock = SharedClock(self, clock)
@@ -201,16 +200,16 @@ class Membership:
         self._clock = clock
         self._clock_said_at = -OFF_AGAIN_S
         self._missed_until: dict[str, float] = {}
-        """until when, by the steady clock, those count as just lost that were missing as this gateway could
-        renew its lease again."""
+        """until when (steady clock) gateways count as just lost that were missing when this one could renew
+        its lease again."""
         self._runs = {self.me.run}
-        """the runs of this fleet's gateways that lived when they were read."""
+        """the runs of this fleet's gateways that were alive when read."""
         self._strange = dict[str, float]()
-        """when runs were heard first that were not read, by the steady clock."""
+        """when unread runs were first heard, by the steady clock."""
         self._strangers = set[str]()
-        """those of them that serve another database: they do so still while this one is away."""
+        """those of them that serve another database: they still do while this one is away."""
         self._other_versions = set[tuple[str, str]]()
-        """the gateways of another version, and which, as the log was told."""
+        """the gateways of another version, and that version, as logged."""
 
     @property
     def name(self) -> str:
@@ -219,44 +218,44 @@ class Membership:
 
     @property
     def leads(self) -> bool:
-        """Whether this gateway does what is to be done once per database, and may count on that."""
+        """Whether this gateway does the tasks done once per database, and may trust that."""
         return self.trust.holds and leads(self.me, self.members)
 
     def spared_runs(self) -> list[str]:
-        """Return the runs of gateways whose robots are not claimed, whatever their leases are by now."""
+        """Return the runs of gateways whose robots must not be claimed, whatever their leases are by now."""
         return spared_runs(self.members, self.trust)
 
     def others(self) -> list[str]:
-        """Return the names of the other gateways that lived at the last renewal."""
+        """Return the names of the other gateways that were alive at the last renewal."""
         return [member.gw for member in self.members if member.alive and member.gw != self.name]
 
     def just_lost(self) -> list[str]:
-        """Return the gateways whose lease has run out so lately that nobody may have their robots yet.
+        """Return the gateways whose lease has expired so lately that their robots may have no owner yet.
 
-        When the database was away nobody claims them for :data:`LEASE_S` after it is back.
+        After a database outage nobody claims them for :data:`LEASE_S` after it is back.
         """
         now, until = self._clock.steady(), self._missed_until
         lost = [member for member in self.members if not member.alive and member.gw != self.name]
         return [one.gw for one in lost if one.left > -CLAIMED_S or now < until.get(one.gw, -math.inf)]
 
     def has_read(self, run: str) -> bool:
-        """Tell whether a gateway was read in the database of this fleet.
+        """Return whether a gateway was read in the database of this fleet.
 
-        One that came a moment ago was not, nor was one that serves a copy of that database.
+        One that joined a moment ago was not, nor was one that serves a copy of that database.
         """
         return run in self._runs
 
     def is_without_lease(self, run: str) -> bool:
-        """Tell whether a gateway stands in the database and does not renew its lease there.
+        """Return whether a gateway is listed in the database and does not renew its lease there.
 
         It may be cut off from the database, or serve a copy of it, in which it is read as well.
         """
         return run not in self._runs and any(member.run == run for member in self.members)
 
     def is_stranger(self, run: str) -> bool:
-        """Tell whether a gateway, heard by the key of this fleet, is none of it: its database is a copy.
+        """Return whether a gateway heard with this fleet's key is none of it: its database is a copy.
 
-        It is in this one before it says anything: one that is not read after a while serves another.
+        A gateway of this fleet is in the database before it sends: one not read after a while serves another.
         """
         if run in self._runs:
             return False
@@ -264,32 +263,32 @@ class Membership:
             self._strange.clear()
             self._strangers.clear()
         now = self._clock.steady()
-        # What counts now was read since.
+        # The current members were read since.
         if now - self._strange.setdefault(run, now) >= LEASE_S and self.trust.holds:
             self._strangers.add(run)
         return run in self._strangers
 
     def database_time(self) -> float:
-        """Return the time by the database's clock, which all gateways go by."""
+        """Return the time by the database's clock, which all gateways use."""
         return self._clock.time() + self.clock_offset
 
     def reached_at(self, address: str) -> None:
-        """Note where robots reach this gateway, ``ws://host:port``, or that nobody knows (empty)."""
+        """Record where robots reach this gateway, ``ws://host:port``; empty if unknown."""
         self.me = self.me._replace(address=address)
 
     def addresses(self) -> list[str]:
-        """Return where the gateways of the fleet are reached, as far as they say: this one, then who lives.
+        """Return the known addresses of the fleet's gateways: this one, then the living ones.
 
-        Those come last that did not end in good order: they may be back by the time that somebody asks there.
+        Those that did not end in good order come last: they may be back when a client tries them.
         """
         others = [member for member in self.members if member.gw != self.name]
         known = [self.me, *sorted(others, key=lambda member: (not member.alive, member.since, member.gw))]
         return [member.address for member in known if member.address]
 
     async def join(self) -> None:
-        """Enter the fleet; raises BridgeError where another gateway has this name, or has the database alone.
+        """Join the fleet; raises BridgeError if another gateway has this name, or the database alone.
 
-        The lease of one that was killed a moment ago runs out first; one that renews it is there.
+        It waits until the lease of a killed namesake expires; one that renews it is alive.
         """
         first_end = None
         while True:
@@ -311,9 +310,9 @@ class Membership:
         await self.renew()
 
     async def renew(self) -> None:
-        """Renew the lease and learn who else lives.
+        """Renew the lease and read which others live.
 
-        :raises FatalError: when another process goes by the name of this gateway.
+        :raises FatalError: when another process uses the name of this gateway.
         :raises StoreError: when the database cannot be used: the lease runs out, unless a later call
         succeeds.
         """
@@ -332,10 +331,10 @@ class Membership:
         self.trust.renewed(asked_at)
         before = set(self.others())
         self.members = found.members
-        # In a copy are the rows of the first database's gateways, too, whose leases have run out there.
+        # A copy also holds the rows of the original database's gateways, whose leases have expired there.
         self._runs.update(member.run for member in found.members if member.alive)
         self._compare_clocks(found)
-        self._note_missed(before.difference(self.others()))
+        self._record_missed(before.difference(self.others()))
         self._name_changes(before, set(self.others()))
         self._compare_versions()
 
@@ -360,7 +359,7 @@ class Membership:
                 log.exception("the lease of gateway %s could not be renewed", self.name)
 
     async def leave(self) -> None:
-        """Leave the fleet in good order: its robots are anybody's at once. Goes on where that fails."""
+        """Leave the fleet in good order: its robots can be claimed at once. Failures are ignored."""
         self.trust.lost()
         try:
             await self._lease.run(gateways.leave, self.me)
@@ -368,12 +367,12 @@ class Membership:
             log.warning("gateway %s could not take leave, and its lease has to run out: %s", self.name, error)
 
     async def strike_gone(self) -> None:
-        """Strike off the gateways that have not lived for a week; raises StoreError."""
+        """Remove the gateways that have been dead for a week; raises StoreError."""
         for name in await self._lease.run(gateways.strike_gone, GONE_S):
             log.warning("gateway %s has not lived for %d days, and is struck off", name, GONE_S // 86400)
 
     async def _namesake(self) -> Member | None:
-        """Return the gateway of this name that is entered."""
+        """Return the entered gateway of this name."""
         found = await self._lease.read(gateways.members)
         return next((member for member in found if member.gw == self.name), None)
 
@@ -408,7 +407,7 @@ class Membership:
                 abs(self.clock_offset),
             )
 
-    def _note_missed(self, lost: Iterable[str]) -> None:
+    def _record_missed(self, lost: Iterable[str]) -> None:
         if not self.trust.is_unbroken:
             until = self._clock.steady() + LEASE_S + CLAIMED_S
             self._missed_until.update(dict.fromkeys(lost, until))

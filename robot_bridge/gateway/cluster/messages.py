@@ -1,8 +1,8 @@
-"""Messages between the gateways of a fleet: encoded, signed, decoded and bounded here alone, and exchanged.
+"""Messages between the gateways of a fleet: encoded, signed, decoded, bounded and exchanged.
 
-Whoever may write to the bus could say anything: an account of a robot may NOTIFY on PostgreSQL, and a NATS
-server may serve others as well. So every message is signed with a key that the fleet's database holds and
-robots cannot read. What is not signed with it, or cannot be understood, counts for nothing.
+Any account that may write to the bus can send anything: a robot's account may NOTIFY on PostgreSQL, and a
+NATS server may serve others as well. So every message is signed with a key that the fleet's database holds
+and robots cannot read. Messages not signed with it, or not understood, are ignored.
 """
 
 from __future__ import annotations
@@ -34,24 +34,24 @@ from .membership import Membership
 log = logging.getLogger(__name__)
 
 FORM = b"\x01"
-"""The form of all messages; gateways that speak another one do not understand each other."""
+"""The format version of all messages; gateways with different ones do not understand each other."""
 LARGEST = 256 * 1024
 """bytes of a message."""
 SIGNATURE = 16
 """bytes."""
 FRAME = 128
-"""bytes of a message at most beside the robots in it."""
+"""bytes of a message at most, without the robots in it."""
 MOST_ROBOTS = 8192
 """in one message."""
 PLACE_BYTES, NAME_BYTES = 4 * REPORTED_NUMBERS + 4 + 1, 2
 """bytes that a robot takes in a message of positions, and its name beside its letters."""
 MOST_IDS = 1_000_000
-"""numbers that a run of a gateway has for robots."""
+"""numbers for robots in one run of a gateway."""
 
 MOST_NAMED = 50
-"""robots that are named one by one in a message."""
+"""robots named individually in a message."""
 MOST_ALARMS, MOST_UNJUDGED = 300, 20
-"""alarms of the geofence, and robots that it cannot judge, in a message and in what operators are sent."""
+"""alarms of the geofence, and robots that it cannot judge, in a message and in a report to operators."""
 LONGEST_NAME = 200
 """characters of the name of a keepout or an obstacle."""
 
@@ -64,21 +64,21 @@ Names = Annotated[list[Robot], Meta(max_length=MOST_NAMED)]
 Count = Annotated[int, Meta(ge=0, le=10_000_000)]
 Finite = Annotated[float, Meta(ge=-1e12, le=1e12)]
 Number = Annotated[int, Meta(ge=0, le=(1 << 63) - 1)]
-"""Of a message about stops: :class:`Exchange` gives each that it sends another one, so that no two are the
-same bytes. 0 where the sender gives none, as earlier versions do."""
+"""Number of a message about stops: :class:`Exchange` numbers each, so that no two are the same bytes. It is 0
+from earlier versions, which give none."""
 Topic = Annotated[str, Meta(max_length=32)]
 MOST_TOPICS = 32
 
 
 class BusMessageError(BridgeError):
-    """Bytes on the bus that are no message of this fleet."""
+    """Bytes on the bus that are not a message of this fleet."""
 
 
 class _SenderRun(msgspec.Struct, array_like=True, frozen=True, tag=True, kw_only=True):
-    """What :class:`Exchange` adds behind all else: ``sender_run``, "" from an earlier version.
+    """Last field, added by :class:`Exchange`: ``sender_run``, "" from an earlier version.
 
-    Earlier versions pass over what is behind the fields that they know: a field that is added to a message
-    has to be ``kw_only`` as well.
+    Earlier versions ignore fields behind those that they know: a field added to a message must be ``kw_only``
+    as well.
     """
 
     sender_run: Annotated[str, Meta(max_length=32)] = ""
@@ -91,9 +91,10 @@ class BusMessage(_SenderRun, frozen=True, tag=True):
 
 
 class Beat(BusMessage, frozen=True, tag="beat"):
-    """The gateway is there at the database's time ``t``, in seconds.
+    """The gateway is alive at the database's time ``t``, in seconds.
 
-    ``changes`` are the numbers of what it stored last, by :data:`WakeTopic`; None from an earlier version.
+    ``changes`` are the numbers of its last stored changes, by :data:`WakeTopic`; None from an earlier
+    version.
     """
 
     t: float = 0.0
@@ -114,17 +115,17 @@ WakeTopic = Literal[
     "closures",
     "positions",
 ]
-"""What another gateway had better look at; ``positions`` asks it for all of its robots."""
+"""What another gateway should check; ``positions`` asks it for all of its robots."""
 
 
 class Wake(BusMessage, frozen=True, tag="wake"):
-    """Something was committed that concerns another gateway, which had better look at once."""
+    """Something was committed that concerns another gateway, which should check at once."""
 
     what: WakeTopic
 
 
 class StopCall(BusMessage, frozen=True, tag="stop"):
-    """Every robot is to stop; sent again until each gateway has answered."""
+    """Every robot must stop; repeated until each gateway has answered."""
 
     id: Id
     at: float
@@ -134,7 +135,7 @@ class StopCall(BusMessage, frozen=True, tag="stop"):
 
 
 class StopSeen(BusMessage, frozen=True, tag="stopped"):
-    """The stop is in force at the gateway, and on its way to its robots; how far they are."""
+    """The stop is in force at the gateway, and on its way to its robots; with their progress."""
 
     id: Id
     robots: Count
@@ -150,16 +151,16 @@ class StopSeen(BusMessage, frozen=True, tag="stopped"):
 
 
 class AbortCall(BusMessage, frozen=True, tag="abort"):
-    """A robot is to be told to abort over its open connection, by whoever has that: it may not be stored."""
+    """Send a robot an Abort over its open connection, wherever that is: the Abort may not be stored."""
 
     robot: Robot
     call_id: Annotated[str, Meta(max_length=100)]
 
 
 class PositionBatch(BusMessage, frozen=True, tag="positions"):
-    """Where robots of the gateway are, at the database's time ``t``, in seconds.
+    """Positions of robots of the gateway, at the database's time ``t``, in seconds.
 
-    ``ids`` are uint32, by which run ``run`` of the gateway knows its robots; ``names`` those of the first of
+    ``ids`` are uint32, the robots' numbers in run ``run`` of the gateway; ``names`` belong to the first of
     them, the others were named before. ``numbers`` are float32, robot by robot, NaN where there is none: x, y
     (m, site frame), theta (rad), v (m/s), seconds since its pose, and since its last message. ``flags`` are a
     byte of each robot: see :data:`~..model.robot_columns.REPORTED_FLAGS`.
@@ -182,7 +183,7 @@ class PositionBatch(BusMessage, frozen=True, tag="positions"):
 
 
 class RobotDetails(msgspec.Struct, array_like=True, frozen=True):
-    """What changes seldom of a robot, as :class:`~..model.robots.Robot` and its pose have it."""
+    """Rarely changing values of a robot, as in :class:`~..model.robots.Robot` and its pose."""
 
     name: Robot
     battery: Annotated[float, Meta(ge=0, le=1)] | None = None
@@ -217,7 +218,7 @@ class FencedRobot(msgspec.Struct, array_like=True, frozen=True):
 
 
 class FenceReport(BusMessage, frozen=True, tag="fence"):
-    """Which robots of the gateway are in keepouts and at obstacles, at the database's time ``t``, in seconds.
+    """Robots of the gateway in keepouts and at obstacles, at the database's time ``t``, in seconds.
 
     ``more`` and ``unjudged_more`` count those that are not listed.
     """
@@ -231,13 +232,13 @@ class FenceReport(BusMessage, frozen=True, tag="fence"):
 
 
 class QueuesChanged(BusMessage, frozen=True, tag="queues"):
-    """Queues of robots have changed at the gateway, which has them or edited them; that is stored."""
+    """Queues of robots have changed at the gateway, which owns or edited them; the change is stored."""
 
     robots: Names
 
 
 class NameQuery(BusMessage, frozen=True, tag="name?"):
-    """Whether another robot runs at the gateway that this goes to, under the name of one that said Ready."""
+    """Asks whether another robot runs at the receiving gateway under the name of one that said Ready."""
 
     id: Id
     robot: Robot
@@ -245,7 +246,7 @@ class NameQuery(BusMessage, frozen=True, tag="name?"):
 
 
 class NameAnswer(BusMessage, frozen=True, tag="name"):
-    """The answer to a :class:`NameQuery`: why that robot is refused, None where it is not."""
+    """The answer to a :class:`NameQuery`: why that robot is refused, or None."""
 
     id: Id
     refusal: Line | None = None
@@ -269,7 +270,7 @@ _ENCODER = msgspec.msgpack.Encoder()
 
 
 class Codec:
-    """Messages as signed bytes and back; ``key`` is the secret of the fleet."""
+    """Converts messages to signed bytes and back; ``key`` is the secret of the fleet."""
 
     def __init__(self, key: bytes) -> None:
         self._key = key
@@ -280,7 +281,7 @@ class Codec:
         return self._signature(content) + content
 
     def decode(self, data: bytes) -> AnyMessage:
-        """Return the message that ``data`` is; raises BusMessageError, which says why it is none."""
+        """Return the message in ``data``; raises BusMessageError with the reason if it is invalid."""
         if len(data) > LARGEST:
             raise BusMessageError(f"a message of {len(data)} bytes; {LARGEST} are the most")
         content = data[SIGNATURE:]
@@ -306,7 +307,7 @@ class Codec:
 
 
 def position_batches(whole: PositionBatch, largest: int) -> Iterator[PositionBatch]:
-    """Yield what ``whole`` says in messages of at most ``largest`` bytes, which all are small enough."""
+    """Yield ``whole`` split into messages of at most ``largest`` bytes each."""
     sizes = np.full(len(whole.flags), PLACE_BYTES)
     # Names are ASCII.
     letters = np.array([len(name) for name in whole.names], dtype=np.intp)
@@ -341,7 +342,7 @@ def detail_batches(robots: Iterable[RobotDetails], largest: int) -> Iterator[lis
 
 
 def fitting_report(report: FenceReport, largest: int) -> FenceReport:
-    """Return ``report`` with as many alarms, of the first ones, as go into ``largest`` bytes."""
+    """Return ``report`` with as many of its first alarms as fit into ``largest`` bytes."""
     room = largest - FRAME - len(_ENCODER.encode(msgspec.structs.replace(report, alarms=[])))
     sizes = itertools.accumulate(len(_ENCODER.encode(alarm)) for alarm in report.alarms)
     fits = sum(size <= room for size in sizes)
@@ -361,35 +362,35 @@ def _check_lengths(batch: PositionBatch) -> None:
         raise BusMessageError(f"positions of a robot with a number of {MOST_IDS} or more")
 
 
-# --- Exchange: messages out onto the buses, and those that come in to whoever subscribed ---
+# --- Exchange: sends messages to the buses, and delivers received ones to subscribers ---
 
 HEARD_S = 5.0
-"""seconds after which a gateway that says nothing is not heard any more."""
+"""seconds after which a silent gateway no longer counts as heard."""
 COUNT_S = 1.0
-"""seconds between two counts in the log of the lines that were left out of it."""
+"""seconds between log lines with the count of omitted lines."""
 WITHOUT_LEASE = (
     "gateway {} does not renew its lease: see whether it reaches the database, and whether that is this "
     "fleet's and no copy; its stops and Aborts are done here, and nothing else of it counts"
 )
-"""What the log says of a gateway that stands in the database and that nobody has seen alive there."""
+"""Log text on a gateway that is listed in the database and was never seen alive there."""
 COPY = (
     "gateway {} serves a copy of this fleet's database on the same bus; its stops and Aborts are done here, "
     "and nothing else of it counts: give it a bus of its own, or restore a backup in place of the copy"
 )
-"""What the log says of a gateway that is none of this fleet's and has its key."""
+"""Log text on a gateway that is not of this fleet and has its key."""
 
 MOST_NUMBERED = 1024
-"""messages about stops of which a second copy is known: what four gateways say over a stop in 20 seconds."""
+"""messages about stops kept to detect copies: those of four gateways on a stop in 20 seconds."""
 
 Kind = TypeVar("Kind", bound=BusMessage)
 
 
 class Exchange:
-    """Sends over the first bus; stops, what wakes others, and questions over all of them.
+    """Sends over the first bus; stops, wakes and queries over all of them.
 
-    A subscriber that fails keeps a message from no other one. Messages about stops come by several ways, and
-    are handed over once: each copy would be answered, over every bus. What is sent again until somebody has
-    answered is another message, by its number.
+    A failing subscriber does not keep a message from others. Messages about stops arrive over several buses,
+    and are delivered once: each copy would be answered, over every bus. A repeated call is another message,
+    by its number.
     """
 
     def __init__(
@@ -402,7 +403,7 @@ class Exchange:
         self._events = EventBus()
         self._heard: dict[str, float] = {}
         self._heard_without_lease: dict[str, float] = {}
-        # At random, so that a gateway that is started again does not begin with the same ones.
+        # Random start, so that a restarted gateway does not begin with the same ones.
         self._numbers = itertools.count(1 + secrets.randbits(48))
         self._known: dict[bytes, None] = {}
         """the signatures of messages about stops, the oldest first."""
@@ -413,7 +414,7 @@ class Exchange:
         self._events.subscribe(kind, handler)
 
     def send(self, subject: str, message: BusMessage) -> bool:
-        """Send a message; return at once, true where some bus took it."""
+        """Send a message; return at once, true if a bus accepted it."""
         if isinstance(message, (StopCall, StopSeen)):
             message = msgspec.structs.replace(message, number=next(self._numbers))
         if self._membership is not None:
@@ -424,25 +425,25 @@ class Exchange:
         return any(taken)
 
     def wake(self, what: WakeTopic, gateway: str | None = None) -> None:
-        """Have a gateway, or all others, look at once for ``what`` has been committed."""
+        """Have a gateway, or all others, check at once: ``what`` has been committed."""
         subject = EVERYBODY if gateway is None else own_subject(gateway)
         self.send(subject, Wake(self.gateway, what))
 
     @property
     def connected(self) -> bool:
-        """Whether the first bus is connected, as far as is known: all that is not urgent goes over that."""
+        """Whether the first bus, which carries all that is not urgent, is connected, as far as is known."""
         return self._buses[0].connected
 
     def connections(self) -> dict[str, bool]:
-        """Return whether each bus is connected, by its name; the first one is that of all messages."""
+        """Return whether each bus is connected, by its name; the first one carries all messages."""
         return {bus.name: bus.connected for bus in self._buses if not isinstance(bus, NoBus)}
 
     def heard(self, within: float = HEARD_S) -> list[str]:
-        """Return the other gateways that said something ``within`` so many seconds."""
+        """Return the other gateways that sent something ``within`` so many seconds."""
         return _recent(self._heard, within)
 
     def heard_without_lease(self) -> list[str]:
-        """Return the gateways heard of late that stand in the database without a lease."""
+        """Return the recently heard gateways that are in the database without a lease."""
         return _recent(self._heard_without_lease, HEARD_S)
 
     async def run(self) -> None:
@@ -453,7 +454,7 @@ class Exchange:
             group.create_task(self._count_repeated())
 
     def receive(self, subject: str, content: bytes) -> None:
-        """Take in a message as it came from a bus."""
+        """Receive a message as it came from a bus."""
         if content == RIGHTS_PROBE:
             return
         try:
@@ -470,7 +471,7 @@ class Exchange:
         self._events.publish(message)
 
     def _admit(self, subject: str, message: BusMessage) -> bool:
-        """Note which gateway was heard; return whether what it says is taken in."""
+        """Record which gateway was heard; return whether its message is accepted."""
         if self._is_own(message):
             return False
         is_from_copy = self._is_from_copy(message)
@@ -483,35 +484,35 @@ class Exchange:
         elif isinstance(message, AbortCall):
             is_due = True
         else:
-            # Another process of this one's name is none of the others.
+            # Another process of this one's name is not one of the others.
             is_due = message.gw != self.gateway and not is_from_copy
         is_read = message.gw != self.gateway and self._is_read(message)
         if is_read:
             self._heard[message.gw] = time.monotonic()
         elif has_no_lease and message.gw != self.gateway:
             self._heard_without_lease[message.gw] = time.monotonic()
-        # Robots that an answer tells of are this fleet's only if its gateway is known to be.
+        # Robots in an answer belong to this fleet only if its gateway is known to.
         return is_due and (is_read or not isinstance(message, StopSeen))
 
     def _is_own(self, message: BusMessage) -> bool:
-        """Tell whether this gateway sent a message.
+        """Return whether this gateway sent a message.
 
-        By its run: a gateway on a copy of the database, or one that stood still, may have the same name.
+        Compared by run: a gateway on a copy of the database, or one that stood still, may have the same name.
         """
         known = self._membership
         return message.gw == self.gateway and (known is None or message.sender_run == known.me.run)
 
     def _is_read(self, message: BusMessage) -> bool:
-        """Tell whether a message comes from a gateway that was read in the database of this fleet."""
+        """Return whether a message comes from a gateway that was read in the database of this fleet."""
         known = self._membership
         return known is None or message.sender_run == "" or known.has_read(message.sender_run)
 
     def _has_no_lease(self, message: BusMessage) -> bool:
-        """Tell whether a message comes from a gateway that stands in the database and was not alive there."""
+        """Return whether a message comes from a gateway in the database that was not alive there."""
         return self._membership is not None and self._membership.is_without_lease(message.sender_run)
 
     def _is_from_copy(self, message: BusMessage) -> bool:
-        """Tell whether a message is signed by the key of this fleet and comes from none of its gateways."""
+        """Return whether a message has this fleet's key and comes from none of its gateways."""
         known = self._membership
         return known is not None and message.sender_run != "" and known.is_stranger(message.sender_run)
 

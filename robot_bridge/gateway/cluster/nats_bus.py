@@ -28,27 +28,27 @@ from .nats_servers import ANSWER_S, NatsServers, advice_on, check_server, ping, 
 log = logging.getLogger(__name__)
 
 NATS_RETRY_S = 0.1
-"""seconds from one attempt to connect to the next."""
+"""seconds between attempts to connect."""
 CONNECTED_LOOK_S = 0.2
-"""seconds after which a connection is looked at that did not say that it was lost."""
+"""seconds between checks of a connection that did not report a loss."""
 QUIET_LOOKS, PONG_S = 10, 1.0
-"""Looks at a connection by which nothing came, after which it is asked whether it stands, and seconds for the
-answer: a stop of the network is known after three seconds. One by which messages come is not asked: with many
-robots on a busy computer the answer waits behind positions for longer than that."""
+"""Checks of a silent connection after which it is pinged, and seconds for the answer: an outage of the
+network is known after three seconds. A connection that receives messages is not pinged: with many robots on a
+busy computer the answer waits behind positions for longer than that."""
 LARGEST_STOP = 16 << 10
-"""bytes of a message that the thread of stops hands over: no message of a stop has as many. With MOST_WAITING
-of them 4 MB wait at most; what is longer is left to the connection for all messages."""
+"""bytes of a message that the stop thread hands over: no message of a stop is as long. With MOST_WAITING of
+them 4 MB wait at most; longer ones are left to the connection for all messages."""
 END_S = 2.0
 """seconds for which the end of the bus waits for that thread."""
 
 
-# --- A connection, and another one when it is lost ---
+# --- A connection that is replaced when lost ---
 
 
 class NatsConnection:
-    """A connection that hears ``subjects``, one after the other: used by one loop, whichever that is.
+    """A connection subscribed to ``subjects``, reopened when lost; used by one event loop only.
 
-    ``trouble`` is what the log says behind the reason while there is none.
+    ``trouble`` is logged behind the reason while there is no connection.
     """
 
     def __init__(
@@ -61,19 +61,19 @@ class NatsConnection:
         self._subjects = subjects
         self._trouble = trouble
         self._said = set[str]()
-        """why there is no connection, since there was one."""
+        """reasons logged since the last connection."""
 
     @property
     def connected(self) -> bool:
-        """Whether the connection stands, and the server knows what is listened to."""
+        """Whether the connection is open, and the server knows the subscriptions."""
         client = self.client
         return client is not None and bool(client.is_connected)
 
     @contextlib.asynccontextmanager
     async def open(self, receive: Receive) -> AsyncIterator[asyncio.Event]:
-        """Connect, and hand what comes to ``receive``; yield an event that says when the connection is lost.
+        """Connect, and pass messages to ``receive``; yield an event that is set when the connection is lost.
 
-        :raises OSError: as the block ends: the connection is lost by then. Others as they come.
+        :raises OSError: when the block ends: the connection is lost by then. Other errors pass through.
         """
         lost = asyncio.Event()
 
@@ -81,7 +81,7 @@ class NatsConnection:
             lost.set()
 
         async def log_fault(error: Exception) -> None:
-            self._say(str(error))
+            self._log(str(error))
 
         was_lost = bool(self._said)
         async with asyncio.timeout(self._servers.patience):
@@ -106,31 +106,31 @@ class NatsConnection:
 
     @contextlib.contextmanager
     def faults_logged(self) -> Iterator[None]:
-        """Log what goes wrong in the block, each reason once until there is a connection, and go on."""
+        """Log errors in the block, each reason once until there is a connection, and continue."""
         foreseen: tuple[type[Exception], ...] = (*self._servers.errors, BridgeError)
         try:
             yield
         except foreseen as error:
-            self._say(str(error) or "no server answers")
+            self._log(str(error) or "no server answers")
         except Exception as error:
-            # Whatever the library stumbles over: the connection is there again a moment later.
+            # Any error of the library: a new connection follows a moment later.
             reason = f"{type(error).__name__}: {error}"
             if reason not in self._said:
                 log_unforeseen(log, f"bus {self._servers.where}")
             self._said.add(reason)
         except asyncio.CancelledError:
-            # The library cancels tasks and futures of its own, which is no reason to end this one.
+            # The library cancels tasks and futures of its own, which must not end this one.
             raise_if_cancelled()
-            self._say("the client was cancelled")
+            self._log("the client was cancelled")
         raise_if_cancelled()
 
     async def _subscribe(self, client: Any, receive: Receive) -> None:
-        """Return when the server knows what is listened to: what is said before is not heard."""
+        """Return when the server knows the subscriptions: earlier messages are not received."""
         cut = len(self._prefix) + 1
 
         async def hear(message: Any) -> None:
             receive(message.subject[cut:], message.data)
-            # The client hands over all that waits without a pause, and answers no pings meanwhile.
+            # The client delivers all waiting messages without a pause, and answers no pings meanwhile.
             await asyncio.sleep(0)
 
         for subject in self._subjects:
@@ -138,7 +138,7 @@ class NatsConnection:
             await client.subscribe(f"{self._prefix}.{subject}", cb=hear)
         await wait_until_processed(client)
 
-    def _say(self, reason: str) -> None:
+    def _log(self, reason: str) -> None:
         if reason not in self._said:
             advice = advice_on(reason, self._prefix)
             log.warning(
@@ -147,16 +147,16 @@ class NatsConnection:
         self._said.add(reason)
 
 
-# --- Stops: heard by a thread as well ---
+# --- Stops: received by a thread as well ---
 
 
 class StopListener:
-    """Hears stops in a thread with a loop and a connection of its own, and hands each to the gateway's loop.
+    """Receives stops in a thread with its own loop and connection, and passes each to the gateway's loop.
 
-    That needs one turn of the gateway's loop, and with thousands of robots one takes up to 25 ms. Over the
-    connection for all messages it is three: bytes are read, parsed, and handed to the subscription. That
-    connection hears stops as well, and nothing that befalls the thread changes that: what comes twice
-    :class:`~.messages.Exchange` takes in once.
+    That needs one iteration of the gateway's loop; with thousands of robots one takes up to 25 ms. Over the
+    connection for all messages it needs three: bytes are read, parsed, and passed to the subscription. That
+    connection receives stops as well, whatever happens to the thread: :class:`~.messages.Exchange` accepts
+    copies once.
     """
 
     def __init__(self, servers: NatsServers, prefix: str, main: NatsConnection) -> None:
@@ -169,16 +169,16 @@ class StopListener:
             "stops of other gateways come some milliseconds later until it works",
         )
         self._waiting: deque[bytes] = deque(maxlen=MOST_WAITING)
-        """What was heard and not taken in yet. Whoever floods the subject with messages must not fill the
-        gateway's loop with them: it would have a turn for nothing else, and no end of memory would be taken.
-        The oldest are dropped; a stop among them is heard over the connection for all messages."""
+        """Received messages, not processed yet. A flood on the subject must not fill the gateway's loop: it
+        would have time for nothing else, and memory would grow without limit. The oldest are dropped; a stop
+        among them arrives over the connection for all messages."""
         self._is_due = False
-        """whether the gateway's loop was asked to take in what waits, and has not begun to."""
+        """whether the gateway's loop was asked to process the waiting messages, and has not begun."""
         self._receive: Receive | None = None
 
     @contextlib.asynccontextmanager
     async def listening(self, receive: Receive) -> AsyncIterator[None]:
-        """Have a thread hear stops within the block, and ``receive`` take them in on the running loop."""
+        """Have a thread receive stops within the block, and pass them to ``receive`` on the running loop."""
         ended = asyncio.Event()
         self._waiting.clear()
         self._receive, self._is_due = receive, False
@@ -189,11 +189,11 @@ class StopListener:
             self._receive = None
             if end is not None:
                 end()
-                # Not by joining it: that would take a thread of the gateway's, or its loop.
+                # Not by joining it: that would block a thread of the gateway's, or its loop.
                 await wait_at_most(ended, END_S)
 
     def _start(self, gateway: asyncio.AbstractEventLoop, ended: asyncio.Event) -> Callable[[], None] | None:
-        """Start the thread; return what ends it, None where there is no room for it.
+        """Start the thread; return a function that ends it, None if it cannot start.
 
         ``ended`` is set on the loop ``gateway`` then.
         """
@@ -208,16 +208,16 @@ class StopListener:
             try:
                 loop.run_until_complete(self._listen_until(ending, gateway))
             except Exception:
-                # Stops are heard over the connection for all messages from then on.
+                # Stops arrive over the connection for all messages from then on.
                 log_unforeseen(log, "the thread that hears stops")
             finally:
-                # Not asyncio.run, which would wait for a name that is being resolved.
+                # Not asyncio.run, which would wait for a pending name resolution.
                 loop.close()
                 with contextlib.suppress(RuntimeError):
                     gateway.call_soon_threadsafe(ended.set)
 
         def end() -> None:
-            # It may have ended by itself.
+            # The loop may be closed already.
             with contextlib.suppress(RuntimeError):
                 loop.call_soon_threadsafe(ending.set)
 
@@ -230,7 +230,7 @@ class StopListener:
         return end
 
     async def _listen_until(self, ending: asyncio.Event, gateway: asyncio.AbstractEventLoop) -> None:
-        """Listen until ``ending`` is set; end what the client has begun as well, as far as possible."""
+        """Listen until ``ending`` is set; also end the client's own tasks, as far as possible."""
         listening = asyncio.create_task(self._listen(ending, gateway))
         await ending.wait()
         listening.cancel()
@@ -249,22 +249,22 @@ class StopListener:
                 return
             self._is_due = True
             try:
-                gateway.call_soon_threadsafe(self._take_in)
+                gateway.call_soon_threadsafe(self._process_waiting)
             except RuntimeError:
-                # That loop has ended without a word to this one.
+                # That loop has ended without notice.
                 ending.set()
 
         while True:
             while not self._main.connected:
-                # First that one: a server may take no more connections than it.
+                # The main connection goes first: a server may accept only that one.
                 await asyncio.sleep(NATS_RETRY_S)
             with self._connection.faults_logged():
                 async with self._connection.open(hand_over) as lost:
                     await disconnection(self._connection.client, lost)
             await asyncio.sleep(RETRY_S)
 
-    def _take_in(self) -> None:
-        # In this order: what the thread adds from here on is either counted, or asked for again.
+    def _process_waiting(self) -> None:
+        # Cleared first: what the thread adds from here on is either processed below, or scheduled again.
         self._is_due = False
         for _ in range(len(self._waiting)):
             content = self._waiting.popleft()
@@ -301,11 +301,11 @@ class NatsBus:
 
     @property
     def connected(self) -> bool:
-        """Whether the connection stands, and the server knows what this gateway listens to."""
+        """Whether the connection is open, and the server knows this gateway's subscriptions."""
         return self._connection.connected
 
     def publish(self, subject: str, content: bytes) -> bool:
-        """Send a message; false while there is no connection."""
+        """Send a message; return false without a connection."""
         if not self.connected:
             return False
         if subject != STOP or not write_at_once(
@@ -315,11 +315,11 @@ class NatsBus:
         return True
 
     async def check(self) -> None:
-        """Connect for a moment, hear every subject and publish on it; see :meth:`.NatsServers.check`."""
+        """Connect briefly, subscribe to every subject and publish on it; see :meth:`.NatsServers.check`."""
         await self._servers.check(self._prefix, self._subjects)
 
     async def run(self, receive: Receive) -> None:
-        """Connect and send until cancelled; it connects again by itself."""
+        """Connect and send until cancelled; reconnects by itself."""
         async with self._stops.listening(receive):
             while True:
                 with self._connection.faults_logged():
@@ -349,21 +349,20 @@ class NatsBus:
 
 
 def raise_if_cancelled() -> None:
-    """Raise CancelledError where the running task was cancelled and what it waited for has swallowed that.
+    """Raise CancelledError if the running task was cancelled and the awaited call swallowed that.
 
-    The client waits by ``asyncio.wait_for``, which in Python 3.11 returns as if nothing were the matter when
-    the server answers in the same turn of the loop. Such a task would never end.
+    The client waits by ``asyncio.wait_for``, which in Python 3.11 returns normally when the server answers in
+    the same iteration of the loop. Such a task would never end.
     """
     if (task := asyncio.current_task()) is None or task.cancelling():
         raise asyncio.CancelledError
 
 
 def write_at_once(client: Any, subject: str, content: bytes) -> bool:
-    """Publish on a connection of nats-py without a turn of the loop; false where that cannot be.
+    """Publish on a connection of nats-py without an iteration of the loop; return false if impossible.
 
-    The client writes what was published in a task of its own, whose turn comes after those of thousands of
-    robots. It does nothing where nothing is left to be written. A message of which this says false may have
-    been published all the same.
+    The client writes published messages in its own task, whose turn comes after those of thousands of robots.
+    That task does nothing if nothing is left to write. After false the message may still have been published.
     """
     with contextlib.suppress(Exception):
         publishing = client.publish(subject, content)
@@ -373,7 +372,7 @@ def write_at_once(client: Any, subject: str, content: bytes) -> bool:
             with contextlib.suppress(Exception):
                 client._transport.writelines(client._pending[:])
                 client._pending, client._pending_data_size = [], 0
-            # If not now, it is written by the client's task.
+            # Otherwise the client's task writes it.
             return True
         finally:
             publishing.close()
@@ -381,21 +380,21 @@ def write_at_once(client: Any, subject: str, content: bytes) -> bool:
 
 
 async def disconnection(client: Any, lost: asyncio.Event) -> None:
-    """Wait until ``client`` has lost its server, which it says by ``lost``, or the server does not answer.
+    """Wait until ``client`` has lost its server, which sets ``lost``, or the server does not answer.
 
-    It may not say so: a task of its own that fails as it closes the connection ends without a word.
+    It may not be set: a client task that fails while closing the connection ends silently.
     """
-    heard, quiet = -1, 0
+    received, quiet = -1, 0
     while client.is_connected and not lost.is_set():
-        # Looks are counted, not seconds: what came while this computer was busy is read before the next one.
+        # Checks are counted, not seconds: messages that came while this computer was busy are read first.
         await wait_at_most(lost, CONNECTED_LOOK_S)
-        before, heard = heard, client.stats["in_msgs"]
-        quiet = quiet + 1 if heard == before else 0
+        before, received = received, client.stats["in_msgs"]
+        quiet = quiet + 1 if received == before else 0
         if quiet >= QUIET_LOOKS:
             quiet = 0
             try:
                 await ping(client, PONG_S)
             except Exception:
-                # Whatever it is: it is not certain that others are heard.
-                if client.stats["in_msgs"] == heard:
+                # Whatever the error: reception is not certain.
+                if client.stats["in_msgs"] == received:
                     return

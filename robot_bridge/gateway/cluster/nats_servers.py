@@ -1,4 +1,4 @@
-"""NATS servers: connections to one of several, and what has to be true of them before they are a bus."""
+"""NATS servers: connections to one of several, and checks before their use as a bus."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ OLDEST_NATS = (2, 10, 26)
 CONNECT_S, ANSWER_S = 2.0, 2.0
 NO_TLS = "the server does not ask for TLS, and was sent nothing"
 MOST_FAULTS = 3
-"""refusals of the server that are named."""
+"""refusals of the server shown in a message."""
 PING_S = 30
-"""seconds between pings of the client itself, two of which may be without an answer."""
+"""seconds between the client's own pings, two of which may go unanswered."""
 PENDING_BYTES = 4 << 20
-"""bytes that wait for a slow server."""
+"""bytes buffered for a slow server."""
 
 
 def nats_urls(bus: str) -> list[str]:
-    """Return the URLs of NATS servers in ``bus``, none for another bus or for what is no such URL."""
+    """Return the URLs of NATS servers in ``bus``, none for another bus or an invalid URL."""
     urls = [url.strip() for url in bus.split(",")]
     return urls if all(url.startswith(("nats://", "tls://")) for url in urls) else []
 
@@ -49,20 +49,20 @@ class NatsServers:
         self._urls = urls
         self._password = password
         self.errors: tuple[type[Exception], ...] = (nats.errors.Error, OSError, TimeoutError)
-        """what comes of servers and the network."""
+        """errors of servers and the network."""
 
     @property
     def patience(self) -> float:
-        """Seconds after which none of them has answered."""
+        """Seconds within which one of them must answer."""
         return 2 * CONNECT_S * len(self._urls)
 
     @property
     def where(self) -> str:
-        """Where they are, without accounts."""
+        """Their addresses, without accounts."""
         return ",".join(url.rpartition("@")[2].removeprefix("nats://") for url in self._urls)
 
     async def connect(self, name: str, on_error: Any, **options: Any) -> Any:
-        """Connect to one of the servers as ``name``; raises what the last one brought about."""
+        """Connect to one of the servers as ``name``; raises the last one's error."""
         urls = random.sample(self._urls, len(self._urls))  # nosec B311 # nothing secret: spreads load
         for url in urls:
             try:
@@ -83,8 +83,8 @@ class NatsServers:
                 url,
                 error_cb=on_error,
                 connect_timeout=CONNECT_S,
-                # A connection that is lost is made again here, not by the client: it would keep what is
-                # published meanwhile, and send that as if it were new.
+                # A lost connection is reopened here, not by the client, which would keep messages published
+                # meanwhile and send them as if new.
                 allow_reconnect=False,
                 reconnect_time_wait=0.1,
                 max_reconnect_attempts=1,
@@ -96,17 +96,17 @@ class NatsServers:
                 **options,
             )
         except BaseException:
-            # The client leaves its socket open where it gives up.
+            # The client leaves its socket open when it gives up.
             with contextlib.suppress(Exception):
                 await client.close()
             raise
         return client
 
     def _insist_on_tls(self, client: Any) -> None:
-        """Have ``client`` send nothing to a server that does not ask for TLS.
+        """Have ``client`` send nothing to a server that does not require TLS.
 
-        nats-py speaks TLS where the server asks for it, whatever the URL says. Without this, whoever answers
-        in the server's place is sent the password in plain text.
+        nats-py uses TLS if the server requires it, whatever the URL says. Without this, an impostor server
+        would receive the password in plain text.
         """
         greeting = client._connect_command
 
@@ -118,9 +118,9 @@ class NatsServers:
         client._connect_command = greeting_over_tls
 
     async def check(self, prefix: str, subjects: Sequence[str]) -> None:
-        """Connect for a moment, hear every subject behind ``prefix`` and publish on it.
+        """Connect briefly, subscribe to every subject behind ``prefix`` and publish on it.
 
-        :raises BridgeError: when there is no server, it is too old, or it does not let this gateway speak.
+        :raises BridgeError: when there is no server, it is too old, or it denies this gateway a right.
         """
         where = f"bus {self.where}"
         faults: dict[str, None] = {}
@@ -160,24 +160,24 @@ class NatsServers:
 async def ping(client: Any, seconds: float) -> None:
     """Return when the server of ``client`` answers.
 
-    In place of nats-py's ``flush``: where nobody waits for its answer any more that answer ends the task by
-    which the client reads, and without that task it waits for no answer.
+    Replaces nats-py's ``flush``: an answer to an abandoned flush ends the client's reading task, and without
+    that task it receives no answer.
 
-    :raises TimeoutError: when it does not within so many seconds.
+    :raises TimeoutError: when it does not within ``seconds``.
     """
     answered = asyncio.get_running_loop().create_future()
     await client._send_ping(answered)
-    # Whoever gives up the wait leaves the future as it is.
+    # A cancelled wait leaves the future as it is.
     await asyncio.wait({answered}, timeout=seconds)
     if not answered.done():
         raise TimeoutError
 
 
 async def wait_until_processed(client: Any) -> None:
-    """Return when the server has processed all that ``client`` was asked to send it before.
+    """Return when the server has processed everything sent by ``client`` before.
 
-    nats-py writes a ping ahead of what still waits for the turn of its writing task. By the answer that task
-    has had its turn, and the second ping comes last.
+    nats-py writes a ping ahead of data that waits for its writing task. By the answer that task has run, and
+    the second ping comes last.
 
     :raises TimeoutError: when the server does not answer.
     """
@@ -186,7 +186,7 @@ async def wait_until_processed(client: Any) -> None:
 
 
 async def _probe_rights(client: Any, subjects: Iterable[str], hear: Any) -> None:
-    """Hear every subject, and publish on it; return when the server has refused what it refuses."""
+    """Subscribe to every subject and publish on it; return when all refusals have arrived."""
     for subject in subjects:
         await client.subscribe(subject, cb=hear)
         await client.publish(subject, RIGHTS_PROBE)
@@ -194,7 +194,7 @@ async def _probe_rights(client: Any, subjects: Iterable[str], hear: Any) -> None
 
 
 def _advised(faults: Iterable[str], prefix: str) -> str:
-    """Return the first of ``faults``, and what to do."""
+    """Return the first of ``faults``, with advice."""
     named = list(faults)
     text = "; ".join(named[:MOST_FAULTS])
     if (more := len(named) - MOST_FAULTS) > 0:
@@ -203,7 +203,7 @@ def _advised(faults: Iterable[str], prefix: str) -> str:
 
 
 def check_server(client: Any) -> None:
-    """Raise BridgeError where the server that ``client`` is connected to is too old, or takes too little."""
+    """Raise BridgeError if the server of ``client`` is too old, or its message limit is too small."""
     version, url = client.connected_server_version, client.connected_url
     if client.max_payload < LARGEST:
         raise BridgeError(
@@ -221,7 +221,7 @@ def check_server(client: Any) -> None:
 
 
 def advice_on(reason: str, prefix: str) -> str:
-    """Return what to do about ``reason``, for which a server or the network is not used; "" where unknown."""
+    """Return advice on ``reason``, for which a server or the network failed; "" if unknown."""
     words = reason.lower()
     if "permissions violation" in words or "come back" in words:
         return f"the account of this gateway has to be allowed to publish and to subscribe to {prefix}.>"

@@ -1,4 +1,4 @@
-"""Ownership: claims of robots and of their names, and the fence of whatever is written of robots."""
+"""Ownership: claims of robots and of their names, and the fence for writes about robots."""
 
 from __future__ import annotations
 
@@ -28,17 +28,16 @@ from .messages import Exchange, NameAnswer, NameQuery
 log = logging.getLogger(__name__)
 
 BATCH_S, BATCH = 0.02, 500
-"""seconds for which claims wait for one another, and how many are made at once: fleets connect together."""
+"""seconds for which claims are collected, and how many are made at once: fleets connect together."""
 
 ALL_S = 30.0
-"""seconds after which the owners of all robots are read, and not those alone that have changed."""
+"""seconds after which the owners of all robots are read, not only the changed ones."""
 
 
 class OwnerChanges(NamedTuple):
-    """Robots that another gateway has taken over, and that turned out to be this one's; ``gateways`` says who
-    has those whose owner has changed.
+    """Robots taken over by another gateway, and those found to be this one's; ``gateways`` has new owners.
 
-    Of those that are ``gone`` no more is stored: they are new, or were removed.
+    Robots in ``gone`` are no longer stored: they are new, or were removed.
     """
 
     lost: set[str]
@@ -48,10 +47,9 @@ class OwnerChanges(NamedTuple):
 
 
 class Ownership:
-    """Which robots this gateway has: a :class:`.OwnerFence` for what is written of them, and claims.
+    """The robots owned by this gateway: a :class:`.OwnerFence` for writes about them, and claims.
 
-    All of it goes over the connection by which robots are written: what is known here is in the order of
-    what is stored.
+    All of it uses the connection by which robots are written: knowledge here follows the order of storage.
     """
 
     def __init__(self, membership: Membership, database: Database) -> None:
@@ -63,27 +61,27 @@ class Ownership:
         self._claiming: asyncio.Task[None] | None = None
         self._mark: str | None = None
         self._owners: dict[str, Owner] = {}
-        """who had which robot at the read that :attr:`_mark` is of."""
+        """the owner of each robot at the read of :attr:`_mark`."""
         self._mine: dict[str, int] = {}
-        """those of them that this run of this gateway had, with their fences."""
+        """those of them owned by this run of this gateway, with their fences."""
         self._unstored: set[str] = set()
         self._changed: set[str] = set()
-        """those whose owners have changed and were not followed yet."""
+        """robots whose change of owner was not followed yet."""
         self._run = ""
         self._read_all_at = -math.inf
 
     # --- the fence --------------------------------------------------------------------------------------
 
     def owns(self, robot: str) -> bool:
-        """Tell whether this gateway has the robot, for all that it knows."""
+        """Return whether this gateway owns the robot, as far as it knows."""
         return robot in self._robots
 
     def may_command(self, robot: str) -> bool:
-        """Tell whether the robot may be set in motion now: this gateway has it, and may trust that."""
+        """Return whether the robot may be set in motion now: this gateway owns it, and may trust that."""
         return robot in self._robots and self._membership.trust.holds
 
     def check(self, connection: Connection, robots: Collection[str]) -> None:
-        """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""
+        """Raise FencedError unless this gateway owns all ``robots``, and will until the transaction ends."""
         if lost := self.lost(connection, robots):
             raise FencedError(
                 f"{listed_names(sorted(lost))}: connected to another gateway by now, or to none; ask "
@@ -91,21 +89,21 @@ class Ownership:
             )
 
     def lost(self, connection: Connection, robots: Collection[str]) -> AbstractSet[str]:
-        """Return those of ``robots`` that this gateway has not; the others stay its own until the commit."""
+        """Return those of ``robots`` not owned by this gateway; the others stay its own until the commit."""
         fences = self._robots.fences(robots)
         lost = gateways.lost(connection, self._membership.me, fences) if fences else set()
         return lost.union(robot for robot in robots if robot not in fences)
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
-        """Return those of its robots ``stored`` that somebody has removed from the database."""
+        """Return those of its robots ``stored`` that were removed from the database."""
         if gateways.present(connection, self._membership.me) == len(stored):
             return set()
         return set(stored).difference(stored_robots.names(connection))
 
     def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:
-        """Have the gateway that has a robot do a request once this transaction is committed.
+        """Have the owner of a robot do a request once this transaction is committed.
 
-        Whoever has it by then: the one that had it may have died. Nobody collects the answer.
+        That is the owner by then: the current one may have died. The answer is not collected.
         """
         gateways.add_requests(
             connection, [gateways.NewRequest.of(robot, request)], operator, self._membership.name
@@ -114,7 +112,7 @@ class Ownership:
     # --- claims -----------------------------------------------------------------------------------------
 
     async def claim(self, robot: str) -> bool:
-        """Have a robot, whoever had it; return whether what is stored of it has to be read first.
+        """Claim a robot from any owner; return whether its stored state must be read first.
 
         Claims that come together are made together. Raises StoreError.
         """
@@ -126,7 +124,7 @@ class Ownership:
         return await asyncio.shield(waiting)
 
     async def claim_left(self) -> list[str]:
-        """Have the robots that no living gateway has, if this one leads; return them. Raises StoreError."""
+        """Claim the robots that no living gateway owns, if this one leads; return them. Raises StoreError."""
         if not self._membership.leads:
             return []
         spared = self._membership.spared_runs()
@@ -137,19 +135,19 @@ class Ownership:
         return sorted(got)
 
     def forget(self, robots: Iterable[str]) -> None:
-        """Take these robots for nobody's until the next :meth:`refresh`."""
+        """Treat these robots as without owner until the next :meth:`refresh`."""
         self._robots.forget(robots)
 
     async def refresh(self) -> OwnerChanges:
-        """Return what has changed in the database of who has which robot; raises StoreError.
+        """Return the changes of owners in the database; raises StoreError.
 
-        The robots that are lost are nobody's here from then on. What has changed is returned again until
-        :meth:`note_followed`; all once in a while.
+        Lost robots have no owner here from then on. Changes are returned again until :meth:`note_followed`;
+        all robots at intervals.
         """
         await self._read_owners()
         lost, new = self._robots.compare(self._mine)
         self._robots.forget(lost)
-        # A claim of which nobody knew whether it was stored; whoever waits for one takes its robots up.
+        # Claims of uncertain outcome; the waiting claimer takes up its robots itself.
         new -= self._being_claimed
         self._robots.gained({robot: self._mine[robot] for robot in new})
         changed = [robot for robot in self._changed | lost if robot in self._owners]
@@ -157,29 +155,29 @@ class Ownership:
         return OwnerChanges(lost, new, set(self._unstored), owners)
 
     def had_elsewhere(self, robots: Iterable[str]) -> dict[str, str]:
-        """Return those of ``robots`` that another gateway had at the last read, with its name.
+        """Return those of ``robots`` that another gateway owned at the last read, with its name.
 
-        Those that this one has got since are not among them.
+        Robots claimed by this one since are not included.
         """
         others = self._robots.others(robots) - self._being_claimed
         owners = {robot: self._owners[robot].gw for robot in others if robot in self._owners}
         return {robot: gateway for robot, gateway in owners.items() if gateway != self._membership.name}
 
     def note_followed(self) -> None:
-        """Note that what :meth:`refresh` returned last is known everywhere in this gateway."""
+        """Record that the last result of :meth:`refresh` is known everywhere in this gateway."""
         self._changed.clear()
 
     async def _read_owners(self) -> None:
-        """Read the owners that have changed, and all once in a while."""
+        """Read the changed owners, and all at intervals."""
         now = asyncio.get_running_loop().time()
         if now - self._read_all_at >= ALL_S or self._run != self._membership.me.run:
             self._mark = None
         found = await self._database.read(gateways.owners_since, self._mark)
         if self._mark is not None:
-            # Those that are not stored are among what was read, whether they have changed or not.
+            # The read includes those that are not stored, whether changed or not.
             stored = self._unstored.difference(found.owners)
-            self._note_owners({robot: self._owners[robot]._replace(stored=True) for robot in stored})
-            self._note_owners(found.owners)
+            self._record_owners({robot: self._owners[robot]._replace(stored=True) for robot in stored})
+            self._record_owners(found.owners)
             if len(self._owners) != found.total:
                 self._mark = None
                 found = await self._database.read(gateways.owners_since, None)
@@ -187,10 +185,10 @@ class Ownership:
             self._read_all_at = now
             self._owners, self._mine, self._unstored = {}, {}, set()
             self._run = self._membership.me.run
-            self._note_owners(found.owners)
+            self._record_owners(found.owners)
         self._mark = found.mark
 
-    def _note_owners(self, owners: Mapping[str, Owner]) -> None:
+    def _record_owners(self, owners: Mapping[str, Owner]) -> None:
         me = self._membership.me
         self._owners.update(owners)
         self._changed.update(owners)
@@ -230,25 +228,25 @@ def _fail(waiting: Iterable[asyncio.Future[bool]], error: Exception) -> None:
     for one in waiting:
         if not one.done():
             one.set_exception(error if isinstance(error, StoreError) else StoreError(str(error)))
-            # Whoever waited may have gone.
+            # The waiting task may be gone.
             one.exception()
 
 
-# --- Names: whether another robot runs under one is asked of the gateway that has it ---
+# --- Names: asking the owning gateway whether another robot runs under a name ---
 
 ANSWER_WITHIN_S = 1.5
-"""seconds that a Ready waits for another gateway, which may take one to ask its robot."""
+"""seconds that a Ready waits for another gateway, which may need one to ping its robot."""
 
 
 class NameHolder(Protocol):
     """The robots that say Ready to this gateway."""
 
     async def refusal(self, robot: str, magic: int) -> str | None:
-        """Return why a Ready with ``magic`` is refused: another robot of that name is here. None if not."""
+        """Return why a Ready with ``magic`` is refused (another robot of that name is here), or None."""
 
 
 class NameClaims:
-    """Asks other gateways of a robot's name, and answers them by ``holder``."""
+    """Asks other gateways about a robot's name, and answers them by ``holder``."""
 
     def __init__(self, exchange: Exchange, holder: NameHolder) -> None:
         self._exchange = exchange
@@ -259,9 +257,9 @@ class NameClaims:
         exchange.subscribe(NameAnswer, self._answered)
 
     async def refusal(self, robot: str, magic: int, gateway: str) -> str | None:
-        """Return why ``gateway``, which has ``robot``, keeps its name from a Ready with ``magic``.
+        """Return why ``gateway``, which owns ``robot``, denies its name to a Ready with ``magic``.
 
-        One that does not answer keeps nothing: its robots are to go on here.
+        One that does not answer denies nothing: its robots must be able to continue here.
         """
         id = uuid.uuid4().hex
         asked = self._asked[id] = asyncio.get_running_loop().create_future()

@@ -1,8 +1,8 @@
-"""Requests across gateways: what an operator asks of a robot is done by the gateway that has the robot.
+"""Requests across gateways: a request about a robot is done by the gateway that owns the robot.
 
 The request is committed into table ``relayed_requests`` before that gateway is woken, and done by the same
-handlers as if it had been asked there: one gateway alone writes what concerns a robot. An Abort that is not
-answered within a second goes over the bus as well, to the robot's open connection.
+handlers as a local request: only one gateway writes a robot's data. An Abort that is not answered within a
+second goes over the bus as well, to the robot's open connection.
 """
 
 from __future__ import annotations
@@ -81,21 +81,21 @@ RELAYED = (
     GetQueue,
     ResolveConflict,
 )
-"""Requests that concern one robot, and are done by the gateway that has it."""
+"""Requests that concern one robot, and are done by the gateway that owns it."""
 LOOK_S = 1.0
-"""seconds between two looks for requests, and for answers, that nobody told of."""
+"""seconds between checks for requests and answers that were not announced."""
 ANSWER_WITHIN_S = 12.0
-"""seconds that an operator waits: of a gateway that died the robots are taken up within seven."""
+"""seconds that an operator waits: robots of a dead gateway are taken over within seven."""
 TOO_OLD_S = 20.0
-"""seconds after which nothing is begun that sets a robot in motion: nobody counts on it any more."""
+"""seconds after which no request that moves a robot is begun: nobody expects it any more."""
 STORED_WITHIN_S = 1.0
-"""seconds after which an Abort that is not answered goes over the bus as well."""
+"""seconds after which an unanswered Abort goes over the bus as well."""
 MOST_AT_ONCE = 200
 FORGET_S = 3600.0
 
 
 class RelayedOverrideError(OverridableError):
-    """What another gateway would do only with an override."""
+    """Another gateway would do this only with an override."""
 
     def __init__(self, text: str, found: list[str]) -> None:
         RefusedError.__init__(self, text)
@@ -109,7 +109,7 @@ _PLAIN: dict[str, type[Exception]] = {
 
 
 class RequestRelay:
-    """Answers operators as ``handlers`` do, those requests excepted that concern robots of other gateways."""
+    """Answers operators by ``handlers``, but relays requests about robots of other gateways."""
 
     def __init__(
         self,
@@ -132,10 +132,11 @@ class RequestRelay:
         exchange.subscribe(AbortCall, self._abort)
 
     def reach(self, link: Callable[[str, str], bool]) -> None:
-        """Call ``link`` with a robot and the id of a call where another gateway has it aborted directly."""
+        """Set ``link``, called with a robot and a call id when another gateway has it aborted directly."""
         self._links.append(link)
 
-    # --- what operators of this gateway ask -----------------------------------------------------------------
+    # --- requests of operators of this gateway
+    # -----------------------------------------------------------------
 
     async def answer(self, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
         """Return the result of ``request`` as JSON values; raises what its handler raises."""
@@ -150,14 +151,14 @@ class RequestRelay:
         return await self._handlers.answer(request, operator)
 
     async def _answer_of(self, robot: str, request: DeskRequest[Any], operator: str) -> dict[str, Any]:
-        """Return what the gateway answers that has ``robot``."""
+        """Return the answer of the gateway that owns ``robot``."""
         if self._robots.gateway_of(robot) is None:
             try:
                 return await self._handlers.answer(request, operator)
             except StoreError as error:
                 if not (isinstance(error, FencedError) or isinstance(error.__cause__, FencedError)):
                     raise
-                # Another one got it a moment ago.
+                # Another gateway claimed it a moment ago.
         (result,) = await self._relay([(robot, request)], operator)
         return result
 
@@ -167,7 +168,7 @@ class RequestRelay:
             return robot
         if (robot := self._robots.doing(request.aborts)) is not None:
             return robot
-        # Whoever has it can say that it has ended, and no Abort waits for a database that is away.
+        # Its owner can report that it has ended, and no Abort waits for a database that is away.
         with contextlib.suppress(StoreError, TimeoutError):
             async with asyncio.timeout(STORED_WITHIN_S):
                 found = await self._database.read(commands.find, request.aborts)
@@ -175,7 +176,7 @@ class RequestRelay:
         return None
 
     async def _abort_all(self, request: AbortAll, operator: str) -> dict[str, Any]:
-        """Abort the own robots at once, and have the others abort theirs at the same time."""
+        """Abort this gateway's robots at once, and have the others abort theirs at the same time."""
         id = request.command or str(uuid.uuid4())
         aborts: list[tuple[str, DeskRequest[Any]]] = [
             (name, AbortTask(str(uuid.uuid5(uuid.NAMESPACE_OID, f"{id} {name}")), name, None, request.reason))
@@ -193,7 +194,7 @@ class RequestRelay:
         return result
 
     async def _set_positions(self, request: SetPositions, operator: str) -> dict[str, Any]:
-        """Have each gateway send its robots their targets; raises what the first one raises if none does."""
+        """Have each gateway send its robots their targets; raises the first error if none does."""
         parts: dict[str | None, list[TargetPosition]] = {}
         for position in request.positions:
             parts.setdefault(self._robots.gateway_of(position.robot), []).append(position)
@@ -211,7 +212,7 @@ class RequestRelay:
     async def _relay(
         self, requests: Sequence[tuple[str, DeskRequest[Any]]], operator: str
     ) -> list[dict[str, Any]]:
-        """Return the results of requests of robots that others have; raises as their handlers do."""
+        """Return the results of requests about robots of other gateways; raises as their handlers do."""
         stops = [(robot, r) for robot, r in requests if _stops(r)]
         relaying = asyncio.ensure_future(self._ask(requests, operator))
         await asyncio.wait({relaying}, timeout=STORED_WITHIN_S if stops else None)
@@ -231,7 +232,7 @@ class RequestRelay:
 
     def _send_abort(self, robot: str, request: DeskRequest[Any]) -> bool:
         call_id = f"abort-{getattr(request, 'command', uuid.uuid4())}"
-        # It may be connected here, all the same.
+        # It may still be connected here.
         self._abort_here(robot, call_id)
         return self._exchange.send(STOP, AbortCall(self._exchange.gateway, robot, call_id))
 
@@ -240,12 +241,12 @@ class RequestRelay:
         ids = await self._database.run(gateways.add_requests, rows, operator, self._membership.name)
         for gateway in {self._robots.gateway_of(robot) for robot, _ in requests} - {None}:
             self._exchange.wake("requests", gateway)
-        # The robots may have come here meanwhile.
+        # The robots may have moved here meanwhile.
         self._asked.set()
         return await self._collect(ids, [robot for robot, _ in requests])
 
     async def _collect(self, ids: list[int], robots: list[str]) -> list[str]:
-        """Return the answers in the order of ``ids``; raises RefusedError where one does not come."""
+        """Return the answers in the order of ``ids``; raises RefusedError if one is missing."""
         event = asyncio.Event()
         self._answered.update(dict.fromkeys(ids, event))
         answers: dict[int, str] = {}
@@ -278,25 +279,25 @@ class RequestRelay:
     # --------------------------------------------------------
 
     async def run(self) -> None:
-        """Deal with what others ask, until cancelled; raises StoreError."""
+        """Process requests of others until cancelled; raises StoreError."""
         while True:
             self._asked.clear()
             await self.begin_waiting()
             await wait_at_most(self._asked, LOOK_S)
 
     async def begin_waiting(self) -> None:
-        """Begin with what waits for robots of this gateway; raises StoreError."""
+        """Begin the waiting requests about robots of this gateway; raises StoreError."""
         if not await self._database.read(gateways.is_asked, self._membership.me):
             return
         begun = await self._database.run(gateways.begin_requests, self._membership.me, MOST_AT_ONCE)
         for request in begun:
             self._doing.start(self._do(request))
         if len(begun) == MOST_AT_ONCE:
-            # More may wait, Aborts of a whole fleet among them, for which nobody wakes this gateway again.
+            # More may wait, such as Aborts of a whole fleet, for which this gateway is not woken again.
             self._asked.set()
 
     async def forget(self) -> None:
-        """Delete what nobody has collected for an hour; raises StoreError."""
+        """Delete what was not collected for an hour; raises StoreError."""
         await self._database.run(gateways.forget_requests, FORGET_S)
 
     async def _do(self, request: TakenRequest) -> None:
@@ -304,11 +305,11 @@ class RequestRelay:
         with log_and_continue(log, f"answering gateway {request.asked_by}"):
             if await self._store_answer(request, msgspec.json.encode(answer).decode()):
                 self._exchange.wake("answers", request.asked_by)
-                # A gateway that asked itself: the robot came to it meanwhile.
-                self._note_answers()
+                # This gateway asked itself: the robot moved here meanwhile.
+                self._announce_answers()
 
     async def _store_answer(self, request: TakenRequest, answer: str) -> bool:
-        """Store an answer, though the database be away, for as long as somebody waits for it."""
+        """Store an answer, retrying while the database is away and the answer is awaited."""
         until = asyncio.get_running_loop().time() + ANSWER_WITHIN_S
         while True:
             try:
@@ -345,9 +346,9 @@ class RequestRelay:
         if wake.what == "requests":
             self._asked.set()
         elif wake.what == "answers":
-            self._note_answers()
+            self._announce_answers()
 
-    def _note_answers(self) -> None:
+    def _announce_answers(self) -> None:
         for event in set(self._answered.values()):
             event.set()
 
@@ -363,7 +364,7 @@ class RequestRelay:
 def _joined(
     request: SetPositions, parts: Sequence[tuple[Sequence[TargetPosition], dict[str, Any] | BaseException]]
 ) -> dict[str, Any]:
-    """Return the result of a request that several gateways did a part of; raises if none of them did."""
+    """Return the joint result of a request split among gateways; raises if none of them did its part."""
     place = {position.robot: number for number, position in enumerate(request.positions)}
     commands, refused, errors = [], [], []
     for positions, found in parts:
@@ -387,7 +388,7 @@ def _stops(request: DeskRequest[Any]) -> bool:
 
 
 def _check_timely(taken: TakenRequest, request: DeskRequest[Any]) -> None:
-    """Raise RefusedError for what nobody counts on any more, or what may have been done before."""
+    """Raise RefusedError for an overdue request, or one that may have been done before."""
     if taken.age > TOO_OLD_S and not _stops(request):
         raise RefusedError(
             f"{taken.method}: asked {taken.age:.0f} s ago, too long ago to be done now; ask again"
@@ -412,7 +413,7 @@ def _error_out(error: Exception) -> dict[str, Any]:
 
 
 def _result_in(answer: str) -> dict[str, Any]:
-    """Return the result in an answer; raises the error that is in it."""
+    """Return the result in an answer; raises an error contained in it."""
     content = decode_json(answer)
     if isinstance(content, dict) and isinstance(content.get("result"), dict):
         result: dict[str, Any] = content["result"]

@@ -1,7 +1,7 @@
-"""Robots across gateways: where they are, details of them that change seldom, and which are fenced.
+"""Robots across gateways: positions, details that change seldom, and geofence reports.
 
-Positions that changed go out in columns, newest only; what is old is dropped. Details go out when they have
-changed. Each gateway reports which of its robots are in keepouts and at obstacles.
+Changed positions are sent in columns, newest only; old messages are dropped. Details are sent when changed.
+Each gateway reports which of its robots are in keepouts and at obstacles.
 """
 
 from __future__ import annotations
@@ -51,35 +51,35 @@ from .messages import (
 
 
 class NewestBatches:
-    """Tells of batches whether they count: what is older than ``old_s``, or overtaken, does not."""
+    """Accepts batches unless they are older than ``old_s``, or overtaken."""
 
     def __init__(self, old_s: float) -> None:
         self._old_s = old_s
         self._newest: dict[str, float] = {}
 
     def accept(self, batch: PositionBatch | DetailBatch | FenceReport, now: float) -> bool:
-        """Return whether ``batch`` counts at ``now``, by the database's clock; it is the newest then."""
+        """Return whether ``batch`` is valid at ``now`` (database clock); then it becomes the newest."""
         if abs(now - batch.t) > self._old_s or batch.t < self._newest.get(batch.gw, -math.inf):
             return False
         self._newest[batch.gw] = batch.t
         return True
 
 
-# --- Where robots are: what changed goes out in columns ---
+# --- Positions of robots: changes are sent in columns ---
 
 POSITION_TICK_S = 0.2
-"""seconds between two messages: of each robot only the newest position of a tick goes out."""
+"""seconds between messages: only the newest position of each robot in a tick is sent."""
 POSITION_OLD_S = 1.0
-"""seconds after which a message is dropped: it has waited somewhere, and newer ones follow it."""
+"""seconds after which a message is dropped: it was delayed, and newer ones follow it."""
 NAMES_AGAIN_S = 1.0
-"""seconds between two times that a gateway is asked to name its robots."""
+"""seconds between requests to a gateway to name its robots."""
 POSITION_ALL_S = 10.0
-"""seconds after which robots that say nothing new are told again: a message may have been lost. A gateway
-that comes, learns that another one has a robot now, or misses a name, asks for all with their names."""
+"""seconds after which unchanged robots are sent again: a message may have been lost. A gateway that starts,
+learns of another owner of a robot, or misses a name, requests all with their names."""
 
 
 class PositionRelay:
-    """Tells other gateways where the robots of this one are, and takes in where theirs are."""
+    """Sends positions of this gateway's robots to other gateways, and receives theirs."""
 
     def __init__(
         self, robots: Robots, membership: Membership, exchange: Exchange, largest: int = LARGEST
@@ -94,25 +94,25 @@ class PositionRelay:
         self._newest = NewestBatches(POSITION_OLD_S)
         self._asked, self._asked_at = asyncio.Event(), -math.inf
         self._run, self._ids = secrets.randbits(62), dict[str, int]()
-        """numbers that stand for the robots' names, which take longer to send and to read than all else."""
-        exchange.subscribe(PositionBatch, self._take)
+        """numbers in place of the robots' names, which take longer to send and to read than all else."""
+        exchange.subscribe(PositionBatch, self._apply)
         exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
-        """Tell until cancelled."""
+        """Send until cancelled."""
         while True:
             await wait_at_most(self._asked, POSITION_TICK_S)
             self._asked.clear()
             self.send_changes()
 
     def send_changes(self) -> None:
-        """Tell what changed since the last time, and everything once in a while."""
+        """Send changes since the last time, and everything at intervals."""
         if not self._exchange.connected:
-            # Nobody heard of what was told last: once the bus is back, all is told at once.
+            # The last message was not received: once the bus is back, all is sent at once.
             self._sent_all_at, self._was_cut_off = -math.inf, True
             return
         if self._was_cut_off:
-            # Others that were back earlier told theirs before this one could hear it.
+            # Others that were back earlier sent theirs before this one could receive it.
             self._was_cut_off = False
             self._exchange.wake("positions")
         now = self._membership.database_time()
@@ -126,10 +126,10 @@ class PositionRelay:
                 self._exchange.send(POSITIONS, batch)
 
     def _batch(self, robots: RobotPlaces, now: float, *, name_all: bool) -> PositionBatch:
-        """Return where robots are; those that are new are named, with ``name_all`` all."""
+        """Return the robots' positions; new robots are named, with ``name_all`` all."""
         names = robots.names
         if len(self._ids) + len(names) > MOST_IDS:
-            # Of those that were here before most have gone.
+            # Most of the earlier robots are gone.
             self._run, self._ids, name_all = self._run + 1, {}, True
         known, ids = len(self._ids), self._ids
         numbers = np.array([ids.setdefault(name, len(ids)) for name in names], dtype="<u4")
@@ -137,7 +137,7 @@ class PositionRelay:
         table[:, POSE_AT:] = now - self._membership.clock_offset - table[:, POSE_AT:]
         flags, named = robots.flags & REPORTED_FLAGS, len(names) if name_all else len(ids) - known
         if 0 < named < len(names):
-            # What is named comes first.
+            # Named robots come first.
             order = np.argsort(numbers < known, kind="stable")
             names = [names[row] for row in order[:named].tolist()]
             numbers, table, flags = numbers[order], table[order], flags[order]
@@ -156,7 +156,7 @@ class PositionRelay:
             self._sent_all_at = -math.inf
             self._asked.set()
 
-    def _take(self, batch: PositionBatch) -> None:
+    def _apply(self, batch: PositionBatch) -> None:
         if not self._newest.accept(batch, self._membership.database_time()):
             return
         wall = batch.t - self._membership.clock_offset
@@ -165,27 +165,27 @@ class PositionRelay:
             batch.gw, batch.run, batch.robots(), batch.names, batch.table(), flags, wall
         )
         if not self._robots.observe_elsewhere(report) and batch.t - self._asked_at >= NAMES_AGAIN_S:
-            # A message was lost, or came before this gateway knew that the other one has the robot.
+            # A message was lost, or came before this gateway knew that the other one owns the robot.
             self._asked_at = batch.t
             self._exchange.wake("positions", batch.gw)
 
 
-# --- What changes seldom: battery, status, latency and what robots declared; told when it has changed ---
+# --- Details: battery, status, latency and what robots declared; sent on changes ---
 
 DETAIL_TICK_S = 1.0
-"""seconds between two messages."""
+"""seconds between messages."""
 DETAIL_ALL_S = 60.0
-"""seconds after which all is told again: a message may have been lost."""
+"""seconds after which all is sent again: a message may have been lost."""
 DETAIL_ALL_AGAIN_S = 5.0
-"""seconds between two times that all is sent, whoever asks for it: gateways of a fleet start together."""
+"""minimum seconds between full transmissions: gateways of a fleet start together and request them."""
 DETAIL_OLD_S = 5.0
-"""seconds after which a message is dropped: it has waited somewhere."""
+"""seconds after which a message is dropped: it was delayed."""
 
 LATENCY_S, LATENCY_PART = 0.02, 0.5
-"""A latency that differs from the one sent last by no more seconds, and no more of that, is not sent: each
-robot's is measured every few seconds, and is never twice the same."""
+"""Absolute (s) and relative change of latency below which it is not sent: each robot's is measured every few
+seconds, never twice the same."""
 PIECE = 500
-"""robots that are looked at before others have their turn: less than a millisecond."""
+"""robots checked before other tasks have their turn: less than a millisecond."""
 
 _OF_ROBOT = attrgetter("doubt", "latency", "paths", "abilities", "magic")
 _OF_POSE = attrgetter("battery", "status")
@@ -194,7 +194,7 @@ _Facts = tuple[Any, ...]
 
 
 class _Sent(NamedTuple):
-    """What was sent of a robot last, and the values that it was made of: most often those are the same."""
+    """The details last sent of a robot, and their source values: usually those are unchanged."""
 
     of_robot: _Facts
     of_pose: _Facts
@@ -202,9 +202,9 @@ class _Sent(NamedTuple):
 
 
 class DetailRelay:
-    """Tells other gateways the details of the robots of this one, and takes in those of theirs.
+    """Sends details of this gateway's robots to other gateways, and receives theirs.
 
-    A robot is known by its position first, which goes out more often and in the same order.
+    A robot becomes known by its position, which is sent more often and in the same order.
     """
 
     def __init__(
@@ -218,17 +218,17 @@ class DetailRelay:
         self._sent: dict[str, _Sent] = {}
         self._revision, self._sent_all_at, self._is_asked = -1, -math.inf, False
         self._newest = NewestBatches(DETAIL_OLD_S)
-        exchange.subscribe(DetailBatch, self._take)
+        exchange.subscribe(DetailBatch, self._apply)
         exchange.subscribe(Wake, self._woken)
 
     async def run(self) -> None:
-        """Tell until cancelled."""
+        """Send until cancelled."""
         while True:
             await asyncio.sleep(DETAIL_TICK_S)
             await self.send_changes()
 
     async def send_changes(self) -> None:
-        """Tell what changed since the last time, everything once in a while; others have turns meanwhile."""
+        """Send changes since the last time, everything at intervals; other tasks run in between."""
         now = self._membership.database_time()
         if not self._exchange.connected:
             self._sent_all_at = -math.inf
@@ -258,7 +258,7 @@ class DetailRelay:
         for some in detail_batches(changed, self._largest):
             self._exchange.send(POSITIONS, DetailBatch(self._exchange.gateway, now, some))
 
-    def _take(self, batch: DetailBatch) -> None:
+    def _apply(self, batch: DetailBatch) -> None:
         if not self._newest.accept(batch, self._membership.database_time()):
             return
         for one in batch.robots:
@@ -269,10 +269,10 @@ class DetailRelay:
 
 
 def _facts(of_robot: _Facts, of_pose: _Facts, sent: _Facts | None) -> _Facts:
-    """Return what is sent of a robot, in the order of its :class:`RobotDetails`, after what was ``sent``."""
+    """Return the values to send, in the order of :class:`RobotDetails`; ``sent`` are the last ones."""
     doubt, latency, *declared = of_robot
     battery, status = of_pose
-    # Not sent again for less than an operator sees, or minds.
+    # Rounded: smaller changes do not matter to an operator.
     battery = None if battery is None else round(battery, 2)
     return battery, status, doubt, _latency(latency, None if sent is None else sent[3]), *declared
 
@@ -291,16 +291,16 @@ def _details(name: str, facts: _Facts) -> RobotDetails:
     )
 
 
-# --- Robots in keepouts and at obstacles: each gateway judges its own
+# --- Robots in keepouts and at obstacles: each gateway checks its own
 
 FENCE_OLD_S = 5.0
-"""seconds after which a report is dropped: it has waited somewhere."""
+"""seconds after which a report is dropped: it was delayed."""
 _LONGEST_LINE = 500
 _OF_ALARM = attrgetter(*(field.name for field in fields(FenceAlarm)))
 
 
 class FenceRelay:
-    """Tells other gateways what the geofence found of robots of this one, and takes in what theirs found."""
+    """Sends geofence reports on this gateway's robots to other gateways, and receives theirs."""
 
     def __init__(
         self, membership: Membership, exchange: Exchange, events: EventBus, largest: int = LARGEST
@@ -312,7 +312,7 @@ class FenceRelay:
         self._largest = largest
         self._newest = NewestBatches(FENCE_OLD_S)
         events.subscribe(FenceJudged, self._send)
-        exchange.subscribe(FenceReport, self._take)
+        exchange.subscribe(FenceReport, self._apply)
 
     def _send(self, judged: FenceJudged) -> None:
         found, offset = judged.report, self._membership.clock_offset
@@ -327,7 +327,7 @@ class FenceRelay:
         )
         self._exchange.send(EVERYBODY, fitting_report(report, self._largest))
 
-    def _take(self, report: FenceReport) -> None:
+    def _apply(self, report: FenceReport) -> None:
         if not self._newest.accept(report, self._membership.database_time()):
             return
         offset = self._membership.clock_offset
@@ -343,7 +343,7 @@ class FenceRelay:
 
 
 REPORT_HOLDS_S = 10.0
-"""seconds after its last report until a gateway is no longer taken to judge its robots."""
+"""seconds after its last report until a gateway no longer counts as checking its robots."""
 
 
 class ReportsElsewhere:
@@ -352,14 +352,14 @@ class ReportsElsewhere:
     def __init__(self) -> None:
         self._reports: dict[str, tuple[float, Geofence]] = {}
         self._kept: dict[str, tuple[float, list[FenceAlarm]]] = {}
-        """What was reported of robots as they came here, and when that was."""
+        """Alarms of robots when they moved here, with the time of that."""
 
     def add_report(self, gateway: str, report: Geofence, now: float) -> None:
-        """Take in what a gateway reports."""
+        """Store a gateway's report."""
         self._reports[gateway] = now, report
 
     def at(self, now: float) -> dict[str, Geofence]:
-        """Return the reports that hold at time ``now``, by gateway."""
+        """Return the reports valid at time ``now``, by gateway."""
         return {
             gateway: report
             for gateway, (came, report) in self._reports.items()
@@ -367,22 +367,21 @@ class ReportsElsewhere:
         }
 
     def keep_alarms(self, robot: str, now: float) -> None:
-        """Keep what is reported of a robot at time ``now``: it comes here, and who had it soon says no more
-        of it."""
+        """Keep a robot's alarms at time ``now``: it moves here, and its old gateway stops reporting it."""
         self.drop_alarms([robot])
         if alarms := [alarm for alarm in self._alarms(now) if alarm.robot == robot]:
             self._kept[robot] = now, alarms
 
     def drop_alarms(self, robots: Iterable[str]) -> None:
-        """Keep nothing any more of robots that are judged here, or have gone."""
+        """Drop the alarms of robots that are checked here, or are gone."""
         if self._kept:
             for robot in robots:
                 self._kept.pop(robot, None)
 
     def alarm(self, robot: str, kind: FenceKind, name: str, now: float) -> FenceAlarm | None:
-        """Return what a gateway reported of a robot in an area, in which it was before it came here.
+        """Return the alarm that a gateway reported of a robot in an area before it moved here.
 
-        None where no report that holds at time ``now`` says so, nor one that held as it came of late.
+        None without such an alarm in a report valid at ``now``, or valid when the robot came of late.
         """
         same = robot, kind, name[:LONGEST_NAME]
         came, kept = self._kept.get(robot, (-math.inf, []))
@@ -394,7 +393,7 @@ class ReportsElsewhere:
 
 
 def join_reports(first: Geofence, others: Iterable[Geofence]) -> Geofence:
-    """Return ``first`` with what ``others`` found in the same areas, within the same bounds."""
+    """Return ``first`` with the alarms of ``others`` in the same areas, within the same limits."""
     reports = [first, *others]
     alarms = sorted((alarm for one in reports for alarm in one.alarms), key=lambda alarm: -alarm.since)
     unjudged = sorted(name for one in reports for name in one.unjudged)

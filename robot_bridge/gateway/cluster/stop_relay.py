@@ -1,4 +1,4 @@
-"""Emergency stops across gateways: over the bus with an answer of each, and by a look each second."""
+"""Emergency stops across gateways: over the bus, answered by each, and by polling each second."""
 
 from __future__ import annotations
 
@@ -22,19 +22,19 @@ from .messages import Exchange, StopCall, StopSeen, Wake
 log = logging.getLogger(__name__)
 
 LOOK_S = 1.0
-"""seconds between two looks into the database, and between two calls over the bus to who has not answered."""
+"""seconds between database checks, and between calls over the bus to gateways that have not answered."""
 TELL_S = 0.1
-"""seconds for which changes of what robots answered wait for one another before others are told."""
+"""seconds for which robots' answers are collected before others are notified."""
 CUT_OFF_S = 5.0
 """seconds without the database and without any other gateway after which a gateway counts as cut off."""
 COUNTS_HOLD_S = 3.0
-"""seconds of silence after which what a gateway said of its robots is not counted any more; it beats each."""
+"""seconds of silence after which a gateway's robots are no longer counted; it beats each second."""
 MOST_NAMES = 50
 LONGEST_NAMES = 1200
 """bytes of the names of each kind in a message to other gateways: a notification of PostgreSQL has few."""
 _NAMED_ONE_BY_ONE = ("waiting", "refused", "moving", "unheard")
 _COUNTED_BEYOND = ("moving", "unheard")
-"""kinds of robots of which an EmergencyReport says how many it does not name."""
+"""kinds of robots for which an EmergencyReport counts those not named."""
 
 
 class LocalStops(Protocol):
@@ -42,33 +42,33 @@ class LocalStops(Protocol):
 
     @property
     def in_force(self) -> bool:
-        """Whether robots must not be sent anywhere."""
+        """Whether robots must not be set in motion."""
 
     @property
     def current(self) -> StopRow | None:
-        """The stop in force, or the one that was cleared last."""
+        """The stop in force, or the last cleared one."""
 
     def local_counts(self) -> dict[str, Any]:
-        """Return what the robots of this gateway said."""
+        """Return the counts of answers of this gateway's robots."""
 
     def announce(self) -> None:
-        """Tell every operator how things stand."""
+        """Send every operator the current state."""
 
     def stop_elsewhere(self, stop: StopRow) -> None:
-        """Put a stop in force that was made at another gateway."""
+        """Put a stop of another gateway in force."""
 
     @property
     def known_ids(self) -> Sequence[str]:
-        """The ids of the stops that are in force here, and of the one that was last."""
+        """The ids of the stops in force here, and of the last one."""
 
     def learn(self, stop: StopRow) -> None:
-        """Take in how a stop is stored."""
+        """Apply a stop as stored."""
 
 
 class EmergencyStopRelay:
-    """Tells other gateways of stops made here, and learns of those made there.
+    """Sends stops made here to other gateways, and receives theirs.
 
-    What an operator's stop does for its own robots waits for nothing of this.
+    An operator's stop of this gateway's own robots waits for none of this.
     """
 
     def __init__(
@@ -87,17 +87,17 @@ class EmergencyStopRelay:
         self._lease = lease
         self._clock = clock
         self._seen: dict[str, StopSeen] = {}
-        """what each other gateway said of the stop in force."""
+        """the last answer of each other gateway to the stop in force."""
         self._asked: dict[str, str] = {}
-        """the stop that each other gateway called for last: where several are in force it may be another one
-        than that of the report here."""
+        """the stop that each other gateway called for last: of several in force it may differ from the one
+        reported here."""
         self._named: list[str] = []
-        """the other gateways that were to answer when operators were told last of those."""
+        """the gateways due to answer, as last reported to operators."""
         self._changed = asyncio.Event()
         self._look_now = asyncio.Event()
         self._looked_at = clock.steady()
         self._has_company = False
-        """whether there were other gateways when the database was reached last."""
+        """whether there were other gateways at the last contact with the database."""
         self._stops_when_cut_off = stops_when_cut_off
         exchange.subscribe(StopCall, self._called)
         exchange.subscribe(StopSeen, self._answered)
@@ -106,7 +106,7 @@ class EmergencyStopRelay:
     # --- as a fleet.emergency_stop.StopRelay ----------------------------------------------------------------
 
     def announce(self, stop: StopRow) -> None:
-        """Tell all others of a stop."""
+        """Send a stop to all others."""
         self._seen.clear()
         self._exchange.send(
             STOP, StopCall(self._exchange.gateway, stop.id, stop.at, stop.by[:200], stop.reason)
@@ -114,13 +114,13 @@ class EmergencyStopRelay:
         self._changed.set()
 
     def note_change(self) -> None:
-        """Note that the robots of this gateway have answered."""
+        """Record that robots of this gateway have answered."""
         self._changed.set()
 
     def add_counts(self, counts: dict[str, Any], stop: str) -> dict[str, Any]:
         """Return ``counts`` of a stop with those of the other gateways."""
         others = self._others()
-        # The robots of one that is gone are counted by whoever has them now.
+        # Robots of a gateway that is gone are counted by their present owner.
         seen = {name: one for name, one in self._seen.items() if one.id == stop and name in others}
         sums = {
             name: counts[name] + sum(getattr(one, name) for one in seen.values())
@@ -136,11 +136,12 @@ class EmergencyStopRelay:
         missing = [name for name in others if name not in seen]
         return {**sums, **names, "gateways": StoppedGateways(1 + len(seen), 1 + len(others), missing)}
 
-    # --- what goes on -------------------------------------------------------------------------------------
+    # --- background work
+    # -------------------------------------------------------------------------------------
 
     async def run(self) -> None:
-        """Look, and tell others what the robots answered, until cancelled."""
-        tasks = [asyncio.create_task(work()) for work in (self._look_again, self._tell, self._call_again)]
+        """Poll the database, and send robots' answers to others, until cancelled."""
+        tasks = [asyncio.create_task(work()) for work in (self._poll, self._send_answers, self._call_again)]
         try:
             await asyncio.gather(*tasks)
         finally:
@@ -149,23 +150,23 @@ class EmergencyStopRelay:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def read_stored(self) -> None:
-        """Learn from the database of stops, and of their end; raises StoreError."""
+        """Read stops, and their ends, from the database; raises StoreError."""
         current, after = self._stops.current, 0.0
         if current is not None:
             after = current.at if current.cleared_at is None else current.cleared_at
         found = await self._lease.read(emergency_stops.changed, self._stops.known_ids, after)
         self._looked_at = self._clock.steady()
         self._has_company = bool(self._membership.others())
-        # Ends last: another stop in force must hold by then.
+        # Cleared stops last: another stop in force must be in place by then.
         for stop in sorted(found, key=lambda stop: stop.cleared_at or 0.0):
             self._stops.learn(stop)
 
     def is_cut_off(self) -> bool:
-        """Tell whether this gateway reaches neither the database nor any other gateway, and had others."""
+        """Return whether this gateway, one of several, reaches neither the database nor another gateway."""
         silent = self._clock.steady() - self._looked_at
         return self._has_company and silent > CUT_OFF_S and not self._exchange.heard()
 
-    async def _look_again(self) -> None:
+    async def _poll(self) -> None:
         while True:
             self._look_now.clear()
             try:
@@ -185,7 +186,7 @@ class EmergencyStopRelay:
         by, at = f"gateway {self._exchange.gateway}", self._membership.database_time()
         self._stops.stop_elsewhere(StopRow(f"cut-off-{uuid.uuid4()}", at, by, reason))
 
-    async def _tell(self) -> None:
+    async def _send_answers(self) -> None:
         while True:
             await self._changed.wait()
             await asyncio.sleep(TELL_S)
@@ -201,10 +202,10 @@ class EmergencyStopRelay:
             others = self._others()
             silent = self._seen.keys() - self._exchange.heard(COUNTS_HOLD_S)
             for name in silent:
-                # What its robots did when it was heard last is not what they do now: it is called again.
+                # Its robots' last known state is outdated: it is called again.
                 del self._seen[name]
             if silent or others != self._named:
-                # Nobody is to watch for one that is gone.
+                # Operators must not wait for one that is gone.
                 self._named = others
                 self._stops.announce()
             if any(name not in self._seen or self._seen[name].id != stop.id for name in others):
@@ -215,7 +216,7 @@ class EmergencyStopRelay:
     def _answer(self) -> None:
         stop = self._stops.current
         if stop is None or not self._stops.in_force:
-            # It was cleared, which only the database can tell the others.
+            # It was cleared, which others learn only from the database.
             self._asked.clear()
             self._exchange.wake("stops")
             return
@@ -228,16 +229,17 @@ class EmergencyStopRelay:
             self._exchange.send(STOP, StopSeen(self._exchange.gateway, id, **said))
 
     def _others(self) -> list[str]:
-        """Return the other gateways that are to answer: those that live, and those that are heard.
+        """Return the other gateways that must answer: the living ones, and those that are heard.
 
-        One whose lease has just run out is among them: its robots may drive, and count as nobody's until
-        another gateway has claimed them. Without it all would seem stopped for that moment. So is one that is
-        heard without a lease: it may be cut off from the database, and have robots still.
+        One whose lease has just expired is included: its robots may drive, and have no owner until another
+        gateway has claimed them. Without it all would seem stopped for that moment. So is one heard without a
+        lease: it may be cut off from the database, and still have robots.
         """
         entered = *self._membership.others(), *self._membership.just_lost()
         return sorted({*entered, *self._exchange.heard(), *self._exchange.heard_without_lease()})
 
-    # --- what comes in ------------------------------------------------------------------------------------
+    # --- incoming messages
+    # ------------------------------------------------------------------------------------
 
     def _called(self, call: StopCall) -> None:
         self._stops.stop_elsewhere(StopRow(call.id, call.at, call.by, call.reason))
