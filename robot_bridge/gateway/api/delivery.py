@@ -25,72 +25,72 @@ from ..storage.repositories.requests import AnswerRow, Outbox
 
 
 class Channel(Protocol):
-    """The way to and from one robot; frames are JSON-RPC 2.0 texts."""
+    """The connection to one robot; frames are JSON-RPC 2.0 texts."""
 
     @property
     def name(self) -> str:
-        """What operators see as the robot's link: ``websocket``, or the name of the link."""
+        """The robot's link as shown to operators: ``websocket``, or the name of the link."""
 
     @property
     def endpoint(self) -> str:
-        """The path at a gateway that its connection was made to."""
+        """The path at the gateway that it connected to."""
 
     @property
     def round_trip(self) -> float | None:
-        """Seconds that the last ping took there and back, None before the first."""
+        """Round-trip time of the last ping in seconds, None before the first."""
 
     def call(self, method: str, params: Any = None, id: int | str | None = None) -> str:
-        """Return the frame of a request, or of a notification where ``id`` is None."""
+        """Return the frame of a request, or of a notification if ``id`` is None."""
 
     def result(self, id: int | str | None, value: Any) -> str:
         """Return the frame that answers the robot's call ``id``."""
 
     def error(self, id: int | str | None, code: int, text: str) -> str:
-        """Return the frame that tells why the robot's call ``id`` failed."""
+        """Return the error frame for the robot's failed call ``id``."""
 
     def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
-        """Wait for the turn of a message from the outbox: what is ``urgent`` waits for nothing.
+        """Wait for the turn of a message from the outbox; ``urgent`` ones do not wait.
 
-        Many robots may share one connection: a ``large`` message of one is not to keep the others waiting.
+        Many robots may share one connection: a ``large`` message of one must not delay the others.
         """
 
     async def send(self, frame: str) -> None:
         """Write a frame without waiting for a turn; raises ConnectionClosed."""
 
     def send_at_once(self, frame: str) -> bool:
-        """Write a frame now; false where that cannot be, and nothing was done."""
+        """Write a frame now; return false, with nothing done, if that is impossible."""
 
     async def answers(self) -> bool:
-        """Tell whether the other end is there; takes a second at most."""
+        """Return whether the other end is alive; takes a second at most."""
 
     async def release(self, reason: str, *, again: bool = False) -> None:
-        """Tell the other end that the robot has another connection now, and carry nothing more for it.
+        """Notify the other end that the robot has another connection now, and stop carrying its messages.
 
-        It had better connect ``again`` where that may not be so.
+        With ``again`` the other end should reconnect.
         """
 
 
 async def while_connected(work: Coroutine[Any, Any, None]) -> None:
-    """Do ``work``, to which the end of the connection is an end like any other."""
+    """Await ``work``; a closed connection ends it without an error."""
     with contextlib.suppress(ConnectionClosed):
         await work
 
 
-# --- How a robot's outbox goes out over its connection, and an emergency stop before anything else ---
+# --- Delivery of a robot's outbox over its connection, emergency stops first ---
 
 log = logging.getLogger(__name__)
 
 RETRY_AFTER = 1.0
-"""seconds after which the outbox is looked at again when the database could not be read."""
+"""seconds until the outbox is read again after a failed read of the database."""
 
 LARGE = 100_000
-"""bytes of a message above which its frame is made in another thread."""
+"""bytes of a message above which its frame is built in another thread."""
 PIECE = 3 << 16
-"""bytes that are written as base64 at once; a multiple of three, so that pieces follow one another."""
+"""bytes encoded as base64 at once; a multiple of three, so that pieces can be concatenated."""
 
 
 class Delivery:
-    """Sends one robot what waits for it, for as long as its connection is open."""
+    """Sends one robot its waiting messages while its connection is open."""
 
     def __init__(self, fleet: Fleet, channel: Channel, robot: str) -> None:
         self._fleet = fleet
@@ -99,50 +99,50 @@ class Delivery:
         self._work: asyncio.Task[None] | None = None
         self._stops = 0
         self._last = {False: 0, True: 0}
-        """the ids of the messages that were sent last, by urgency."""
+        """the ids of the last sent messages, by urgency."""
         self._stopping = BackgroundTasks()
 
     @property
     def reader(self) -> Outbox:
-        """The answers to read for the robot: what comes behind what it was sent."""
+        """The answers to read for the robot: those after the ones sent."""
         return self._robot, self._last[False], self._last[True]
 
     def begin(self) -> None:
-        """Deliver the outbox from its beginning: what was not acknowledged is sent again."""
+        """Deliver the outbox from its beginning: unacknowledged messages are sent again."""
         self.end()
         self._work = asyncio.create_task(self._deliver())
 
     def begin_later(self) -> None:
-        """Deliver the outbox from its beginning in a moment: the database did not take what it said."""
+        """Deliver the outbox from its beginning in a moment: the database refused the robot's reply."""
         self.end()
         self._work = asyncio.create_task(self._deliver(RETRY_AFTER))
 
     def end(self) -> None:
-        """Deliver nothing more."""
+        """Stop delivering."""
         if self._work is not None:
             self._work.cancel()
 
     def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
         """Send the robot an Abort, before anything that was not sent yet.
 
-        It does not wait for the database; an emergency stop's follows from the outbox under an id of its own.
+        It does not wait for the database; an emergency stop's Abort follows from the outbox under its own id.
         """
         self.outdate()
         frame = self._channel.call(Abort.__name__, to_json(Abort(emergency=emergency)), call_id)
         with log_and_continue(log, f"stopping robot {self._robot!r} at once"):
-            # A task of each would come after thousands of others.
+            # A task per robot would come after thousands of others.
             if self._channel.send_at_once(frame):
                 return
         self._stopping.start(while_connected(self._channel.send(frame)))
 
     def outdate(self) -> None:
-        """Send nothing of what was read before: the robot is being told to stop."""
+        """Discard messages read before: the robot is being sent a stop."""
         self._stops += 1
 
     async def _deliver(self, after: float = 0.0) -> None:
         await asyncio.sleep(after)
         event = self._fleet.outboxes.event(self._robot)
-        # Of this task alone: one that was ended may still be on its way out.
+        # Local to this task: an ended one may still be on its way out.
         last = self._last = {False: 0, True: 0}
         while True:
             event.clear()
@@ -155,7 +155,7 @@ class Delivery:
                 log.error("link %s: robot %r: %s", self._channel.name, self._robot, error)
                 await asyncio.sleep(RETRY_AFTER)
             except Exception:
-                # Whatever it was: this robot must be told to stop by what comes after it.
+                # Whatever the error: a later stop must still reach this robot.
                 log_unforeseen(log, f"link {self._channel.name}: what waits for robot {self._robot!r}")
                 await asyncio.sleep(RETRY_AFTER)
 
@@ -163,8 +163,8 @@ class Delivery:
         """Send the messages above ``last``, by urgency; return false when a stop made them out of date."""
         stops = self._stops
         for row in await self._fleet.outboxes.outbox(self._robot, last[False], last[True]):
-            # Noted first: it must never be taken back as something that the robot cannot have. All else is
-            # noted afterwards, so that no Abort waits for the database, nor behind what does.
+            # Recorded first: it must never be withdrawn as not yet sent. All else is recorded afterwards, so
+            # that no Abort waits for the database, nor behind a message that does.
             drives = row.op in HELD_BACK
             checked_at = steady_time()
             is_due = not drives or await self._fleet.outboxes.mark_sending(self._robot, row.id)
@@ -172,7 +172,7 @@ class Delivery:
                 return False
             if is_due and (frame := await self._framed(row)) is not None:
                 async with self._channel.lane(urgent=bool(row.urgent), large=len(frame) > LARGE):
-                    # While this waited for its turn the robot may have been told to stop.
+                    # While this waited for its turn the robot may have been sent a stop.
                     if self._stops != stops:
                         return False
                     if drives and not self._fleet.outboxes.may_send(self._robot, checked_at):
@@ -186,13 +186,13 @@ class Delivery:
     async def _framed(self, row: AnswerRow) -> str | None:
         if row.payload is None and row.op == SetMap.__name__:
             row = row._replace(payload=await self._fleet.maps.whole_or_around(self._robot))
-        # A city's map takes a while to be written as text, for which nobody else is to wait.
+        # A city's map takes long to encode as text; nobody else must wait for it.
         if row.payload is not None and row.op in PAYLOADS and len(row.payload) > LARGE:
             return await asyncio.to_thread(self._large_frame, row, row.payload)
         return self._frame(row)
 
     def _large_frame(self, row: AnswerRow, payload: bytes) -> str | None:
-        """Return what :meth:`_frame` does, piece by piece: each holds up the other threads."""
+        """Return the same as :meth:`_frame`, built in pieces: each blocks the other threads."""
         frame = self._frame(row._replace(payload=b""))
         if frame is None:
             return None
@@ -201,7 +201,7 @@ class Delivery:
         return "".join([head, name, *(base64.b64encode(piece).decode("ascii") for piece in pieces), tail])
 
     def _frame(self, row: AnswerRow) -> str | None:
-        """Return the call that delivers a message; None for one that cannot be read, which is left out."""
+        """Return the call that delivers a message; None for one that cannot be read, which is skipped."""
         try:
             return self._channel.call(row.op, _params(row), row.id)
         except MessageError as error:

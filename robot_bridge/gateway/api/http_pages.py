@@ -1,4 +1,4 @@
-"""Pages over HTTP: how the gateway is, for whoever watches over it, and answers to questions on the site."""
+"""Pages over HTTP: health and metrics for monitoring, and queries on the site."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ log = logging.getLogger(__name__)
 
 HEALTH, METRICS = "/healthz", "/metrics"
 ANSWER_WITHIN = 2.0
-"""seconds after which a database that says nothing counts as away."""
+"""seconds after which a silent database counts as away."""
 TOO_OLD = 10.0
 """seconds since the last success after which a task of the gateway counts as stuck."""
 WATCHED = ("save", "sql link")
@@ -61,7 +61,7 @@ class StatusPages:
             metrics.add(_cluster_readings(fleet.cluster))
 
     async def health(self) -> Response:
-        """Return 200 when all is well and 503 when not, with JSON that says what is not."""
+        """Return 200 when all is well and 503 otherwise, with the problems as JSON."""
         latency = await self._database_latency()
         tasks = {name.replace(" ", "_"): self._task(name) for name in WATCHED}
         site = self._fleet.site.report
@@ -81,7 +81,7 @@ class StatusPages:
         return _page(status, "application/json", json.dumps(found).encode() + b"\n")
 
     async def metrics(self) -> Response:
-        """Return every number in the format of Prometheus."""
+        """Return all metrics in the format of Prometheus."""
         await self._database_latency()
         return _page(http.HTTPStatus.OK, CONTENT_TYPE, self._metrics.page())
 
@@ -98,7 +98,7 @@ class StatusPages:
         return round(time.perf_counter() - began, 4)
 
     def _routes(self) -> dict[str, Any] | None:
-        """Return what finds ways; all is well without the fastest, which is started again."""
+        """Return the state of the route search; it stays well without its fastest engine, which restarts."""
         planner = self._fleet.roads.planner
         report = None if planner is None else planner.engine_report
         return None if report is None else asdict(report)
@@ -226,33 +226,33 @@ def _page(status: http.HTTPStatus, kind: str, body: bytes) -> Response:
     return http_response(status, body, [("Content-Type", kind), ("Cache-Control", "no-store")])
 
 
-# --- ``/site/surfaces`` and ``/site/route``: answered as GeoJSON ---
+# --- ``/site/surfaces`` and ``/site/route``: answers as GeoJSON ---
 
 MOST_AT_ONCE = 8
-"""Questions under way; a way through a city can take a second."""
+"""Concurrent queries; a way through a city can take a second."""
 MOST_FIELDS = 2_000
-"""Parameters behind one ``?``, with their repetitions; the line of a request ends at 8 kB before."""
+"""Parameters behind one ``?``, with their repetitions; the request line is limited to 8 kB before."""
 DIGITS = 7
 """Decimals of a degree: a centimetre."""
 _NAMES = {"point": "points", "surface": "surfaces"}
-"""What the desk's requests call a parameter that is repeated here."""
+"""The names in the desk's requests of parameters that are repeated here."""
 
 Places = list[list[float]]
 
 
 class SiteQueries:
-    """Answers questions by the services that answer the same ones of desks."""
+    """Answers queries by the services that answer the desks' requests."""
 
     def __init__(self, maps: SiteMaps, handlers: RequestHandlers) -> None:
         self._maps, self._handlers = maps, handlers
         self._under_way = 0
 
     def serves(self, path: str) -> bool:
-        """Tell whether ``path`` is one of theirs."""
+        """Return whether ``path`` is one of these pages."""
         return path in schemas.PARAMETERS
 
     async def answer(self, request: Request) -> Response:
-        """Return GeoJSON, or a problem that says what was wrong and what to do."""
+        """Return GeoJSON, or a problem document with the error and advice."""
         if self._under_way >= MOST_AT_ONCE:
             return _problem(
                 http.HTTPStatus.SERVICE_UNAVAILABLE,
@@ -289,7 +289,7 @@ class SiteQueries:
         query["x"], query["y"] = query.pop("goal")
         found = await self._handlers.answer(decode_desk_request("get_route", query), "")
         if not found["engine"]:
-            # A desk is shown the straight line with its note; a program would take it for a road.
+            # A desk shows the straight line with its note; a program would take it for a road.
             raise RefusedError(f"there is no way along the roads: {found['note'].partition(': ')[2]}")
         line = await asyncio.to_thread(self._on_earth, found.pop("points"), None)
         found.pop("tight", None)
@@ -298,7 +298,7 @@ class SiteQueries:
     def _on_earth(self, places: Sequence[Sequence[float]], crs: str | None) -> Places:
         """Return places of ``crs``, or of the site frame, as longitudes and latitudes.
 
-        :raises RefusedError, CrsError: when the places, or the site, have none.
+        :raises RefusedError, CrsError: when the places, or the site, cannot be converted.
         """
         pairs = [(x, y) for x, y in places]
         here = pairs if crs is None else self._maps.to_site(pairs, crs)
@@ -311,9 +311,9 @@ class SiteQueries:
 
 
 def read_query(text: str, parameters: Sequence[schemas.QueryParameter]) -> dict[str, Any]:
-    """Return what stands behind the ``?`` of an address, by the names of the desk's requests.
+    """Return the query string's parameters, by the names of the desk's requests.
 
-    :raises MessageError: for what is unknown, missing, there twice or no value of its kind.
+    :raises MessageError: for a parameter that is unknown, missing, repeated or invalid.
     """
     known = {one.name: one for one in parameters}
     found: dict[str, Any] = {}
@@ -374,7 +374,7 @@ def _feature(kind: str, coordinates: Any, properties: Mapping[str, Any]) -> dict
 
 
 def _text(path: str, error: Exception) -> str:
-    """Return what was wrong, under the name that the question has here."""
+    """Return the error text, with the name of the query's path."""
     return f"{path}: {re.sub(r'get_(surface|route): ', '', str(error))}"
 
 

@@ -1,8 +1,8 @@
 """Server of operators: sessions over WebSocket, order of their requests, permission check of each.
 
-What stops robots is begun at once, whatever was asked before. What may take long is answered aside, and
-everything else in turn. A stop overtakes what waits its turn: what of that would set robots in motion is
-refused then, since it was asked before they were to stand.
+Requests that stop robots are begun at once, before all others. Those that may take long are answered aside,
+and everything else in turn. A stop overtakes the waiting requests: those that would set robots in motion are
+refused then, since they were made before the stop.
 """
 
 from __future__ import annotations
@@ -48,13 +48,13 @@ from ..fleet.views import ViewWatch
 from ..model.events import Answering
 from ..monitoring import BackgroundTasks
 
-# --- The order of requests, and what one overtakes ---
+# --- The order of requests, and which ones a stop overtakes ---
 
 MOVING = (Priority.MOVE, Priority.MOVE_SEVERAL)
 MOST_WAITING, MOST_ASIDE, MOST_STOPPING = 256, 64, 1000
 """requests of one operator that wait their turn, that wait aside, and that stop robots, at most."""
 MOST_EMERGENCIES = 50
-"""emergency stops of one operator that are dealt with at the same time; the connection waits then."""
+"""emergency stops of one operator handled at the same time; beyond that the connection waits."""
 MOST_BYTES = 4_000_000
 """bytes of one operator's requests that wait, at most in each lane."""
 
@@ -68,17 +68,17 @@ class ScheduledRequest(NamedTuple):
 
     @property
     def stops(self) -> bool:
-        """Tell whether it stops robots."""
+        """Return whether the request stops robots."""
         sent_by_hand = isinstance(self.request, Send) and self.request.op == Abort.__name__
         return sent_by_hand or self.request.priority is Priority.STOP
 
 
 Settle = Callable[[ScheduledRequest, Exception | None], Coroutine[Any, Any, None]]
-"""Deals with a request and tells the operator what came of it; with an exception it only tells that."""
+"""Handles a request and sends the operator its outcome; with an exception it only sends that."""
 
 
 class RequestScheduler:
-    """The requests of one operator that are being dealt with, or wait."""
+    """The requests of one operator that are being handled, or wait."""
 
     def __init__(self, settle: Settle) -> None:
         self._settle = settle
@@ -86,14 +86,14 @@ class RequestScheduler:
         self._aside = _Lane(settle)
         self._stopping = BackgroundTasks()
         self._late: list[ScheduledRequest] = []
-        """what a stop has overtaken that has not had its own turn yet."""
+        """waiting requests that a stop has overtaken."""
 
     def overtake(self, stop: DeskRequest[Any]) -> None:
-        """Have nothing begun any more that ``stop``, which has come and not had its turn yet, overtakes."""
+        """Withdraw the waiting requests that ``stop``, itself not begun yet, overtakes."""
         self._late += self._turn.withdraw(lambda waiting: _is_overtaken(waiting, stop))
 
     async def submit(self, scheduled: ScheduledRequest) -> None:
-        """See to a request; returns at once, or when one that cannot be taken has been refused."""
+        """Schedule a request; returns at once, or when one that cannot be accepted has been refused."""
         if scheduled.stops:
             await self._stop(scheduled)
         elif scheduled.request.priority is Priority.SLOW:
@@ -102,7 +102,7 @@ class RequestScheduler:
             await self._settle(scheduled, _too_many(scheduled))
 
     async def finish(self) -> None:
-        """Wait for what stops robots and for what has been begun; forget the rest, the operator is gone."""
+        """Wait for requests that stop robots or have been begun; drop the rest, the operator is gone."""
         self._aside.cancel()
         await asyncio.gather(self._stopping.wait(), self._turn.end(), return_exceptions=True)
 
@@ -127,7 +127,7 @@ class RequestScheduler:
 
 
 class _Lane:
-    """Deals with one request after the other."""
+    """Handles requests one after the other."""
 
     def __init__(self, settle: Settle) -> None:
         self._settle = settle
@@ -135,7 +135,7 @@ class _Lane:
         self._task: asyncio.Task[None] | None = None
 
     def submit(self, scheduled: ScheduledRequest, most: int) -> bool:
-        """Take a request; false when too much waits."""
+        """Queue a request; return false when too many wait."""
         waiting = sum(one.size for one in self._waiting)
         if len(self._waiting) >= most or (self._waiting and waiting + scheduled.size > MOST_BYTES):
             return False
@@ -145,19 +145,19 @@ class _Lane:
         return True
 
     def withdraw(self, which: Callable[[ScheduledRequest], bool]) -> list[ScheduledRequest]:
-        """Return what waits and is not to be dealt with any more."""
+        """Remove and return the waiting requests that ``which`` selects."""
         gone = [scheduled for scheduled in self._waiting if which(scheduled)]
         self._waiting = deque(scheduled for scheduled in self._waiting if not which(scheduled))
         return gone
 
     def cancel(self) -> None:
-        """Leave everything unanswered."""
+        """Drop all requests unanswered."""
         self._waiting.clear()
         if self._task is not None:
             self._task.cancel()
 
     async def end(self) -> None:
-        """Wait until what has been begun is dealt with; forget the rest."""
+        """Wait until the begun request is handled; drop the rest."""
         self._waiting.clear()
         if self._task is not None:
             await self._task
@@ -168,7 +168,7 @@ class _Lane:
 
 
 def _is_overtaken(waiting: ScheduledRequest, stop: DeskRequest[Any]) -> bool:
-    """Tell whether a request would set a robot in motion that ``stop``, which came after it, is to stop."""
+    """Return whether a request would set a robot in motion that the later ``stop`` must stop."""
     if waiting.request.priority not in MOVING:
         return False
     one, other = getattr(stop, "robot", None), getattr(waiting.request, "robot", None)
@@ -177,7 +177,7 @@ def _is_overtaken(waiting: ScheduledRequest, stop: DeskRequest[Any]) -> bool:
 
 
 def _is_renewed(waiting: ScheduledRequest, scheduled: ScheduledRequest) -> bool:
-    """Tell whether ``scheduled`` is the same way with another goal, as while a mouse moves."""
+    """Return whether ``scheduled`` asks for the same route with another goal, as while a mouse moves."""
     old, new = waiting.request, scheduled.request
     if not (isinstance(old, GetRoute) and isinstance(new, GetRoute)):
         return False
@@ -200,30 +200,30 @@ def _too_many(scheduled: ScheduledRequest) -> BusyError:
 
 # --- One operator on a WebSocket ---
 
-# --- How operators connect: JSON-RPC 2.0 on WebSocket, requests in, positions and commands out ---
+# --- The operators' protocol: JSON-RPC 2.0 on WebSocket, requests in, positions and commands out ---
 
 log = logging.getLogger(__name__)
 
 OWN = (Hello, Subscribe)
-"""Requests that concern the connection itself; everything later goes by them."""
+"""Requests on the connection itself; all later ones depend on them."""
 SUBJECTS = ("robot", "session", "operator", "site", "observation", "command", "plan")
-"""Parameters that say what a request is about; of several the first."""
+"""Parameters that name the subject of a request; of several the first counts."""
 UNNOTED = ("hello", "subscribe", "find_robots")
 """Requests that change nothing but the connection they come from."""
 AT_ONCE = ("emergency",)
-"""News that wait for no turn of the loop, which thousands of robots may have before."""
+"""Notifications sent without an iteration of the loop, in which thousands of robots may come first."""
 _STOP = EmergencyStop.method.encode()
 NEWS_CHARACTERS = 32_768
-"""of news that are sent together: a stop of thousands of robots is news of each of them."""
+"""characters of notifications sent together: a stop of thousands of robots gives one of each."""
 VIEW_REST_S = 0.1
-"""between frames to a desk whose view moves."""
+"""seconds between frames to a desk whose view moves."""
 
 
 class OperatorSession:
     """One operator's connection.
 
     A slow operator gets fewer snapshots, each of the newest state, and of each command the newest report:
-    what waits for it never grows beyond one entry for each robot and command.
+    its queue never exceeds one entry for each robot and command.
     """
 
     def __init__(
@@ -248,7 +248,7 @@ class OperatorSession:
         self._connection.handle_at_once(self._begin_stop)
         try:
             async for frame in self._connection:
-                await self._take(frame)
+                await self._receive(frame)
         except ConnectionClosed:
             pass
         finally:
@@ -258,7 +258,7 @@ class OperatorSession:
             await self._lanes.finish()
 
     def notify(self, method: str, key: str, params: dict[str, Any]) -> None:
-        """Keep the newest news of ``key`` until they can be sent; those of a stop are sent at once."""
+        """Keep the newest notification of ``key`` until it can be sent; those of a stop are sent at once."""
         if method in AT_ONCE and self._connection.is_idle:
             self._news.pop((method, key), None)
             if self._connection.write_at_once(jsonrpc.call(method, params)):
@@ -267,7 +267,7 @@ class OperatorSession:
         self._news_event.set()
 
     def _begin_stop(self, frame: bytes) -> bool:
-        """Begin an emergency stop as soon as its bytes are there; it is answered and stored in its turn."""
+        """Begin an emergency stop as soon as its bytes arrive; it is answered and stored in its turn."""
         if _STOP in frame:
             with log_and_continue(log, "beginning an emergency stop"):
                 if (stop := self._permitted_stop(frame)) is not None:
@@ -276,12 +276,12 @@ class OperatorSession:
         return False
 
     def _permitted_stop(self, frame: bytes) -> EmergencyStop | None:
-        """Return the stop in a message that this operator may make; None for what is decoded in its turn."""
+        """Return the stop in a message if this operator may make it; None for messages decoded in turn."""
         try:
             call = jsonrpc.decode(frame)
             if not (isinstance(call, jsonrpc.Call) and call.method == EmergencyStop.method):
                 return None
-            # One without an id is given one by whoever decodes it, and would be another one each time.
+            # A stop without an id gets one when decoded, and would get another one each time.
             if not isinstance(call.params, dict) or call.params.get("command") is None:
                 return None
             request = decode_desk_request(call.method, call.params)
@@ -290,7 +290,7 @@ class OperatorSession:
             return None
         return request if isinstance(request, EmergencyStop) else None
 
-    async def _take(self, frame: str | bytes) -> None:
+    async def _receive(self, frame: str | bytes) -> None:
         call = None
         try:
             call = jsonrpc.decode(frame)
@@ -306,7 +306,7 @@ class OperatorSession:
             await self._lanes.submit(scheduled)
 
     async def _settle(self, scheduled: ScheduledRequest, refusal: Exception | None) -> None:
-        """Do what is asked, unless it is refused, and tell what came of it."""
+        """Do a request, unless it is refused, and send its outcome."""
         with contextlib.suppress(ConnectionClosed):
             await self._connection.send(await self._answer(scheduled, refusal))
 
@@ -318,11 +318,11 @@ class OperatorSession:
             result = jsonrpc.result(scheduled.call.id, await self._do(scheduled.request))
         except Exception as error:
             return self._refused(scheduled.call, error)
-        self._note(scheduled.call)
+        self._record(scheduled.call)
         return result
 
     def _refused(self, call: jsonrpc.Call | jsonrpc.Reply | None, error: Exception) -> str:
-        """Return the answer that tells why; called where ``error`` was caught."""
+        """Return the error answer; called where ``error`` was caught."""
         if isinstance(error, jsonrpc.FrameError):
             return jsonrpc.error(error.id, error.code, str(error))
         code, text = jsonrpc.INTERNAL_ERROR, str(error)
@@ -332,16 +332,16 @@ class OperatorSession:
         else:
             text = self._fleet.repeated.note_unforeseen(log, self._key_of(call), f"desk of {self._operator}")
         if isinstance(call, jsonrpc.Call):
-            self._note(call, text, code)
+            self._record(call, text, code)
         return jsonrpc.error(call.id if call else None, code, text, _data_of(error))
 
     def _key_of(self, call: jsonrpc.Call | jsonrpc.Reply | None) -> tuple[str, ...]:
-        """Return what lines of the log about such a request are counted under."""
+        """Return the key under which log lines about such a request are counted."""
         method = call.method if isinstance(call, jsonrpc.Call) else ""
         return "desk of", self._operator, method if method in DESK_REQUESTS else "unknown methods"
 
-    def _note(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
-        """Write down who asked for what to be changed, done or refused, and what a role does not reach."""
+    def _record(self, call: jsonrpc.Call, refusal: str | None = None, code: int | None = None) -> None:
+        """Record in the audit log who requested which change, done or refused, and missing permissions."""
         harmless = call.method in UNNOTED or call.method.startswith("get_")
         if call.method not in DESK_REQUESTS or (harmless and code != jsonrpc.FORBIDDEN):
             return
@@ -355,7 +355,7 @@ class OperatorSession:
             role=self._gate.role(self._connection).value,
             address=self._connection.address,
             subject=next((str(name) for name in names if name is not None), None),
-            # First, since what is too long is cut at its end.
+            # First, since long texts are cut at the end.
             detail="; ".join(str(text) for text in (refusal, content.get("override"), params) if text),
         )
 
@@ -463,19 +463,20 @@ class OperatorSession:
                 self._news_event.clear()
                 while self._news:
                     await self._connection.send_together(self._next_news())
-                    # To a client that takes all at once this would go on: robots are to have their turn.
+                    # With a client that accepts all at once this would not yield: robots must have their
+                    # turn.
                     await asyncio.sleep(0)
         except ConnectionClosed:
             return
 
     def _next_news(self) -> list[str]:
-        """Return the oldest news that wait, as many as are sent together."""
+        """Return the oldest waiting notifications, as many as are sent together."""
         frames: list[str] = []
         size = 0
         while self._news and size < NEWS_CHARACTERS:
             method, key = next(iter(self._news))
             params = self._news.pop((method, key))
-            # What cannot be told of one robot must not keep back what is told of others.
+            # A failed notification of one robot must not keep back those of others.
             with log_and_continue(log, "news of %s", method):
                 frames.append(jsonrpc.call(method, params))
                 size += len(frames[-1])
@@ -483,7 +484,7 @@ class OperatorSession:
 
 
 def _data_of(error: Exception) -> dict[str, Any] | None:
-    """Return what the desk has to know of ``error`` besides its text."""
+    """Return the data of ``error`` that the desk needs besides its text."""
     if isinstance(error, OutdatedError):
         return error.newer
     if isinstance(error, LateError):
@@ -492,11 +493,11 @@ def _data_of(error: Exception) -> dict[str, Any] | None:
 
 
 def check_deadline(scheduled: ScheduledRequest) -> None:
-    """Raise LateError for a request whose deadline is over, MessageError for a deadline that is none.
+    """Raise LateError for a request past its deadline, MessageError for an invalid deadline.
 
-    A frame can lie in a buffer for minutes, where a network or this process stood still, and a robot must not
-    drive off on a request that its operator has given up. What stops or holds robots is right at any time;
-    what concerns the connection itself brings the time.
+    A frame can lie in a buffer for minutes, while a network or this process stood still, and a robot must not
+    drive off on a request that its operator has given up. Requests that stop or hold robots are valid at any
+    time; those on the connection itself bring the time.
     """
     deadline, request = scheduled.call.deadline, scheduled.request
     if deadline is None or scheduled.stops or request.stops or isinstance(request, OWN):
@@ -514,7 +515,7 @@ def check_deadline(scheduled: ScheduledRequest) -> None:
 
 
 def check_permission(request: DeskRequest[Any], operator: str, role: Role, override_role: Role) -> None:
-    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not reach.
+    """Raise ForbiddenError for a request, or an override in it, that an operator's role does not permit.
 
     ``override_role`` is the least role that may override a check, by the site's settings.
     """

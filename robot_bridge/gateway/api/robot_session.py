@@ -34,15 +34,15 @@ log = logging.getLogger(__name__)
 # --- One robot behind a channel: its requests, its acknowledgements, and its outbox ---
 
 _OTHERS = ("frames", "replies")
-"""What else than calls of an operation is refused."""
+"""Kinds of refused messages other than calls of an operation."""
 POSITION = jsonrpc.Call("SendPos", None)
 ANEW = "the robot has connected anew"
 MOST_DUE = 50
-"""things that a robot said and that are being stored; what comes then waits for them."""
+"""messages of a robot being stored at once; further ones wait for them."""
 
 
 class RobotSessions:
-    """The session by which each robot is connected: the one on which it said Ready last."""
+    """The current session of each robot: the one on which it last sent Ready."""
 
     def __init__(self, claims: ConnectionClaims) -> None:
         self._claims = claims
@@ -52,11 +52,11 @@ class RobotSessions:
         return iter(list(self._holders.values()))
 
     def get(self, robot: str) -> RobotSession | None:
-        """Return the session of a robot, None where it is not connected."""
+        """Return the session of a robot, None if it is not connected."""
         return self._holders.get(robot)
 
     def admit(self, session: RobotSession) -> None:
-        """Let ``session`` be the connection of its robot, and end the one before."""
+        """Make ``session`` the connection of its robot, and end the previous one."""
         former = self._holders.get(session.robot)
         self._holders[session.robot] = session
         self._claims.claim(session.robot, session)
@@ -64,7 +64,7 @@ class RobotSessions:
             former.replace()
 
     def release(self, session: RobotSession) -> bool:
-        """Note that ``session`` is gone; return whether its robot was connected by it."""
+        """Remove ``session``; return whether its robot was connected by it."""
         held = self._holders.get(session.robot) is session
         if held:
             self._claims.free(session.robot, session)
@@ -73,7 +73,7 @@ class RobotSessions:
 
 
 class RobotSession:
-    """One robot on one channel; once it has said Ready there it is admitted to ``sessions``."""
+    """One robot on one channel; after its Ready it is admitted to ``sessions``."""
 
     def __init__(
         self,
@@ -93,60 +93,61 @@ class RobotSession:
         self._has_ended = False
         self._told_gateways: list[str] | None = None
 
-    # --- what its connection asks of it -----------------------------------------------------------------
+    # --- called by its connection -----------------------------------------------------------------
 
     @property
     def is_replaced(self) -> bool:
-        """Whether the robot has connected again elsewhere: what still comes in is passed over."""
+        """Whether the robot has reconnected elsewhere: further messages here are ignored."""
         return self._closing is not None
 
     def replace(self, reason: str = ANEW, *, again: bool = False) -> None:
-        """Carry nothing more: the robot has connected again, or had better do so ``again``."""
+        """Stop carrying messages: the robot has reconnected, or should do so (``again``)."""
         self.end()
-        # A connection whose robot is gone takes seconds to close, and the new one must not wait for it.
+        # A dead connection takes seconds to close, and the new one must not wait for it.
         self._closing = asyncio.create_task(self._channel.release(reason, again=again))
 
     def end(self) -> None:
-        """Deliver nothing more: the channel is gone. What is being stored goes on to its end."""
+        """Stop delivering: the channel is gone. Messages being stored are stored to the end."""
         self._has_ended = True
         self._delivery.end()
 
     def stop_now(self, call_id: str, *, emergency: bool = True) -> None:
-        """Send the robot an Abort under the id ``call_id`` that waits for nothing."""
+        """Send the robot an Abort with the id ``call_id`` without any wait."""
         self._delivery.stop_now(call_id, emergency=emergency)
 
     def outdate(self) -> None:
-        """Send nothing of what waits as it was read: the robot is told to stop with others of its link."""
+        """Discard messages read before: the robot is sent a stop with the others of its link."""
         self._delivery.outdate()
 
     def ask_again(self) -> None:
-        """Send in a moment what it has not acknowledged: a reply of it was not dealt with."""
+        """Send unacknowledged messages again in a moment: a reply was not processed."""
         if self._admitted and not self._has_ended:
             self._delivery.begin_later()
 
     def measure(self) -> None:
-        """Note how long the last ping took there and back."""
+        """Record the round-trip time of the last ping."""
         if self._admitted and self._channel.round_trip is not None:
             self._fleet.robots.measured(self.robot, self._channel.round_trip)
 
     async def answers(self) -> bool:
-        """Tell whether the robot is there, as far as its channel knows."""
+        """Return whether the robot is alive, as far as its channel knows."""
         return await self._channel.answers()
 
     async def send_gateways(self) -> None:
-        """Send the robot where the gateways of the fleet are; before its Ready, Start and OpAck say so.
+        """Send the robot the addresses of the fleet's gateways; before its Ready, Start and OpAck carry them.
 
-        :raises ConnectionClosed: when it is gone.
+        :raises ConnectionClosed: when the connection is gone.
         """
         gateways = self._fleet.gateways_at(self._channel.endpoint)
         if gateways is not None and self._admitted and not self._has_ended:
-            # The next OpAck has them as well, for who passes over what it does not know.
+            # The next OpAck carries them as well, for robots that ignore unknown messages.
             await self._channel.send(self._channel.call(Gateways.method, to_json(gateways)))
 
-    # --- what comes in ------------------------------------------------------------------------------------
+    # --- incoming messages
+    # ------------------------------------------------------------------------------------
 
     def take_pose(self, pose: SendPos) -> bool:
-        """Take in a position at once; false where :meth:`listens` says no, and nothing was done."""
+        """Process a position at once; return false, with nothing done, unless :meth:`listens`."""
         if not self.listens():
             return False
         rest: Awaitable[None] | Exception | None
@@ -159,21 +160,21 @@ class RobotSession:
         return True
 
     def listens(self) -> bool:
-        """Tell whether the robot is let in, and not too much of what it said is still being stored."""
+        """Return whether the robot is admitted, and not too many of its messages are still being stored."""
         return self._admitted and self._closing is None and len(self._due) < MOST_DUE
 
     def follow_up(self, rest: Awaitable[None] | Exception) -> None:
-        """See to the end what a position brought about, or tell what is wrong with it."""
+        """Await the further processing of a position, or send its error."""
         self._due.start(while_connected(self._answer(POSITION, self._outcome(rest))))
 
     async def receive_pose(self, pose: SendPos) -> None:
-        """Take in a position, at once where that can be; else behind what is being stored, or refuse it."""
+        """Process a position, at once if possible; else after the messages being stored, or refuse it."""
         if not self.take_pose(pose):
             await self._due.wait()
             await self._answer(POSITION, self._ask(pose, None))
 
     async def receive(self, message: jsonrpc.Call | jsonrpc.Reply) -> None:
-        """Deal with a call, behind what is still to be stored, or begin to deal with the reply to one."""
+        """Process a call, after the messages still being stored, or begin to process a reply."""
         if isinstance(message, jsonrpc.Call):
             await self._due.wait()
             await self._answer(message, self._receive_call(message))
@@ -182,7 +183,7 @@ class RobotSession:
             self._receive_reply(message)
 
     async def refuse_frame(self, error: jsonrpc.FrameError, *, large: bool = False) -> None:
-        """Tell the robot that a frame cannot be read, and operators too where it was too ``large``."""
+        """Send the robot that a frame cannot be read, and notify operators if it was too ``large``."""
         await self._due.wait()
         if large and self._admitted:
             self._fleet.refuse_large(self.robot, self._channel.name, str(error))
@@ -204,7 +205,7 @@ class RobotSession:
         return await self._ask(request, call.id if isinstance(call.id, int) else None)
 
     async def _answer(self, call: jsonrpc.Call, work: Coroutine[Any, Any, RequestOutcome]) -> None:
-        """Await what comes of a call and tell the robot: acknowledged is only what has its answer stored."""
+        """Await the outcome of a call and send it: a call is acknowledged only once its answer is stored."""
         channel = self._channel
         try:
             outcome = await work
@@ -218,7 +219,7 @@ class RobotSession:
         except ConnectionClosed:
             raise
         except Exception:
-            text = self._note_unforeseen(call.method, self._who)
+            text = self._log_unforeseen(call.method, self._who)
             await channel.send(channel.error(call.id, jsonrpc.INTERNAL_ERROR, text))
             return
         if call.id is not None:
@@ -227,7 +228,7 @@ class RobotSession:
             self._delivery.begin()
 
     def _acknowledgement(self, outcome: RequestOutcome) -> OpAck:
-        """Return the OpAck of a call, with the gateways of the fleet where they are not as told last."""
+        """Return the OpAck of a call, with the gateways of the fleet if changed since last sent."""
         ack, gateways = outcome.ack or OpAck(), self._fleet.gateway_urls(self._channel.endpoint)
         if gateways == self._told_gateways and not outcome.admitted:
             return ack
@@ -241,7 +242,7 @@ class RobotSession:
                     f"robot {self.robot!r} has not said Ready on this connection; send Ready first"
                 )
             return await self._fleet.receive(self.robot, self._channel.name, request, id)
-        # A robot that starts again inside its own connection is no second one.
+        # A robot that restarts on its own connection is not a second one.
         self._fleet.reception.holds.free(self.robot, self)
         outcome = await self._fleet.receive(self.robot, self._channel.name, request, id)
         if outcome.admitted:
@@ -268,7 +269,7 @@ class RobotSession:
         try:
             await self._outcome(storing)
         except DataRefusedError as error:
-            # Asked again it would say the same again, and for ever.
+            # Sent again it would get the same reply, for ever.
             log.error("%s: %s; what it said is left out", self._who, error)
         except StoreError as error:
             line = f"{self._who}: {error}; it will be asked again"
@@ -277,19 +278,19 @@ class RobotSession:
         except (MessageError, BridgeError) as error:
             self._warn(self._key_of("replies", error), f"{self._who}: {error}")
         except Exception:
-            # There is no answer to an answer: what went wrong is between the log and whoever reads it.
-            self._note_unforeseen("replies", f"{self._who}, acknowledgement {id}")
+            # A reply has no answer: the error goes to the log only.
+            self._log_unforeseen("replies", f"{self._who}, acknowledgement {id}")
 
     def _warn(self, key: Key, line: str) -> None:
-        """Count a refusal, and write it into the log unless it comes again and again."""
+        """Count a refusal, and log it unless it repeats."""
         self._fleet.counters.refused[self._channel.name] += 1
         self._fleet.repeated.warn(log, key, line)
 
-    def _note_unforeseen(self, method: str, who: str) -> str:
+    def _log_unforeseen(self, method: str, who: str) -> str:
         return self._fleet.repeated.note_unforeseen(log, self._key_of(method), who)
 
     def _key_of(self, method: str, error: Exception | None = None) -> Key:
-        """Return what lines of the log are counted by: a database that is full is so for all robots."""
+        """Return the key that log lines are counted by: a full database counts once for all robots."""
         if isinstance(error, StoreError) and not isinstance(error, DataRefusedError):
             return f"link {self._channel.name}:", "database"
         what = method if method in REQUESTS or method in _OTHERS else "unknown operations"
@@ -298,16 +299,16 @@ class RobotSession:
 
 # --- A robot's own WebSocket: JSON-RPC 2.0 with the operation codes of the paper as methods ---
 # A robot's requests are calls (SendPos and Alive may be notifications), and the gateway's OpAck is the
-# result. The gateway's messages are calls whose id is that of the message; the robot's OpAck is the result,
-# or an error where it will not do it.
+# result. The gateway's messages are calls with the id of the message; the robot's OpAck is the result, or an
+# error if it refuses.
 
 NAME = "websocket"
 FRAME_PIECE = 1 << 18
-"""characters of a message that are sent as one frame."""
+"""characters of a message sent as one frame."""
 PING_TIMEOUT = 1.0
-"""seconds after which a robot counts as gone when another one comes under its name."""
+"""seconds after which a robot counts as gone when another one connects under its name."""
 REPLACED = 4001
-"""Close code for a connection whose robot has connected again."""
+"""Close code for a connection whose robot has reconnected."""
 
 
 class RobotChannel:
@@ -321,7 +322,7 @@ class RobotChannel:
 
     @property
     def round_trip(self) -> float | None:
-        """Seconds that the last ping took there and back."""
+        """Round-trip time of the last ping in seconds."""
         return self._connection.round_trip
 
     def call(self, method: str, params: Any = None, id: int | str | None = None) -> str:
@@ -337,7 +338,7 @@ class RobotChannel:
         return jsonrpc.error(id, code, text)
 
     def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
-        """Wait for nobody: the connection is the robot's alone."""
+        """Do not wait: the connection serves this robot alone."""
         return nullcontext()
 
     async def send(self, frame: str) -> None:
@@ -345,11 +346,11 @@ class RobotChannel:
         await send_frame(self._connection, frame)
 
     def send_at_once(self, frame: str) -> bool:
-        """Write a frame now; false where another one is on its way."""
+        """Write a frame now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
 
     async def answers(self) -> bool:
-        """Tell whether the robot answers a ping within a second."""
+        """Return whether the robot answers a ping within a second."""
         return await is_answering(self._connection)
 
     async def release(self, reason: str, *, again: bool = False) -> None:
@@ -369,7 +370,7 @@ class RobotConnection:
         self.session = RobotSession(fleet, self._channel, robot, sessions)
 
     async def run(self) -> bool:
-        """Serve the connection to its end; return true if the robot closed it in good order."""
+        """Serve the connection to its end; return true if the robot closed it cleanly."""
         try:
             greeting = self._fleet.greeting(self._channel.endpoint)
             await self._connection.send(self._channel.call("Start", to_json(greeting)))
@@ -388,7 +389,7 @@ class RobotConnection:
         return self._connection.close_code in (1000, 1001)
 
     def _take_at_once(self, frame: bytes) -> bool:
-        """Take in a position; false for everything else, and while something must be waited for."""
+        """Process a position; return false for everything else, and while a wait is needed."""
         pose = decode_position(frame)
         return pose is not None and self.session.take_pose(pose)
 
@@ -408,9 +409,9 @@ class RobotConnection:
 
 
 async def send_frame(connection: ClientConnection, frame: str) -> None:
-    """Send a message, a large one in several frames: as one it would hold the gateway up while it is copied.
+    """Send a message, a large one in several frames: as one it would block the gateway while it is copied.
 
-    It is sent to its end though whoever sends it is cancelled: nothing could follow one that is cut off.
+    It is sent to its end even if the sender is cancelled: nothing could follow a truncated message.
     """
     if len(frame) <= FRAME_PIECE:
         await connection.send(frame)
@@ -421,12 +422,12 @@ async def send_frame(connection: ClientConnection, frame: str) -> None:
 async def _pieces(frame: str) -> AsyncIterator[str]:
     for begin in range(0, len(frame), FRAME_PIECE):
         yield frame[begin : begin + FRAME_PIECE]
-        # A connection that takes everything at once waits for nothing, and others are to have their turn.
+        # A connection that accepts everything at once would not yield, and others must have their turn.
         await asyncio.sleep(0)
 
 
 async def is_answering(connection: ClientConnection) -> bool:
-    """Tell whether a client answers a ping within a second."""
+    """Return whether a client answers a ping within a second."""
     try:
         async with asyncio.timeout(PING_TIMEOUT):
             await (await connection.ping())

@@ -24,34 +24,34 @@ log = logging.getLogger(__name__)
 
 NAME = "sql"
 TURN_S = 0.01
-"""Rows are dealt with for so long before whatever else waits has its turn, such as an emergency stop."""
+"""seconds of processing rows before other tasks have their turn, such as an emergency stop."""
 RETRY_AFTER = 1.0
 BEAT = "sql link"
-"""The name under which each look at the tables is noted."""
+"""The name under which each poll of the tables is recorded."""
 
 
 class HandledRequests(NamedTuple):
-    """What came of some requests of one robot, and their ids."""
+    """Outcomes of some requests of one robot, and their ids."""
 
     outcomes: list[RequestOutcome]
     ids: list[int]
 
 
 class SqlInterface:
-    """Watches RR and SA. A robot's requests are dealt with in their order; one that fails is answered."""
+    """Watches RR and SA. A robot's requests are processed in order; one that fails is answered."""
 
     def __init__(self, fleet: Fleet, database: Database) -> None:
         self._fleet = fleet
         self._database = database
         self._seen_version: int | None = None
         self._waited_up_to: int | None = None
-        """the newest request from before this link read any; None until it is known."""
+        """the newest request from before this link's first read; None until it is known."""
         self._greeted: set[str] = set()
         self._news = TroubleNews()
         self._turn_ends = 0.0
 
     async def run(self) -> None:
-        """Serve until cancelled; a database that fails for a while is tried again."""
+        """Serve until cancelled; retries while the database fails."""
         wakeup = self._database.wakeup(GATEWAY_CHANNEL)
         try:
             while True:
@@ -70,9 +70,9 @@ class SqlInterface:
             await wakeup.close()
 
     async def poll(self) -> bool:
-        """Look once whether robots wrote or deleted something, and deal with it; tell whether they did.
+        """Poll once for rows that robots wrote or deleted, and process them; return whether there were any.
 
-        Raises StoreError; what waits is then looked at again.
+        Raises StoreError; the waiting rows are then read again.
         """
         try:
             return await self._poll()
@@ -96,7 +96,7 @@ class SqlInterface:
         return found
 
     async def _deal_with_all(self, rows: list[RequestRow]) -> None:
-        """Deal with requests side by side, those of one robot one after the other."""
+        """Process requests concurrently, those of one robot one after the other."""
         by_robot: dict[str, list[RequestRow]] = {}
         for row in rows:
             by_robot.setdefault(row.robot, []).append(row)
@@ -106,7 +106,7 @@ class SqlInterface:
             for some, result in zip(by_robot.values(), dealt, strict=True)
             if not isinstance(result, BaseException)
         ]
-        # Whose requests were dealt with is answered, whatever is the matter with another robot's.
+        # Processed requests are answered, even if another robot's failed.
         await self._finish(done)
         for result in dealt:
             if isinstance(result, BaseException):
@@ -123,7 +123,7 @@ class SqlInterface:
         return outcomes
 
     async def _finish(self, dealt: list[HandledRequests]) -> None:
-        """Store what came of robots' requests: all at once, else each robot's by itself."""
+        """Store the outcomes of robots' requests: all at once, else robot by robot."""
         outcomes = [outcome for one in dealt for outcome in one.outcomes]
         ids = [id for one in dealt for id in one.ids]
         try:
@@ -133,7 +133,7 @@ class SqlInterface:
                 for one in dealt:
                     await self._finish([one])
                 return
-            # Nothing that the gateway writes should be refused; what is must not come back for ever.
+            # Writes of the gateway should never be refused; a refused one must not repeat for ever.
             log_unforeseen(log, f"link sql: requests {ids}, which stay without an answer")
             await self._fleet.outboxes.finish([], ids, acks=True)
 
@@ -151,7 +151,7 @@ class SqlInterface:
             text = f"link sql: request {row.id} of robot {row.robot!r}: {error}"
             self._fleet.repeated.warn(log, _key_of(row), text)
             if isinstance(error, OtherRunError) and not REQUESTS[row.op].acknowledged:
-                # It waits for no answer, and whose account it is would be buried in them.
+                # It expects no answer, and answers would flood the robot that owns the account.
                 return None
             return _refusal(row, str(error))
         except StoreError:
@@ -175,7 +175,7 @@ class SqlInterface:
         return await self._database.run(requests.payload, row.id, self._fleet.observations.check_size)
 
     def _greet(self, robot: str) -> RequestOutcome | None:
-        """Tell a robot that never said Ready that it may, once: it sends positions many times a second."""
+        """Ask a robot that never sent Ready for it, once: it sends positions many times a second."""
         if robot in self._greeted:
             return None
         self._greeted.add(robot)
@@ -183,7 +183,7 @@ class SqlInterface:
 
 
 def _key_of(row: RequestRow) -> tuple[str, ...]:
-    """Return what lines of the log about such rows are counted under."""
+    """Return the key under which log lines about such rows are counted."""
     return "link sql:", "robot", repr(row.robot), row.op if row.op in REQUESTS else "unknown operations"
 
 

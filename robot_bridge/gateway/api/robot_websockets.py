@@ -1,4 +1,4 @@
-"""WebSockets of links and robots: messages of many robots over one connection, and who holds which robot."""
+"""WebSockets of links and robots: many robots over one connection, and which connection holds a robot."""
 
 from __future__ import annotations
 
@@ -44,18 +44,17 @@ from .robot_session import RobotConnection, RobotSession, RobotSessions, is_answ
 from .shared_connection import SEPARATOR, LinkedRobotChannel
 
 # --- A link's WebSocket: the messages of many robots over one connection ---
-# Every message of a robot is that of its own connection, with its name as ``robot`` among the params. What
-# one
-# robot of a link does wrong concerns that robot alone. What stops robots waits for nothing.
+# Messages of a robot are those on its own connection, with its name as ``robot`` in the params. An error of
+# one robot of a link affects that robot alone. Stops wait for nothing.
 
 log = logging.getLogger(__name__)
 
 ANSWER_WITHIN = 5.0
-"""seconds that a link has to answer what it is asked for itself."""
+"""seconds that a link has to answer requests to itself."""
 AT_ONCE = 50
-"""connections that are written to in one turn of the loop when the gateways of the fleet have changed."""
+"""connections written to in one iteration of the loop when the gateways of the fleet have changed."""
 MOST_CALLS = 20
-"""questions to a link that wait for its answer."""
+"""requests to a link that wait for its answer."""
 
 Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
 
@@ -63,7 +62,7 @@ Message = TypeVar("Message", LinkHello, LinkStatus, GetAreas)
 class LinkConnection:
     """One connection of a link, from its Start to its end, and the robots that it speaks for.
 
-    Its robots are among ``sessions`` from their Ready until it speaks for them no more.
+    Its robots are in ``sessions`` from their Ready until it no longer speaks for them.
     """
 
     def __init__(
@@ -88,7 +87,7 @@ class LinkConnection:
         self._numbers = itertools.count(1)
         self._pending_calls: dict[str, asyncio.Future[jsonrpc.Reply]] = {}
 
-    # --- what the gateway asks of it --------------------------------------------------------------------
+    # --- called by the gateway --------------------------------------------------------------------
 
     def sessions(self) -> list[RobotSession]:
         """Return the robots that it speaks for now."""
@@ -133,9 +132,9 @@ class LinkConnection:
         return reply.result
 
     def stop_all(self, call_id: str) -> None:
-        """Tell the link that all its robots must stop, those as well that have not said Ready by it.
+        """Send the link a stop of all its robots, including those that have not sent Ready by it.
 
-        One frame for all; each robot answers to it by a reply with its own name before the id.
+        One frame for all; each robot replies with its own name before the id.
         """
         for place in self._places.values():
             place.session.outdate()
@@ -144,13 +143,13 @@ class LinkConnection:
             self._tasks.start(while_connected(self.send(frame)))
 
     async def send_gateways(self) -> None:
-        """Send where the gateways of the fleet are to a link that has said hello; raises ConnectionClosed."""
+        """Send the gateways' addresses to a link that has said hello; raises ConnectionClosed."""
         gateways = self._fleet.gateways_at(PATHS[TokenKind.LINK])
         if gateways is not None and self.kind is not None:
             await self.send(jsonrpc.call(Gateways.method, to_json(gateways)))
 
     def update(self) -> None:
-        """Let go the robots that it may not speak for any more."""
+        """Release the robots that it may no longer speak for."""
         robots = self._gate.robots_of_link(self._connection)
         if robots == self._robots:
             return
@@ -162,11 +161,11 @@ class LinkConnection:
                     while_connected(place.release(f"link {self.name} may not speak for it any more"))
                 )
 
-    # --- what its robots share ----------------------------------------------------------------------------
+    # --- shared by its robots ----------------------------------------------------------------------------
 
     @property
     def round_trip(self) -> float | None:
-        """Seconds that the last ping took there and back."""
+        """Round-trip time of the last ping in seconds."""
         return self._connection.round_trip
 
     @contextlib.asynccontextmanager
@@ -186,33 +185,34 @@ class LinkConnection:
         await send_frame(self._connection, frame)
 
     def send_at_once(self, frame: str) -> bool:
-        """Write a message now; false where another one is on its way."""
+        """Write a message now; return false while another one is being sent."""
         return self._connection.write_at_once(frame)
 
     async def answers(self) -> bool:
-        """Tell whether the link answers a ping within a second."""
+        """Return whether the link answers a ping within a second."""
         return await is_answering(self._connection)
 
     def forget(self, place: LinkedRobotChannel) -> None:
-        """Carry nothing more for a robot, until the link says Ready for it again."""
+        """Stop carrying a robot's messages, until the link sends Ready for it again."""
         if self._places.get(place.robot) is place:
             del self._places[place.robot]
 
-    # --- what comes in ------------------------------------------------------------------------------------
+    # --- incoming messages
+    # ------------------------------------------------------------------------------------
 
     async def _receive(self, frame: str | bytes) -> None:
         id: int | str | None = None
         try:
             if isinstance(frame, bytes):
-                await self._take_frame(frame)
+                await self._receive_frame(frame)
                 return
             check_size(frame, LARGEST_MESSAGE, (SendImage.__name__, LinkPositions.method))
             message = jsonrpc.decode(frame)
             id = message.id
             if isinstance(message, jsonrpc.Call):
-                await self._take_call(message)
+                await self._receive_call(message)
             else:
-                self._take_reply(message)
+                self._receive_reply(message)
         except jsonrpc.FrameError as error:
             await self._refuse(error.id, error, code=error.code)
         except (MessageError, BridgeError, DecodingError) as error:
@@ -220,12 +220,12 @@ class LinkConnection:
         except ConnectionClosed:
             raise
         except Exception:
-            # Whatever it was, it ends no connection by which other robots are told to stop.
+            # Whatever the error, it must not end a connection by which stops reach other robots.
             key = f"link {self.name}:", "unforeseen"
             text = self._fleet.repeated.note_unforeseen(log, key, f"link {self.name}")
             await self.send(jsonrpc.error(id, jsonrpc.INTERNAL_ERROR, text))
 
-    async def _take_call(self, call: jsonrpc.Call) -> None:
+    async def _receive_call(self, call: jsonrpc.Call) -> None:
         if call.method == LinkHello.method:
             welcome = self._welcome(_decoded(LinkHello, call))
             await self.send(jsonrpc.result(call.id, to_json(welcome)))
@@ -236,14 +236,14 @@ class LinkConnection:
             if call.id is not None:
                 await self.send(jsonrpc.result(call.id, {}))
         elif call.method == GetAreas.method:
-            # Those of a city take a moment, and its robots' messages are not to wait.
-            self._tasks.start(while_connected(self._tell_areas(call.id, _decoded(GetAreas, call))))
+            # Those of a city take a moment; its robots' messages must not wait.
+            self._tasks.start(while_connected(self._send_areas(call.id, _decoded(GetAreas, call))))
         elif call.method == LinkPositions.method:
             for entry in entries_in(call.params):
                 method = "SendGPS" if "lat" in entry else "SendPos"
-                await self._take_robot_call(jsonrpc.Call(method, entry))
+                await self._receive_robot_call(jsonrpc.Call(method, entry))
         else:
-            await self._take_robot_call(call)
+            await self._receive_robot_call(call)
 
     def _welcome(self, hello: LinkHello) -> LinkWelcome:
         self.kind = hello.kind
@@ -258,11 +258,11 @@ class LinkConnection:
             site.settings.observations.largest_image_bytes,
         )
 
-    async def _tell_areas(self, id: int | str | None, request: GetAreas) -> None:
+    async def _send_areas(self, id: int | str | None, request: GetAreas) -> None:
         site = self._fleet.site.site
         await self.send(await asyncio.to_thread(_areas_reply, id, site, request))
 
-    async def _take_robot_call(self, call: jsonrpc.Call) -> None:
+    async def _receive_robot_call(self, call: jsonrpc.Call) -> None:
         robot = call.params.get("robot") if isinstance(call.params, dict) else None
         try:
             place = self._place_of(robot, admits=call.method == Ready.__name__)
@@ -273,7 +273,7 @@ class LinkConnection:
         place.add(place.session.receive(jsonrpc.Call(call.method, params, call.id)))
 
     def _place_of(self, robot: object, *, admits: bool = False) -> LinkedRobotChannel:
-        """Return the place of the robot that a message is about; raises MessageError and BridgeError."""
+        """Return the channel of the robot that a message is about; raises MessageError and BridgeError."""
         place = self._places.get(robot) if isinstance(robot, str) else None
         if place is None:
             place = self._new_place(robot, admits=admits)
@@ -302,8 +302,8 @@ class LinkConnection:
         place = self._places[robot] = LinkedRobotChannel(self._fleet, self, robot, limits, self._holders)
         return place
 
-    async def _take_frame(self, frame: bytes) -> None:
-        """Take in where many robots are; what is wrong with one concerns that one."""
+    async def _receive_frame(self, frame: bytes) -> None:
+        """Process positions of many robots; an error in one affects that one alone."""
         at_once: list[RobotPose] = []
         refused: list[tuple[str, Exception]] = []
         for robot, pose in poses_in_frame(frame):
@@ -325,7 +325,7 @@ class LinkConnection:
         for robot, fault in refused:
             await self._refuse(None, fault, robot)
 
-    def _take_reply(self, reply: jsonrpc.Reply) -> None:
+    def _receive_reply(self, reply: jsonrpc.Reply) -> None:
         if (answer := self._pending_calls.get(str(reply.id))) is not None:
             if not answer.done():
                 answer.set_result(reply)
@@ -342,7 +342,7 @@ class LinkConnection:
     async def _refuse(
         self, id: int | str | None, error: Exception, robot: object = None, code: int | None = None
     ) -> None:
-        """Tell the link why a message counts for nothing, and which robot that concerns."""
+        """Send the link why a message is refused, and which robot that concerns."""
         self._fleet.counters.refused[self.name] += 1
         sender = f"link {self.name}:" if robot is None else f"link {self.name}: robot {str(robot)[:63]!r}:"
         self._fleet.repeated.warn(log, (f"link {self.name}:", type(error).__name__), f"{sender} {error}")
@@ -351,7 +351,7 @@ class LinkConnection:
 
 
 def _areas_reply(id: int | str | None, site: Site, request: GetAreas) -> str:
-    """Return the reply with what the site has in a box; may take long."""
+    """Return the reply with the site's areas in a box; may take long."""
     try:
         return jsonrpc.result(id, to_json(areas_in_box(site, request.box)))
     except SiteError as error:
@@ -369,11 +369,11 @@ def _decoded(cls: type[Message], call: jsonrpc.Call) -> Message:
     return message
 
 
-# --- Robots on WebSocket, by connections of their own and by links: which of them holds which robot ---
+# --- Robots on WebSocket, by their own connections and by links: which connection holds which robot ---
 
 
 class WebSocketInterface:
-    """Serves the connections of robots; the one on which a robot said Ready last is the one that counts."""
+    """Serves the connections of robots; the one on which a robot last sent Ready counts."""
 
     def __init__(self, fleet: Fleet) -> None:
         self._fleet = fleet
@@ -383,12 +383,12 @@ class WebSocketInterface:
         self._holders = RobotSessions(fleet.reception.holds)
         fleet.emergency.reach(self._stop_all)
         fleet.orders.reach(self.abort)
-        fleet.events.subscribe(RobotLeft, self._let_go)
+        fleet.events.subscribe(RobotLeft, self._release)
         fleet.events.subscribe(GatewaysChanged, self._announce_gateways)
         self._tasks = BackgroundTasks()
 
     async def serve(self, connection: ClientConnection, robot: str | None) -> None:
-        """Serve one connection to its end; without a name the robot is given one."""
+        """Serve one connection to its end; a robot without a name is given one."""
         name = robot or self._free_name()
         own = RobotConnection(self._fleet, connection, name, self._holders)
         self._names[name] += 1
@@ -403,7 +403,7 @@ class WebSocketInterface:
             self._fleet.closed(name)
 
     async def serve_link(self, connection: ClientConnection, gate: AuthGate) -> None:
-        """Serve a link to its end. Its robots may drive on: they are lost by the ordinary clocks."""
+        """Serve a link to its end. Its robots may drive on: they become lost after the usual times."""
         link = LinkConnection(self._fleet, connection, gate, self._holders)
         self._links.add(link)
         try:
@@ -420,13 +420,13 @@ class WebSocketInterface:
         ]
 
     def update(self) -> None:
-        """Let go what links may not speak for any more."""
+        """Release the robots that links may no longer speak for."""
         for link in list(self._links):
             with log_and_continue(log, f"looking after link {link.name}"):
                 link.update()
 
     def measure(self) -> None:
-        """Note the latency of every robot's connection."""
+        """Record the latency of every robot's connection."""
         for session in self._holders:
             session.measure()
 
@@ -445,8 +445,8 @@ class WebSocketInterface:
             session.stop_now(call_id, emergency=False)
         return session is not None
 
-    def _let_go(self, event: RobotLeft) -> None:
-        """Close the connection of a robot that another gateway has; one that is here says Ready again."""
+    def _release(self, event: RobotLeft) -> None:
+        """Close the connection of a robot that another gateway owns; a robot still here sends Ready again."""
         if (session := self._holders.get(event.robot)) is not None:
             self._holders.release(session)
             reason = f"gateway {event.gateway} has this robot now; connect and say Ready again"
@@ -456,12 +456,12 @@ class WebSocketInterface:
         self._tasks.start(self._send_gateways())
 
     async def _send_gateways(self) -> None:
-        """Send links and robots where the gateways are; none waits for one that reads nothing."""
+        """Send links and robots the gateways' addresses; none waits for one that reads nothing."""
         connections: list[LinkConnection | RobotSession] = [*self._links, *self._sessions]
         for number, connection in enumerate(connections, 1):
             self._tasks.start(while_connected(connection.send_gateways()))
             if number % AT_ONCE == 0:
-                # Thousands of robots would hold up what is sent meanwhile.
+                # Thousands of robots would delay other messages.
                 await asyncio.sleep(0)
 
     def _free_name(self) -> str:

@@ -1,4 +1,4 @@
-"""The place of one robot in a link: its channel, what it said that is still to be dealt with, its limits."""
+"""The place of one robot in a link: its channel, its waiting messages, its limits."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ from .robot_session import RobotSession, RobotSessions
 log = logging.getLogger(__name__)
 
 MOST_WAITING = 200
-"""messages of one robot that wait to be dealt with; more are refused."""
+"""messages of one robot that wait to be processed; more are refused."""
 SEPARATOR = "/"
-"""Between the robot's name and the id of its message, in the ids of calls to a link: no name holds it."""
+"""Separates the robot's name and the message id in the ids of calls to a link: no name contains it."""
 
 Work = Coroutine[Any, Any, None]
 
 
 class SharedConnection(Protocol):
-    """What the robots of a link share."""
+    """The connection shared by the robots of a link."""
 
     @property
     def name(self) -> str:
@@ -41,7 +41,7 @@ class SharedConnection(Protocol):
 
     @property
     def round_trip(self) -> float | None:
-        """Seconds that the last ping took there and back."""
+        """Round-trip time of the last ping in seconds."""
 
     def lane(self, *, urgent: bool, large: bool) -> AbstractAsyncContextManager[None]:
         """Wait for the turn of a message."""
@@ -50,20 +50,20 @@ class SharedConnection(Protocol):
         """Write a frame."""
 
     def send_at_once(self, frame: str) -> bool:
-        """Write a frame now; false where that cannot be."""
+        """Write a frame now; return false if that is impossible."""
 
     async def answers(self) -> bool:
-        """Tell whether the link is there."""
+        """Return whether the link is alive."""
 
     def forget(self, place: LinkedRobotChannel) -> None:
-        """Carry nothing more for the robot of ``place``."""
+        """Stop carrying messages of the robot of ``place``."""
 
 
 class LinkedRobotChannel:
     """One robot of a link, as its :class:`.robot_session.Channel`.
 
-    A call to the link has the robot's name among its params, and before the id of the message in its own id;
-    an error that answers no call says in its data which robot it is about.
+    A call to the link has the robot's name in its params, and before the message id in its own id; an error
+    without a call names the robot in its data.
     """
 
     def __init__(
@@ -96,7 +96,7 @@ class LinkedRobotChannel:
 
     @property
     def round_trip(self) -> float | None:
-        """Seconds that the link's last ping took there and back."""
+        """Round-trip time of the link's last ping in seconds."""
         return self._shared.round_trip
 
     def call(self, method: str, params: Any = None, id: int | str | None = None) -> str:
@@ -121,15 +121,15 @@ class LinkedRobotChannel:
         await self._shared.send(frame)
 
     def send_at_once(self, frame: str) -> bool:
-        """Write a frame now; false where that cannot be."""
+        """Write a frame now; return false if that is impossible."""
         return self._shared.send_at_once(frame)
 
     async def answers(self) -> bool:
-        """Tell whether the link is there: whether the robot behind it is, only the link can know."""
+        """Return whether the link is alive: only the link knows whether the robot behind it is."""
         return await self._shared.answers()
 
     async def release(self, reason: str, *, again: bool = False) -> None:
-        """Tell the link that it speaks for the robot no more."""
+        """Notify the link that it no longer speaks for the robot."""
         self.end()
         self._shared.forget(self)
         released = to_json(Released(self.robot, reason))
@@ -138,16 +138,17 @@ class LinkedRobotChannel:
         except ConnectionClosed:
             return
 
-    # --- what comes in --------------------------------------------------------------------------------------
+    # --- incoming messages
+    # --------------------------------------------------------------------------------------
 
     def count(self) -> bool:
-        """Count a message of the robot, and tell whether it is dealt with: it may have said too much."""
+        """Count a message of the robot; return whether it is processed, or exceeds the rate limit."""
         return len(self._waiting) < MOST_WAITING and self._messages.consume()
 
     def count_reply(self) -> bool:
-        """As :meth:`count`, of a reply: what the robot says of its place keeps no acknowledgement out.
+        """As :meth:`count`, for a reply: positions of the robot must not crowd out acknowledgements.
 
-        One that is kept out is asked for again.
+        A refused reply is requested again.
         """
         is_room = len(self._waiting) < MOST_WAITING and self._replies.consume()
         if not is_room:
@@ -156,15 +157,15 @@ class LinkedRobotChannel:
 
     @property
     def wait(self) -> float:
-        """Seconds after which the robot may say more."""
+        """Return the seconds until the robot may send more."""
         return max(self._messages.wait(), 0.01)
 
     def listens(self) -> bool:
-        """Tell whether a position can be taken in at once: nothing that came before it still waits."""
+        """Return whether a position can be processed at once: no earlier message waits."""
         return self._working is None and self.session.listens()
 
     def add(self, work: Work) -> None:
-        """Deal with what the robot said behind all that it said before; no other robot waits for it."""
+        """Queue work of the robot after its earlier messages; no other robot waits for it."""
         self._waiting.append(work)
         if self._working is None:
             self._working = asyncio.create_task(self._work())
@@ -185,6 +186,6 @@ class LinkedRobotChannel:
             self._waiting.popleft().close()
 
     def end(self) -> None:
-        """Carry nothing more; what is being dealt with goes on to its end."""
+        """Stop carrying messages; the one being processed is finished."""
         self.session.end()
         self._drop_waiting()

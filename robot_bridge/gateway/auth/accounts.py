@@ -17,27 +17,26 @@ from ...core.messages.base import Role, check_robot_name
 from ..storage.database import Database
 from ..storage.schema import links, operators, tokens
 
-# --- Tokens: 256 random bits, shown once, kept as their SHA-256 ---
-# A slow hash protects what people think up; these bits cannot be guessed, and a slow hash would let
-# strangers
-# keep the gateway's processor busy.
+# --- Tokens: 256 random bits, shown once, stored as their SHA-256 ---
+# A slow hash protects passwords; these bits cannot be guessed, and a slow hash would let strangers keep the
+# gateway's processor busy.
 
 BITS = 256
 PROTOCOL = "robot-bridge"
-"""The WebSocket subprotocol that web pages have to be answered with."""
+"""The WebSocket subprotocol with which web pages must be answered."""
 _TOKEN_OFFER = "token."  # nosec B105 # no password
 _PROTOCOL_NAME = re.compile(r"[\w!#$%&'*+.^`|~-]+", re.ASCII)
 
 
 class TokenKind(str, Enum):
-    """Whose token it is: an operator's at the desk, a robot's on its WebSocket, a link's for many robots."""
+    """Kind of a token's owner: an operator at the desk, a robot on its WebSocket, a link for many robots."""
 
     OPERATOR = "operator"
     ROBOT = "robot"
     LINK = "link"
 
 
-# A prefix lets people, and programs that look for secrets in the wrong places, see what it is.
+# A prefix lets people, and programs that scan for leaked secrets, recognise it.
 PREFIXES = {
     TokenKind.OPERATOR: "fleet_op_",
     TokenKind.ROBOT: "fleet_robot_",
@@ -46,33 +45,33 @@ PREFIXES = {
 
 
 def new_token(kind: TokenKind) -> str:
-    """Return a token that nobody has seen before."""
+    """Return a new random token."""
     return PREFIXES[kind] + secrets.token_urlsafe(BITS // 8)
 
 
 def new_id() -> str:
-    """Return an id for a token or a session; it is no secret."""
+    """Return an id for a token or a session; it is not secret."""
     return secrets.token_hex(8)
 
 
 def digest(token: str) -> str:
-    """Return what the database keeps of a token, in hexadecimal digits."""
+    """Return the hash of a token that the database stores, in hexadecimal digits."""
     return hashlib.sha256(token.encode("utf-8", "surrogateescape")).hexdigest()
 
 
 def bearer(header: str | None) -> str | None:
-    """Return the token in the value of an ``Authorization`` header, None where there is none."""
+    """Return the token in the value of an ``Authorization`` header, or None."""
     scheme, _, token = (header or "").strip().partition(" ")
     return token.strip() or None if scheme.lower() == "bearer" else None
 
 
 def token_in(authorizations: Sequence[str], offers: Sequence[str]) -> str | None:
-    """Return the token that a request carries, None where it carries none.
+    """Return the token that a request carries, or None.
 
     ``authorizations`` are its ``Authorization`` headers, ``offers`` its ``Sec-WebSocket-Protocol`` headers: a
     web page's script can send no others, and offers ``robot-bridge`` with ``token.`` and its token.
 
-    :raises AccessError: when it cannot be told which token is meant; the text holds nothing of them.
+    :raises AccessError: when it is ambiguous which token is meant; the text contains none of them.
     """
     if len(authorizations) > 1:
         raise AccessError("The request has several Authorization headers; send one.")
@@ -90,7 +89,7 @@ def token_in(authorizations: Sequence[str], offers: Sequence[str]) -> str | None
 
 
 def chosen_protocol(offered: Sequence[str]) -> str | None:
-    """Return the subprotocol that a connection is answered with: a token is never sent back."""
+    """Return the subprotocol of the answer to a connection: a token is never sent back."""
     return PROTOCOL if PROTOCOL in offered else None
 
 
@@ -102,7 +101,7 @@ LONGEST_NAME = 128
 
 @dataclass(frozen=True)
 class Grant:
-    """A token as the database knows it, and what it opens; ``role`` is that of an operator.
+    """A token as stored, and its permissions; ``role`` is that of an operator.
 
     ``robots`` are the patterns of the names that a link speaks for.
     """
@@ -119,7 +118,7 @@ class Grant:
     robots: tuple[str, ...] = ()
 
     def fault(self, now: float) -> str | None:
-        """Return why the token opens nothing at ``now``, or None when it does."""
+        """Return why the token is not valid at ``now``, or None."""
         if self.revoked_at is not None:
             return f"this token of {self.owner} was revoked"
         if self.expires_at is not None and self.expires_at <= now:
@@ -143,7 +142,7 @@ class Operator:
 def add_operator(
     connection: Connection, name: str, role: Role, now: float, expires_at: float | None = None
 ) -> str:
-    """Make an account and return its token; raises AccessError for a name that is taken or cannot be one."""
+    """Create an account and return its token; raises AccessError for a taken or invalid name."""
     name = check_operator_name(name)
     for known in connection.execute(select(operators.c.name)).scalars():
         if known.casefold() == name.casefold():
@@ -156,7 +155,7 @@ def add_operator(
 
 
 def rotate_operator(connection: Connection, name: str, now: float, expires_at: float | None = None) -> str:
-    """Return a new token in place of every token the operator had; raises AccessError when unknown."""
+    """Return a new token that replaces all of the operator's; raises AccessError when unknown."""
     name = _known_operator(connection, name)
     revoke(connection, TokenKind.OPERATOR, name, now)
     return issue(connection, TokenKind.OPERATOR, name, now, expires_at)
@@ -189,12 +188,12 @@ def find_operator(connection: Connection, name: str) -> Operator:
 
 
 def has_supervisor(connection: Connection, now: float) -> bool:
-    """Tell whether a supervisor has a token that holds at ``now``."""
+    """Return whether a supervisor has a token that is valid at ``now``."""
     return any(grant.role is Role.SUPERVISOR and grant.fault(now) is None for grant in grants(connection))
 
 
 def check_operator_name(name: str) -> str:
-    """Return ``name`` without blanks around it if it can be an operator's, else raise AccessError."""
+    """Return ``name`` without surrounding blanks if valid for an operator, else raise AccessError."""
     name = name.strip()
     if not name or len(name) > LONGEST_NAME or not name.isprintable():
         raise AccessError(
@@ -208,7 +207,7 @@ def check_operator_name(name: str) -> str:
 
 
 def issue_robot_token(connection: Connection, robot: str, now: float, expires_at: float | None = None) -> str:
-    """Return a new token for a robot's WebSocket, in place of the one it had; raises MessageError."""
+    """Return a new token for a robot's WebSocket, replacing its old one; raises MessageError."""
     revoke(connection, TokenKind.ROBOT, check_robot_name(robot), now)
     return issue(connection, TokenKind.ROBOT, robot, now, expires_at)
 
@@ -231,7 +230,7 @@ def robot_tokens(connection: Connection) -> list[Grant]:
 
 _NO_TOKENS = (null(),) * 4
 _FINGERPRINT = union_all(
-    # The numbers first: of what is null only, PostgreSQL cannot tell that it stands for numbers.
+    # The numbers first: PostgreSQL cannot infer a numeric type from nulls alone.
     select(
         literal("tokens"),
         func.count(),
@@ -244,11 +243,11 @@ _FINGERPRINT = union_all(
     select(literal("operator"), *_NO_TOKENS, operators.c.name, operators.c.role),
     select(literal("link"), *_NO_TOKENS, links.c.name, links.c.robots),
 )
-"""One statement: it is asked every few tenths of a second."""
+"""One statement, since it runs every few tenths of a second."""
 
 
 def grants(connection: Connection) -> list[Grant]:
-    """Return every token there ever was, oldest first; the token itself is kept nowhere."""
+    """Return every token ever issued, oldest first; the secrets themselves are not stored."""
     roles = {
         name: Role(role) for name, role in connection.execute(select(operators.c.name, operators.c.role))
     }
@@ -275,12 +274,12 @@ def grants(connection: Connection) -> list[Grant]:
 
 
 def accounts_fingerprint(connection: Connection) -> tuple[object, ...]:
-    """Return what differs whenever a token was made, revoked or forgotten, a role or a link changed."""
+    """Return a value that changes when a token is made, revoked or deleted, or a role or link changes."""
     return tuple(sorted(map(tuple, connection.execute(_FINGERPRINT))))
 
 
 def note_use(connection: Connection, used: Sequence[tuple[str, float]]) -> None:
-    """Note when tokens (id, time) opened a connection."""
+    """Record when tokens (id, time) opened a connection."""
     for token, at in used:
         connection.execute(update(tokens).where(tokens.c.id == token).values(used_at=at))
 
@@ -296,7 +295,7 @@ def _known_operator(connection: Connection, name: str) -> str:
 
 
 def issue(connection: Connection, kind: TokenKind, owner: str, now: float, expires_at: float | None) -> str:
-    """Return a new token of ``owner``, which is kept nowhere."""
+    """Return a new token of ``owner``; the secret is not stored."""
     token = new_token(kind)
     connection.execute(
         insert(tokens).values(
@@ -312,7 +311,7 @@ def issue(connection: Connection, kind: TokenKind, owner: str, now: float, expir
 
 
 def revoke(connection: Connection, kind: TokenKind, owner: str, now: float) -> int:
-    """Revoke every token of ``owner``; return how many held."""
+    """Revoke every token of ``owner``; return how many were valid."""
     done = connection.execute(
         update(tokens)
         .where(tokens.c.kind == kind.value, tokens.c.owner == owner, tokens.c.revoked_at.is_(None))
@@ -321,13 +320,13 @@ def revoke(connection: Connection, kind: TokenKind, owner: str, now: float) -> i
     return done.rowcount
 
 
-# --- The accounts as a running gateway knows them: read again whenever they change, also by another program
+# --- Accounts cached by a running gateway: reread when they change, also by another program
 
 
 class AccountCache:
-    """Every token in memory, so that nobody who knocks makes the database work.
+    """All tokens in memory, so that connection attempts do not load the database.
 
-    While the database is away those who were known go on.
+    While the database is away known accounts continue.
     """
 
     def __init__(self, database: Database) -> None:
@@ -337,7 +336,7 @@ class AccountCache:
         self._by_token: dict[str, Grant] = {}
 
     async def refresh(self) -> bool:
-        """Take over what changed and tell whether anything did; raises StoreError."""
+        """Apply changes and return whether there were any; raises StoreError."""
         found = await self._database.read(_read, self._fingerprint)
         if found is None:
             return False
@@ -347,11 +346,11 @@ class AccountCache:
         return True
 
     def is_open(self, kind: TokenKind) -> bool:
-        """Tell whether no token of ``kind`` was ever made, so that there is nothing to tell people by."""
+        """Return whether no token of ``kind`` was ever made, so that clients cannot be identified."""
         return not any(grant.kind is kind for grant in self._by_hash.values())
 
     def find(self, token: str) -> Grant | None:
-        """Return what ``token`` is, None for one that nobody made."""
+        """Return the grant of ``token``, None for an unknown one."""
         return self._by_hash.get(digest(token))
 
     def grant(self, token_id: str) -> Grant | None:
@@ -359,12 +358,12 @@ class AccountCache:
         return self._by_token.get(token_id)
 
     def has_operator(self, now: float, role: Role = Role.VIEWER) -> bool:
-        """Tell whether somebody with at least ``role`` has a token that holds at ``now``."""
+        """Return whether an operator with at least ``role`` has a token that is valid at ``now``."""
         return has_operator(self._by_hash.values(), now, role)
 
 
 def has_operator(known: Iterable[Grant], now: float, role: Role = Role.VIEWER) -> bool:
-    """Tell whether one of the tokens is of somebody with at least ``role`` and holds at ``now``."""
+    """Return whether a token of an operator with at least ``role`` is valid at ``now``."""
     return any(
         grant.role is not None and grant.role.includes(role) and grant.fault(now) is None for grant in known
     )
@@ -381,7 +380,7 @@ def _read(
 # Every function works inside the transaction of the connection it is given.
 
 RESERVED = ("sql", "websocket")
-"""Names under which operators see robots that connect by themselves."""
+"""Link names shown to operators for robots that connect by themselves."""
 MOST_PATTERNS = 100
 _NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,15}")
 _PATTERN = re.compile(r"[A-Za-z0-9_.*?-]{1,63}")
@@ -399,7 +398,7 @@ class LinkAccount:
 def add_link(
     connection: Connection, name: str, robots: Sequence[str], now: float, expires_at: float | None = None
 ) -> str:
-    """Make an account and return its token; raises AccessError for what cannot be a link's."""
+    """Create an account and return its token; raises AccessError for invalid arguments."""
     check_link_name(name)
     known = [one for one in connection.execute(select(links.c.name)).scalars() if one.lower() == name.lower()]
     if known:
@@ -412,7 +411,7 @@ def add_link(
 
 
 def rotate_link(connection: Connection, name: str, now: float, expires_at: float | None = None) -> str:
-    """Return a new token in place of every token the link had; raises AccessError when unknown."""
+    """Return a new token that replaces all of the link's; raises AccessError when unknown."""
     _check_known(connection, name)
     revoke(connection, TokenKind.LINK, name, now)
     return issue(connection, TokenKind.LINK, name, now, expires_at)
@@ -438,7 +437,7 @@ def all_links(connection: Connection) -> list[LinkAccount]:
 
 
 def check_link_name(name: str) -> str:
-    """Return ``name`` if it can be a link's, else raise AccessError."""
+    """Return ``name`` if valid for a link, else raise AccessError."""
     if not _NAME.fullmatch(name) or name.lower() in RESERVED:
         raise AccessError(
             f"link name {name[:40]!r} cannot be used; take 1 to 16 letters, digits, '_', '.' or '-', "
@@ -448,7 +447,7 @@ def check_link_name(name: str) -> str:
 
 
 def speaks_for(robots: Sequence[str], robot: str) -> bool:
-    """Tell whether a link with the patterns ``robots`` may speak for ``robot``."""
+    """Return whether a link with the patterns ``robots`` may speak for ``robot``."""
     return any(fnmatchcase(robot, pattern) for pattern in robots)
 
 

@@ -17,15 +17,14 @@ from . import accounts, audit
 from .accounts import Grant, Operator
 from .audit import AuditJournal, SessionRow
 
-# --- Does what supervisors ask about operators' accounts at the desk, as the command line does it ---
-# Nobody can lock everybody out from here: what would leave no supervisor with a token that holds is
-# refused.
+# --- Supervisors' requests on operators' accounts at the desk, handled as on the command line ---
+# Nobody can lock everybody out: requests that would leave no supervisor with a valid token are refused.
 
 T = TypeVar("T")
 
 
 class AccountAdministration:
-    """Operators' accounts, sessions and the audit log, as supervisors see and change them."""
+    """Operators' accounts, sessions and the audit log, read and changed by supervisors."""
 
     def __init__(self, database: Database, journal: AuditJournal) -> None:
         self._database = database
@@ -40,17 +39,17 @@ class AccountAdministration:
 
     @handles(administration.AddOperator)
     async def add(self, request: administration.AddOperator) -> administration.NewToken:
-        """Make an account and return its token; raises AccessError for a name that is taken or unfit."""
+        """Create an account and return its token; raises AccessError for a taken or invalid name."""
         return await self._new_token(request, accounts.add_operator, request.role)
 
     @handles(administration.RotateToken)
     async def rotate(self, request: administration.RotateToken) -> administration.NewToken:
-        """Return a new token in place of those before; raises AccessError for an operator not known."""
+        """Return a new token that replaces the old ones; raises AccessError for an unknown operator."""
         return await self._new_token(request, accounts.rotate_operator)
 
     @handles(administration.RevokeToken)
     async def revoke(self, request: administration.RevokeToken) -> administration.OperatorReport:
-        """Take an operator's token away; raises AccessError when unknown, or the last supervisor."""
+        """Revoke an operator's token; raises AccessError when unknown, or the last supervisor."""
         now = time.time()
         return await self._changed(request.operator, now, accounts.revoke_operator, now)
 
@@ -70,19 +69,19 @@ class AccountAdministration:
     async def end_session(
         self, request: administration.EndSession, operator: str
     ) -> administration.SessionReport:
-        """End a connection and return what was known of it; raises AccessError when it is not open."""
+        """End a connection and return its data; raises AccessError when it is not open."""
         now, reason = time.time(), f"{request.reason} ({operator})"
         return _session_report(await self._database.run(audit.end_session, request.session, now, reason))
 
     @handles(administration.GetAudit)
     async def audit_log(self, request: administration.GetAudit) -> administration.Audit:
-        """Return who did what, up to now."""
+        """Return the audit log up to now."""
         await self._write_noted()
         found = await self._database.run(_entries, request)
         return administration.Audit([administration.AuditReport(**vars(entry)) for entry in found])
 
     async def _write_noted(self) -> None:
-        # What cannot be written yet keeps nobody from reading what is.
+        # Entries not written yet must not prevent reading the others.
         with suppress(StoreError):
             await self._journal.flush()
 
@@ -113,7 +112,7 @@ class AccountAdministration:
 
 
 def _with_supervisor(connection: Connection, now: float, work: Callable[[Connection], T]) -> T:
-    """Return what ``work`` does; raises AccessError, and undoes it, when it leaves no supervisor."""
+    """Return the result of ``work``; undoes it and raises AccessError when it leaves no supervisor."""
     result = work(connection)
     if not accounts.has_supervisor(connection, now):
         raise AccessError(

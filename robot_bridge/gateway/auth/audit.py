@@ -1,4 +1,4 @@
-"""Audit log and operators' sessions in the database, written without making anybody wait."""
+"""Audit log and operators' sessions in the database, written in the background."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ LONGEST_DETAIL = 2000
 
 @dataclass(frozen=True)
 class AuditEntry:
-    """One thing that somebody did or tried: ``at`` is seconds since 1970, ``done`` false when refused."""
+    """One action, done or tried: ``at`` is seconds since 1970, ``done`` is false when refused."""
 
     at: float
     who: str
@@ -40,7 +40,7 @@ class AuditEntry:
 
 
 def add_entries(connection: Connection, entries: Sequence[AuditEntry]) -> None:
-    """Write entries; what is longer than its column is cut."""
+    """Write entries; texts longer than their column are cut."""
     if entries:
         connection.execute(insert(audit), [_row(entry) for entry in entries])
 
@@ -65,7 +65,7 @@ def newest_entries(
 
 
 def accounts_in_log(connection: Connection) -> list[str]:
-    """Return who stands in the log, sorted."""
+    """Return the accounts in the log, sorted."""
     return sorted(connection.scalars(select(audit.c.who).distinct()))
 
 
@@ -85,7 +85,7 @@ def _row(entry: AuditEntry) -> dict[str, Any]:
 
 
 def _plain(text: str) -> str:
-    """Return ``text`` without what a database would refuse: lone surrogates and NUL."""
+    """Return ``text`` without characters that databases refuse: lone surrogates and NUL."""
     return text.encode("utf-8", "replace").decode("utf-8").replace("\0", "�")
 
 
@@ -93,12 +93,12 @@ def _entry(row: Any) -> AuditEntry:
     return AuditEntry(**{**row, "done": bool(row["done"])})
 
 
-# --- The operators' sessions as the database keeps them ---
+# --- The operators' sessions as stored in the database ---
 
 SESSIONS_AT_ONCE = 500
-"""sessions that are asked about in one statement."""
+"""sessions read in one statement."""
 GATEWAY_ENDED = "the gateway ended"
-"""Why sessions ended that a gateway left open; nobody ends one with this reason."""
+"""End reason of sessions that a gateway left open; no user gives this reason."""
 
 
 @dataclass(frozen=True)
@@ -121,12 +121,12 @@ def begin_session(connection: Connection, session: SessionRow) -> None:
 
 
 def rename_session(connection: Connection, id: str, operator: str) -> None:
-    """Note who a session says it is."""
+    """Record the name that a session gives."""
     connection.execute(update(sessions).where(sessions.c.id == id).values(operator=operator))
 
 
 def end_session(connection: Connection, id: str, at: float, reason: str) -> SessionRow:
-    """Note the end of a session; a gateway that has it open closes it. Raises AccessError when none is open.
+    """Record the end of a session; its gateway closes it. Raises AccessError when none is open.
 
     The session may also be named by the first digits of its id.
     """
@@ -143,22 +143,22 @@ def end_session(connection: Connection, id: str, at: float, reason: str) -> Sess
 
 
 def note_session_end(connection: Connection, id: str, at: float, reason: str) -> None:
-    """Note the end of a session that has not been ended before."""
+    """Record the end of a session, unless it was ended before."""
     open_one = (sessions.c.id == id) & sessions.c.ended_at.is_(None)
     connection.execute(update(sessions).where(open_one).values(ended_at=at, reason=reason))
 
 
 def end_all_sessions(connection: Connection, at: float) -> None:
-    """Note the end of what an earlier gateway left open.
+    """Record the end of sessions that an earlier gateway left open.
 
-    Of several gateways the others have theirs open still, and note that: :func:`reopen_sessions`.
+    Other gateways of a fleet still have theirs open, and record that: :func:`reopen_sessions`.
     """
     query = update(sessions).where(sessions.c.ended_at.is_(None))
     connection.execute(query.values(ended_at=at, reason=GATEWAY_ENDED))
 
 
 def reopen_sessions(connection: Connection, open_here: Collection[str]) -> None:
-    """Note that these sessions have not ended with another gateway."""
+    """Record that these sessions have not ended with another gateway."""
     ended = sessions.c.id.in_(sorted(open_here)) & (sessions.c.reason == GATEWAY_ENDED)
     connection.execute(update(sessions).where(ended).values(ended_at=None, reason=None))
 
@@ -168,15 +168,15 @@ def forget_ended_sessions(connection: Connection, before: float, limit: int) -> 
     return len(delete_oldest(connection, sessions.c.id, sessions.c.ended_at, before, limit))
 
 
-# Made once: it is asked several times a second, and each statement with a list holds itself, which waits for
-# Python's search for such objects. That search is rare here.
+# Built once: it runs several times a second, and each statement with a list is a reference cycle, freed only
+# by Python's garbage collection. That is rare here.
 _ENDED_OF = select(sessions.c.id, sessions.c.reason).where(
     sessions.c.id.in_(bindparam("ids", expanding=True)), sessions.c.ended_at.is_not(None)
 )
 
 
 def ended_sessions(connection: Connection, open_here: Collection[str]) -> dict[str, str]:
-    """Return which of the sessions that a gateway holds open somebody has ended, each with the reason."""
+    """Return those of a gateway's open sessions that were ended, each with the reason."""
     found: dict[str, str] = {}
     still_open = sorted(open_here)
     for begin in range(0, len(still_open), SESSIONS_AT_ONCE):
@@ -193,7 +193,7 @@ def list_sessions(connection: Connection, *, everything: bool, limit: int) -> li
     return [SessionRow(**row) for row in connection.execute(query).mappings()]
 
 
-# --- Writes down who did what, without making anybody wait for it ---
+# --- Audit entries written in the background ---
 
 log = logging.getLogger(__name__)
 
@@ -207,9 +207,8 @@ RETRY_AFTER = 1.0
 class AuditJournal:
     """The audit log and the sessions of a running gateway.
 
-    What is noted is written within milliseconds, in the order in which it happened. While the database is
-    away it waits here, up to :data:`LARGEST_BACKLOG` pieces; beyond that the oldest are lost, and how many is
-    said.
+    Entries are written within milliseconds, in their order. While the database is away they wait here, up to
+    :data:`LARGEST_BACKLOG`; beyond that the oldest are lost, and their number is logged.
     """
 
     def __init__(self, database: Database, clock: Clock = SYSTEM_CLOCK) -> None:
@@ -233,30 +232,30 @@ class AuditJournal:
         subject: str | None = None,
         detail: str | None = None,
     ) -> None:
-        """Note that ``who`` did ``action``, or tried to."""
+        """Record that ``who`` did ``action``, or tried to."""
         entry = AuditEntry(self._clock.time(), who, action, done, role, address, subject, detail)
         self._put(lambda connection: add_entries(connection, [entry]))
 
     def began(self, session: SessionRow) -> None:
-        """Note a session's beginning."""
+        """Record a session's beginning."""
         self._put(lambda connection: begin_session(connection, session))
 
     def renamed(self, id: str, operator: str) -> None:
-        """Note who a session says it is."""
+        """Record the name that a session gives."""
         self._put(lambda connection: rename_session(connection, id, operator))
 
     def ended(self, id: str, reason: str) -> None:
-        """Note a session's end."""
+        """Record a session's end."""
         at = self._clock.time()
         self._put(lambda connection: note_session_end(connection, id, at, reason))
 
     def used(self, token: str) -> None:
-        """Note that a token opened a connection."""
+        """Record that a token opened a connection."""
         at = self._clock.time()
         self._put(lambda connection: accounts.note_use(connection, [(token, at)]))
 
     async def run(self) -> None:
-        """Write what is noted until cancelled."""
+        """Write entries until cancelled."""
         while True:
             try:
                 await self._event.wait()
@@ -270,7 +269,7 @@ class AuditJournal:
                 self._event.set()
 
     async def flush(self) -> None:
-        """Write all that waits; raises StoreError when the database is away."""
+        """Write all waiting entries; raises StoreError when the database is away."""
         async with self._writing:
             while self._waiting:
                 await self._write(min(self._batch, len(self._waiting)))
@@ -291,7 +290,7 @@ class AuditJournal:
         self._batch = min(BATCH, 2 * self._batch)
 
     async def _is_given_up(self, error: StoreError) -> bool:
-        """Give up a piece that is refused, which must not keep back all after it; write that it is missing.
+        """Drop a refused entry, which must not block the later ones; record that it is missing.
 
         On a full disk it waits, though there may be room for a smaller one.
         """

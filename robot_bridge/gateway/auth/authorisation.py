@@ -23,20 +23,20 @@ from .accounts import AccountCache, TokenKind, new_id, token_in
 from .audit import AuditJournal, SessionRow
 from .client_connection import ClientConnection, Identity, RateLimit
 
-# --- Who is connected now, how many there are of each sort, and how a connection is ended ---
+# --- The present connections: counted by kind, and ended ---
 
 log = logging.getLogger(__name__)
 
 SHED_LINES_PER_S, SHED_LINES = 1 / 60, 5.0
-"""Lines of the log about connections that made room: their flood is not to become one of the log."""
+"""Log lines about connections that made room: a flood of them must not flood the log."""
 
 
 class ConnectionRegistry:
-    """The connections that were let in, and by address those that were not yet.
+    """The admitted connections, and by address those not admitted yet.
 
-    Robots, desks and those that have not said yet which of the two they are have places of their own. Of the
-    last, and of desks that have not said anything, the oldest makes room for one that comes: neither robots
-    nor silent connections keep an operator out.
+    Robots, desks and connections not yet identified as either have separate limits. Of the last, and of desks
+    that have sent nothing, the oldest makes room for a new one: neither robots nor silent connections keep an
+    operator out.
     """
 
     def __init__(self, limits: LimitSettings, journal: AuditJournal) -> None:
@@ -58,12 +58,12 @@ class ConnectionRegistry:
         return {i.session: connection for connection, i in self._inside.items() if i.kind is operator}
 
     def arrived(self, connection: ClientConnection) -> None:
-        """Count a connection that has not said yet what it wants; with one too many the oldest ends."""
+        """Count a connection before its request; with one too many the oldest ends."""
         pending = self._pending[connection.address]
         pending[connection] = None
         if len(pending) <= self._limits.pending_per_address:
             return
-        # Whoever has asked for something is about to be let in or refused.
+        # A connection with a request is about to be admitted or refused.
         oldest = next((one for one in pending if one.request is None), next(iter(pending)))
         self._forget_pending(oldest)
         if self._shed_lines.consume():
@@ -78,11 +78,11 @@ class ConnectionRegistry:
         """Count a connection that is gone."""
         if connection.identity is None:
             self._forget_pending(connection)
-        elif (identity := self._take_out(connection)) is not None and identity.kind is TokenKind.OPERATOR:
+        elif (identity := self._remove(connection)) is not None and identity.kind is TokenKind.OPERATOR:
             self._journal.ended(identity.session, connection.close_reason or "the connection ended")
 
     def crowded(self, connection: ClientConnection, identity: Identity) -> str | None:
-        """Return why one more connection is not taken, None when it is."""
+        """Return why one more connection is refused, or None."""
         robots, limits = identity.kind is not TokenKind.OPERATOR, self._limits
         what, most = {
             TokenKind.ROBOT: ("robot", limits.robots),
@@ -100,11 +100,11 @@ class ConnectionRegistry:
         return None
 
     def _has_room(self, kind: object, most: int, keeps: bool = False) -> bool:
-        """Tell whether there is room for one more of ``kind``; the oldest silent desk makes some."""
+        """Return whether there is room for one more of ``kind``; the oldest silent desk makes some."""
         if self._counts[kind] < most:
             return True
         if keeps:
-            # A fleet larger than the limit comes back in one moment: robots would end one another for ever.
+            # A fleet larger than the limit reconnects in one moment: robots would end one another for ever.
             return False
         for connection, identity in self._inside.items():
             if not connection.has_sent and kind in _kinds(connection, identity):
@@ -121,7 +121,7 @@ class ConnectionRegistry:
 
     def end(self, connection: ClientConnection, code: int, reason: str) -> None:
         """End a connection at once, with ``code`` as its close code."""
-        identity = self._take_out(connection)
+        identity = self._remove(connection)
         if identity is None:
             return
         log.warning("%s from %s: connection ended: %s", connection.who, connection.address, reason)
@@ -138,7 +138,7 @@ class ConnectionRegistry:
         short = reason.encode()[:120].decode(errors="ignore")
         self._endings.start(connection.expel(code, short))
 
-    def _take_out(self, connection: ClientConnection) -> Identity | None:
+    def _remove(self, connection: ClientConnection) -> Identity | None:
         identity = self._inside.pop(connection, None)
         if identity is not None:
             for kind in _kinds(connection, identity):
@@ -158,24 +158,24 @@ class ConnectionRegistry:
 
 
 def _kinds(connection: ClientConnection, identity: Identity) -> list[object]:
-    """Return everything that a connection is counted under."""
+    """Return all keys that a connection is counted under."""
     account: list[object] = [] if identity.token is None else [("of", identity.token)]
     return [identity.kind, ("from", connection.address, identity.kind), *account]
 
 
-# --- Who is let in, and who is shown the door again ---
+# --- Admission of connections, and their end ---
 
 LOOK_INTERVAL = 0.4
 """Seconds after which a token that was revoked elsewhere is noticed."""
 READ_AGAIN_AFTER = 0.1
-"""Seconds between two readings of the accounts because of a token that is not known."""
+"""Seconds between two reads of the accounts because of an unknown token."""
 LOOK_UP_SHARE = 0.5
-"""of a handshake's time, after which a token that the database has not told of is answered 503: at the end of
-that time the connection is cut off without an answer."""
+"""share of a handshake's time after which a token not confirmed by the database is answered 503: at the end
+of that time the connection is cut without an answer."""
 REVOKED = 4003
-"""Close code of a connection whose token does not hold any more."""
+"""Close code of a connection whose token is no longer valid."""
 ENDED = 4004
-"""Close code of a session that somebody ended."""
+"""Close code of a session ended by a supervisor."""
 MOST_ADDRESSES = 10_000
 PATHS = {TokenKind.ROBOT: "/robot", TokenKind.OPERATOR: "/desk", TokenKind.LINK: "/link"}
 OWNERS = {
@@ -184,14 +184,14 @@ OWNERS = {
     TokenKind.LINK: "a link's",
 }
 ANY_LINK, ANY_ROBOT = "link", ("*",)
-"""What a link without a token is called, and the robots that it speaks for."""
+"""Name and robots of a link without a token."""
 
 
 class AuthGate:
-    """Tells by its token who a connection belongs to, and ends it when the token does not hold any more.
+    """Identifies a connection by its token, and ends it when the token is no longer valid.
 
-    Where nobody ever made a token of a kind, and ``may_be_open``, everybody is let in: a gateway that only
-    its own computer can reach needs no accounts. Operators are then supervisors.
+    If no token of a kind was ever made, and ``may_be_open``, everybody is admitted: a gateway that only its
+    own computer can reach needs no accounts. Operators are then supervisors.
     """
 
     def __init__(
@@ -207,7 +207,7 @@ class AuthGate:
         self.accounts = AccountCache(database)
         self._guests = ConnectionRegistry(limits, self.journal)
         self.gone = 0
-        """Connections that have gone since the start."""
+        """Number of connections closed since the start."""
         self._database = database
         self._may_be_open = may_be_open
         self._clock = clock
@@ -216,20 +216,20 @@ class AuthGate:
         self._failures: dict[str, RateLimit] = {}
 
     async def open(self) -> None:
-        """Read the accounts, and note the end of what an earlier gateway left open; raises StoreError."""
+        """Read the accounts, and end the sessions that an earlier gateway left open; raises StoreError."""
         await self._database.run(audit.end_all_sessions, self._clock.time())
         await self.accounts.refresh()
 
     def warn(self) -> None:
-        """Say in the log what is open to everybody."""
+        """Log what is open to everybody."""
         for kind, path in PATHS.items():
             if self._is_open(kind):
                 log.warning("%s is open to everybody on this computer: no %s has a token", path, kind.value)
 
     async def watch(self) -> None:
-        """Take over changed accounts, and end what does not hold any more, until cancelled.
+        """Apply changed accounts, and end connections no longer permitted, until cancelled.
 
-        :raises StoreError: when they cannot be read; they stay as they were last read.
+        :raises StoreError: when they cannot be read; the last ones stay in force.
         """
         while True:
             await asyncio.sleep(LOOK_INTERVAL)
@@ -239,7 +239,7 @@ class AuthGate:
                 raise StoreError(f"{error}; accounts stay as they were last read") from error
 
     async def refresh(self) -> None:
-        """Take over changed accounts, and end what does not hold any more; raises StoreError."""
+        """Apply changed accounts, and end connections no longer permitted; raises StoreError."""
         await self.accounts.refresh()
         without_token = {kind: self._fault_without_token(kind) for kind in TokenKind}
         for connection, identity in self._guests:
@@ -248,7 +248,7 @@ class AuthGate:
                 self._guests.end(connection, REVOKED, fault)
         desks = self._guests.sessions
         ended = await self._database.read(audit.ended_sessions, list(desks))
-        # A gateway that starts cannot tell which are those of the one that it was before.
+        # A gateway that starts cannot distinguish the sessions of its own earlier run.
         left = [session for session, reason in ended.items() if reason == audit.GATEWAY_ENDED]
         if left:
             await self._database.run(audit.reopen_sessions, left)
@@ -256,7 +256,7 @@ class AuthGate:
             self._guests.end(desks[session], ENDED, ended[session])
 
     async def close(self) -> None:
-        """Write what waits to be written down."""
+        """Write the waiting entries."""
         try:
             await self.journal.flush()
         except StoreError as error:
@@ -265,7 +265,7 @@ class AuthGate:
     # --- connections come and go ----------------------------------------------------------------------
 
     def arrived(self, connection: ClientConnection) -> None:
-        """Count a connection that has not said yet what it wants; it may end an older one."""
+        """Count a connection before its request; it may end an older one."""
         self._guests.arrived(connection)
 
     def left(self, connection: ClientConnection) -> None:
@@ -274,7 +274,7 @@ class AuthGate:
         self._guests.left(connection)
 
     def name_desk(self, connection: ClientConnection, operator: str) -> str:
-        """Return the operator of a desk that says to be ``operator``: its account, where there are any."""
+        """Return the operator of a desk that claims to be ``operator``: its account, if accounts exist."""
         assert connection.identity is not None
         if connection.identity.name is not None:
             return connection.identity.name
@@ -282,7 +282,7 @@ class AuthGate:
         return operator
 
     def role(self, connection: ClientConnection) -> Role:
-        """Return what a desk may do now."""
+        """Return the present role of a desk."""
         assert connection.identity is not None
         if connection.identity.token is None:
             return Role.SUPERVISOR
@@ -297,12 +297,12 @@ class AuthGate:
         grant = self.accounts.grant(connection.identity.token)
         return grant.robots if grant is not None else ()
 
-    # --- who is let in --------------------------------------------------------------------------------
+    # --- admission --------------------------------------------------------------------------------
 
     def refuse_page(
         self, connection: ClientConnection, request: Request, own: str | None = None
     ) -> Response | None:
-        """Return what a script of a web page that may not connect is told, None for everybody else.
+        """Return the refusal of a web page's script that may not connect, None for everybody else.
 
         ``own`` is the origin of the gateway's own page, which may.
         """
@@ -315,7 +315,7 @@ class AuthGate:
         )
 
     async def may_read(self, connection: ClientConnection, request: Request) -> Response | None:
-        """Return what somebody is told who may not read the gateway's own pages, None for a viewer."""
+        """Return the refusal of a client that may not read the gateway's pages, None for a viewer."""
         found = await self._identify(connection, request, TokenKind.OPERATOR)
         return found if isinstance(found, Response) else None
 
@@ -327,7 +327,7 @@ class AuthGate:
         name: str | None,
         largest_message: int,
     ) -> Response | None:
-        """Let a visitor in as a desk, or as the robot it says to be, or return what it is told instead."""
+        """Admit a client as a desk, or as the robot that it claims to be, or return its refusal."""
         found = await self._identify(connection, request, kind)
         if isinstance(found, Response):
             return found
@@ -336,7 +336,7 @@ class AuthGate:
                 found = Identity(kind, name, None, found.session)
             elif name not in (None, found.name):
                 what = kind.value
-                self._note_refusal(connection, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
+                self._record_refusal(connection, found.name, f"{PATHS[kind]}: asked to be {what} {name}")
                 text = f"This token is {what} {found.name}'s, not {name}'s; give each {what} its own.\n"
                 return connection.respond(http.HTTPStatus.FORBIDDEN, text)
         if connection.is_gone:
@@ -344,7 +344,7 @@ class AuthGate:
         if (text := self._guests.crowded(connection, found) or "") != "":
             return _later(connection, http.HTTPStatus.SERVICE_UNAVAILABLE, text, 5)
         self._guests.enter(connection, found, largest_message)
-        self._note_login(connection, found)
+        self._record_login(connection, found)
         return None
 
     async def _identify(
@@ -380,7 +380,7 @@ class AuthGate:
         return identity
 
     async def _read_again(self) -> None:
-        """Read the accounts for a token that may have been made a moment ago; once for all who knock."""
+        """Read the accounts for a token that may have been made a moment ago; once for all who wait."""
         knocked = time.monotonic()
         async with self._reading:
             if self._read_at >= knocked:
@@ -388,7 +388,7 @@ class AuthGate:
             await asyncio.sleep(max(0.0, self._tried_at + READ_AGAIN_AFTER - time.monotonic()))
             self._tried_at = began = time.monotonic()
             await self.accounts.refresh()
-            # Where that failed, those who wait behind must not take their tokens for unknown ones.
+            # After a failure, waiting clients must not have their tokens treated as unknown.
             self._read_at = began
 
     def _fault(self, identity: Identity) -> str | None:
@@ -402,11 +402,11 @@ class AuthGate:
     def _fault_without_token(self, kind: TokenKind) -> str | None:
         return None if self._is_open(kind) else "accounts are in use now: connect with a token"
 
-    def _note_login(self, connection: ClientConnection, identity: Identity) -> None:
+    def _record_login(self, connection: ClientConnection, identity: Identity) -> None:
         if identity.token is not None:
             self.journal.used(identity.token)
         if identity.kind is TokenKind.ROBOT:
-            # A robot at the edge of the radio's reach comes back a thousand times a day.
+            # A robot at the edge of radio coverage reconnects a thousand times a day.
             return
         if identity.kind is TokenKind.LINK:
             name = identity.name or ANY_LINK
@@ -419,18 +419,18 @@ class AuthGate:
         self.journal.began(SessionRow(session, who, identity.token, role, address, self._clock.time()))
 
     def _refuse(self, connection: ClientConnection, kind: TokenKind, who: str, fault: str) -> Response:
-        # Whoever knocks with wrong tokens is to fill neither the log nor the disk.
+        # Attempts with wrong tokens must fill neither the log nor the disk.
         failures = self._failures_of(connection.address)
         if not failures.consume():
             text = "Too many refused logins came from this address."
             return _later(connection, http.HTTPStatus.TOO_MANY_REQUESTS, text, failures.wait() + 1)
-        self._note_refusal(connection, who, f"{PATHS[kind]}: {fault}")
+        self._record_refusal(connection, who, f"{PATHS[kind]}: {fault}")
         text = f"{fault[:1].upper()}{fault[1:]}. Ask whoever runs the site for a token.\n"
         response = connection.respond(http.HTTPStatus.UNAUTHORIZED, text)
         response.headers["WWW-Authenticate"] = 'Bearer realm="fleet"'
         return response
 
-    def _note_refusal(self, connection: ClientConnection, who: str, why: str) -> None:
+    def _record_refusal(self, connection: ClientConnection, who: str, why: str) -> None:
         log.warning("%s from %s was not let in: %s", who, connection.address, why)
         self.journal.note(who, "login", done=False, address=connection.address, detail=why)
 
@@ -441,7 +441,7 @@ class AuthGate:
         return self._failures.setdefault(address, RateLimit(a_minute / 60, a_minute))
 
     def _is_open(self, kind: TokenKind) -> bool:
-        # A link speaks for robots: where those need tokens, so does it.
+        # A link speaks for robots: if those need tokens, so does it.
         kinds = (kind, TokenKind.ROBOT) if kind is TokenKind.LINK else (kind,)
         return self._may_be_open and all(self.accounts.is_open(one) for one in kinds)
 

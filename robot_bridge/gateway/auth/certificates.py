@@ -42,7 +42,7 @@ class TlsFiles:
 
     @property
     def ca_key(self) -> Path:
-        """The authority's key: whoever has it can pose as the gateway."""
+        """The authority's key: its holder can pose as the gateway."""
         return self.folder / "ca-key.pem"
 
     @property
@@ -57,9 +57,9 @@ class TlsFiles:
 
 
 def create(folder: Path, names: Sequence[str], addresses: Sequence[str], days: int = SERVER_DAYS) -> TlsFiles:
-    """Make an authority and a server certificate in ``folder``, for host names and IP addresses.
+    """Create an authority and a server certificate in ``folder``, for host names and IP addresses.
 
-    :raises AccessError: for a name that is none, or when the folder holds an authority already.
+    :raises AccessError: for an invalid name, or when the folder holds an authority already.
     """
     subjects = _subjects(names, addresses)
     files = TlsFiles(folder)
@@ -81,9 +81,9 @@ def create(folder: Path, names: Sequence[str], addresses: Sequence[str], days: i
 
 
 def renew(folder: Path, days: int = SERVER_DAYS) -> datetime.datetime:
-    """Give the gateway a new key and certificate for the same names; return until when it holds.
+    """Give the gateway a new key and certificate for the same names; return the end of its validity.
 
-    :raises AccessError: when the folder holds no authority and server certificate that can be read.
+    :raises AccessError: when the folder holds no readable authority and server certificate.
     """
     files = TlsFiles(folder)
     ca, server = _read_certificate(files.ca), _read_certificate(files.certificate)
@@ -103,9 +103,9 @@ def renew(folder: Path, days: int = SERVER_DAYS) -> datetime.datetime:
 
 
 def valid_until(file: Path) -> datetime.datetime:
-    """Return until when the certificate in ``file`` holds; raises AccessError when it cannot be read."""
+    """Return the end of validity of the certificate in ``file``; raises AccessError when unreadable."""
     certificate = _read_certificate(file)
-    # Before version 42 cryptography has only the one without a time zone, which later versions drop.
+    # Before version 42 cryptography has only the attribute without a time zone, which later versions drop.
     until: datetime.datetime | None = getattr(certificate, "not_valid_after_utc", None)
     return until or certificate.not_valid_after.replace(tzinfo=datetime.timezone.utc)
 
@@ -222,17 +222,17 @@ def _write_key(file: Path, key: ec.EllipticCurvePrivateKey) -> None:
 
 
 def _write(file: Path, content: bytes, mode: int = 0o644) -> None:
-    """Put ``content`` in the place of ``file`` at once, readable from the first byte on to ``mode`` only.
+    """Replace ``file`` by ``content`` atomically, readable from the first byte on to ``mode`` only.
 
-    Then it belongs to whom ``file`` did: root renews what the gateway's account has to read.
+    The owner of ``file`` is kept: root renews files that the gateway's account must read.
     """
     with replacement(file) as fresh, open(fresh, "wb", opener=partial(os.open, mode=mode)) as stream:
         stream.write(content)
         if file.exists():
-            _give_as(file, stream.fileno())
+            _copy_ownership(file, stream.fileno())
 
 
-def _give_as(file: Path, fresh: int) -> None:
+def _copy_ownership(file: Path, fresh: int) -> None:
     """Give an open file the owner, group and rights of another; raises OSError where that is not allowed."""
     status, own = file.stat(), os.fstat(fresh)
     if (status.st_uid, status.st_gid) != (own.st_uid, own.st_gid):

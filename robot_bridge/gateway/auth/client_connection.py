@@ -1,4 +1,4 @@
-"""Connection of a client, held to its limits, and the fast path of its short messages."""
+"""Connection of a client with its limits, and the fast path of its short messages."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ...core.sites.settings_tables import LimitSettings
 from ...protocol import jsonrpc
 from .accounts import TokenKind
 
-# --- Where the frames begin in what a client sends, and those that are a short message as they stand; no I/O
+# --- Frame boundaries in a client's data, and frames that are one whole short message; no I/O
 # Frames are those of RFC 6455, section 5.2.
 
 try:
@@ -29,7 +29,7 @@ except ImportError:
     from websockets.utils import apply_mask
 
 LONGEST = 1000
-"""bytes of a message that is short: below any limit on messages that a site may set."""
+"""bytes of a short message: below any message limit that a site may set."""
 _WHOLE_TEXT = 0x81
 _MASKED = 0x80
 _TWO_BYTES, _EIGHT_BYTES = 126, 127
@@ -38,8 +38,8 @@ _TWO_BYTES, _EIGHT_BYTES = 126, 127
 def short_text(data: bytes, start: int) -> tuple[bytes, int] | None:
     """Return the message in the frame that begins at ``start``, and where the next frame begins.
 
-    None where that frame is not all there, or is anything but one whole text of at most LONGEST bytes of
-    ASCII: what may be wrong, or be a part of something, is for those who know all of the protocol.
+    None if that frame is incomplete, or anything but one whole text of at most LONGEST bytes of ASCII:
+    invalid or fragmented frames are left to the full implementation of the protocol.
     """
     if len(data) - start < 6 or data[start] != _WHOLE_TEXT:
         return None
@@ -47,7 +47,7 @@ def short_text(data: bytes, start: int) -> tuple[bytes, int] | None:
     if length == _TWO_BYTES:
         length, mask_at = data[start + 2] << 8 | data[start + 3], start + 4
     elif length == _EIGHT_BYTES:
-        # Taken for a length, it would now and then find 127 bytes of ASCII in a long text.
+        # Taken as a length, it would sometimes match 127 bytes of ASCII in a long text.
         return None
     begin = mask_at + 4
     end = begin + length
@@ -58,9 +58,9 @@ def short_text(data: bytes, start: int) -> tuple[bytes, int] | None:
 
 
 class FrameParser:
-    """Follows what a client sends from frame to frame, into whatever pieces it comes cut.
+    """Tracks the frames in a client's data, in pieces of any length.
 
-    It keeps no more of it than an unfinished header.
+    It keeps only an unfinished header.
     """
 
     __slots__ = ("_header", "_left")
@@ -71,11 +71,11 @@ class FrameParser:
 
     @property
     def between(self) -> bool:
-        """Tell whether the next byte begins a frame."""
+        """Return whether the next byte starts a frame."""
         return not self._left and not self._header
 
     def pass_over(self, data: bytes) -> None:
-        """Follow the next bytes."""
+        """Track the next bytes."""
         at = 0
         while at < len(data):
             if self._left:
@@ -93,7 +93,7 @@ class FrameParser:
 
 
 def _measured(header: bytes) -> tuple[int, int]:
-    """Return the bytes of a frame's header and of its payload, (0, 0) while that cannot be told."""
+    """Return the bytes of a frame's header and of its payload, (0, 0) while unknown."""
     if len(header) < 2:
         return 0, 0
     mask = 4 if header[1] & _MASKED else 0
@@ -105,11 +105,11 @@ def _measured(header: bytes) -> tuple[int, int]:
     return size, int.from_bytes(header[2 : 2 + extended], "big") if extended else short
 
 
-# --- Rate limit of a client: a token bucket, with some room for bursts ---
+# --- Rate limit of a client: a token bucket that allows bursts ---
 
 
 class RateLimit:
-    """Allows ``rate`` takings a second on average and up to ``burst`` at once."""
+    """Allows ``rate`` tokens per second on average and up to ``burst`` at once."""
 
     __slots__ = ("_at", "_burst", "_left", "_now", "_rate")
 
@@ -118,7 +118,7 @@ class RateLimit:
         self._left, self._at = burst, self._now()
 
     def consume(self) -> bool:
-        """Take one, if there is one to take."""
+        """Take a token, if there is one; return whether there was."""
         now = self._now()
         self._left = min(self._burst, self._left + (now - self._at) * self._rate)
         self._at = now
@@ -128,26 +128,26 @@ class RateLimit:
         return True
 
     def give_back(self) -> None:
-        """Undo a taking."""
+        """Return a token to the bucket."""
         self._left = min(self._burst, self._left + 1.0)
 
     def wait(self) -> float:
-        """Return the seconds until the next one can be taken."""
+        """Return the seconds until the next token."""
         missing = 1.0 - min(self._burst, self._left + (self._now() - self._at) * self._rate)
         return max(0.0, missing / self._rate)
 
 
-# --- The way of short messages past the queue of a connection ---
+# --- The fast path: short messages bypass the queue of a connection ---
 
 END_OF_REQUEST = b"\r\n\r\n"
 
 
 class FastPath:
-    """Deals with the messages that need no waiting as soon as their bytes are there.
+    """Handles messages that need no wait as soon as their bytes arrive.
 
-    The parsing, the queue and the tasks that this saves take several times as long as a position does. Only
-    what nothing is on the long way before goes here: messages are dealt with in the order they were sent.
-    The handler deals with a message, or returns false and has done nothing.
+    The parsing, the queue and the tasks that this saves take several times as long as a position does. It is
+    used only while no message is on the slow path: messages are handled in the order sent. The handler
+    handles a message, or returns false with nothing done.
     """
 
     def __init__(self) -> None:
@@ -156,19 +156,19 @@ class FastPath:
         self._edges: FrameParser | None = None
 
     def set_handler(self, handler: Callable[[bytes], bool]) -> None:
-        """Give messages to ``handler`` from now on."""
+        """Pass messages to ``handler`` from now on."""
         self._handler = handler
 
     def begin(self, request: bytes) -> None:
-        """Follow the frames from the end of the request on, whose last bytes these are."""
-        # Where something came behind the request it is not known where the next frame begins.
+        """Track frames from the end of the request on; ``request`` are its last bytes."""
+        # With data behind the request the start of the next frame is unknown.
         if request.find(END_OF_REQUEST) == len(request) - len(END_OF_REQUEST):
             self._edges = FrameParser()
 
     def handle_messages(self, data: bytes, messages: RateLimit) -> int:
-        """Deal with the messages at the beginning of ``data``, each one of ``messages``.
+        """Handle the messages at the beginning of ``data``, each counted by ``messages``.
 
-        Return where that begins which has to go the long way; :meth:`pass_over` has to be called with it.
+        Return the start of the rest for the slow path; call :meth:`pass_over` with that rest.
         """
         start, edges = 0, self._edges
         if self._handler is None or edges is None or not edges.between or self.on_the_long_way:
@@ -182,28 +182,28 @@ class FastPath:
         return start
 
     def pass_over(self, data: bytes) -> None:
-        """Take note of bytes that go the long way."""
+        """Track bytes that take the slow path."""
         if self._edges is not None:
             self._edges.pass_over(data)
 
 
-# --- One connection to the gateway, and the limits it is held to ---
+# --- One connection to the gateway, and its limits ---
 
 log = logging.getLogger(__name__)
 
 CONTROL_FRAMES_PER_S = 20.0
 CONTROL_BURST = 100.0
 NEVER_REFUSED = "emergency_stop"
-"""Who has talked too much may stop the fleet all the same."""
+"""This request is allowed beyond the rate limit."""
 CLOSE_WITHIN = 0.5
-"""Seconds that a client that is shown the door has for a close in good order."""
+"""Seconds that an expelled client has for a clean close."""
 _PING = b"gateway"
 _OF_MESSAGES = (Opcode.TEXT, Opcode.BINARY, Opcode.CONT)
 
 
 @dataclass(frozen=True)
 class Identity:
-    """Who a connection belongs to; ``token`` is the token's id, None where no tokens are in use."""
+    """The owner of a connection; ``token`` is the token's id, None if no tokens are in use."""
 
     kind: TokenKind
     name: str | None
@@ -212,11 +212,11 @@ class Identity:
 
 
 class ConnectionLimiter(Protocol):
-    """What a visitor tells the gate."""
+    """Interface of a connection to the gate."""
 
     @property
     def limits(self) -> LimitSettings:
-        """The limits that hold now."""
+        """The present limits."""
 
     def arrived(self, connection: ClientConnection) -> None:
         """Count a new connection."""
@@ -226,7 +226,7 @@ class ConnectionLimiter(Protocol):
 
 
 class ClientConnection(ServerConnection):
-    """A connection whose messages are counted, and which is cut off when it takes nothing any more."""
+    """A connection whose messages are counted, and which is cut when it accepts no more data."""
 
     def __init__(self, door: ConnectionLimiter, *arguments: Any, **options: Any) -> None:
         super().__init__(*arguments, **options)
@@ -236,30 +236,30 @@ class ClientConnection(ServerConnection):
         self._silence: asyncio.TimerHandle | None = None
         self._next_ping: asyncio.TimerHandle | None = None
         self._pinged_at: float | None = None
-        """when a ping was sent that was not answered yet."""
+        """when the unanswered ping was sent."""
         self._last_received_at = 0.0
         self._expelled = False
         self.is_gone = False
-        """Whether the connection has ended; nobody gets a place after that."""
+        """Whether the connection has ended; it is not admitted after that."""
         self._control = RateLimit(CONTROL_FRAMES_PER_S, CONTROL_BURST)
         self._messages = self._patience = RateLimit(1.0, 1.0)
         self.short_cut = FastPath()
         self.identity: Identity | None = None
         self.address = ""
         self.round_trip: float | None = None
-        """Seconds that the last ping took there and back."""
+        """Round-trip time of the last ping in seconds."""
 
     # --- the connection's life ------------------------------------------------------------------------
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
-        """Take a new connection."""
+        """Accept a new connection."""
         peer = transport.get_extra_info("peername") or ("",)
         self.address = str(peer[0])
         super().connection_made(transport)
         self._door.arrived(self)
 
     def connection_lost(self, exc: Exception | None) -> None:
-        """Note that the connection is gone."""
+        """Record that the connection is gone."""
         for timer in (self._stuck, self._silence, self._next_ping):
             if timer is not None:
                 timer.cancel()
@@ -268,7 +268,7 @@ class ClientConnection(ServerConnection):
         self._door.left(self)
 
     def let_in(self, identity: Identity, largest_message: int) -> None:
-        """Hold the connection from now on to the limits of its kind."""
+        """Apply the limits of its kind to the connection from now on."""
         self.identity = identity
         limits = self._limits
         rate, burst = {
@@ -278,25 +278,25 @@ class ClientConnection(ServerConnection):
         }[identity.kind]
         self._messages, self._patience = RateLimit(rate, float(burst)), RateLimit(rate / 10, float(burst))
         self.protocol.max_message_size = largest_message
-        # What waits in the system for a slow client is old when it arrives.
+        # Data buffered by the system for a slow client is old when it arrives.
         own = self.transport.get_extra_info("socket")
         with contextlib.suppress(OSError):
             own.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, limits.send_buffer_bytes)
         self._silence = self.loop.call_later(limits.first_message_s, self._check_silence)
 
     def handle_at_once(self, handler: Callable[[bytes], bool]) -> None:
-        """Give messages to ``handler`` as their bytes come in; one of which it returns false is queued."""
+        """Pass messages to ``handler`` as their bytes arrive; those that it returns false for are queued."""
         self.short_cut.set_handler(handler)
 
     @property
     def is_idle(self) -> bool:
-        """Whether all that was written has gone out: the client reads what it is sent."""
+        """Whether all written data has been sent: the client reads."""
         return bool(self.transport.get_write_buffer_size() == 0)
 
     def write_at_once(self, text: str) -> bool:
-        """Write a short message without a turn of the loop.
+        """Write a short message without an iteration of the loop.
 
-        Returns false, with nothing done, where another message is being sent in pieces, or the connection is
+        Returns false, with nothing done, while another message is being sent in pieces, or the connection is
         not open.
         """
         if self.protocol.state is not OPEN or self.send_in_progress is not None:
@@ -306,7 +306,7 @@ class ClientConnection(ServerConnection):
         return True
 
     async def send_together(self, texts: Sequence[str]) -> None:
-        """Send short messages, in one piece where that can be; raises ConnectionClosed."""
+        """Send short messages, in one piece if possible; raises ConnectionClosed."""
         if self.protocol.state is OPEN and self.send_in_progress is None:
             for text in texts:
                 self.protocol.send_text(text.encode())
@@ -317,7 +317,7 @@ class ClientConnection(ServerConnection):
                 await self.send(text)
 
     async def expel(self, code: int, reason: str) -> None:
-        """End the connection, whether the client agrees or not; what still comes in is passed over."""
+        """End the connection, with or without the client's close; further messages are ignored."""
         self._expelled = True
         try:
             with contextlib.suppress(TimeoutError):
@@ -325,10 +325,10 @@ class ClientConnection(ServerConnection):
         finally:
             self.transport.abort()
 
-    # --- what comes in --------------------------------------------------------------------------------
+    # --- incoming data --------------------------------------------------------------------------------
 
     def data_received(self, data: bytes) -> None:
-        """Take in bytes: short messages are dealt with at once where that is possible, the others queued."""
+        """Receive bytes: short messages are handled at once if possible, the others queued."""
         start = self._deal_with(data)
         if start < len(data):
             rest, is_upgraded = data[start:] if start else data, self.request is not None
@@ -347,7 +347,7 @@ class ClientConnection(ServerConnection):
         return start
 
     async def __aiter__(self) -> AsyncIterator[Any]:
-        """Yield the messages; those beyond the limit are refused, and then the connection is closed."""
+        """Yield the messages; those beyond the limit are refused, and finally the connection is closed."""
         async for frame in super().__aiter__():
             if self._expelled:
                 return
@@ -364,7 +364,7 @@ class ClientConnection(ServerConnection):
             self.short_cut.on_the_long_way -= 1
 
     def start_keepalive(self) -> None:
-        """Begin to ping: by a timer, since a task and a future for each ping take three times as long."""
+        """Start pinging by a timer: a task and a future for each ping take three times as long."""
         if self.ping_interval is not None:
             self._next_ping = self.loop.call_later(self.ping_interval, self._keep_alive)
 
@@ -384,7 +384,7 @@ class ClientConnection(ServerConnection):
         self._next_ping = self.loop.call_later(self.ping_interval, self._keep_alive)
 
     def process_event(self, event: Any) -> None:
-        """Take in one frame; pings and empty pieces of messages are counted, since nobody waits for them."""
+        """Process one frame; pings and empty fragments are counted, since nobody waits for them."""
         if isinstance(event, Frame) and _is_idle_talk(event) and not self._control.consume():
             log.warning("%s from %s: too many control frames; cut off", self.who, self.address)
             self.transport.abort()
@@ -392,13 +392,13 @@ class ClientConnection(ServerConnection):
         if isinstance(event, Frame) and event.fin and event.opcode in _OF_MESSAGES:
             self.short_cut.on_the_long_way += 1
         if self._pinged_at is not None and _is_answer(event):
-            # By a clock that counts finer than some event loops do.
+            # This clock is finer than that of some event loops.
             self.round_trip, self._pinged_at = time.perf_counter() - self._pinged_at, None
         super().process_event(event)
 
     @property
     def has_sent(self) -> bool:
-        """Whether a message has come since the connection was let in."""
+        """Whether a message has arrived since admission."""
         return self._last_received_at > 0
 
     @property
@@ -409,7 +409,7 @@ class ClientConnection(ServerConnection):
         return f"{self.identity.kind.value} {self.identity.name or 'without a name'}"
 
     async def _refuse(self, frame: str | bytes) -> bool:
-        """Refuse a message; return false for one that is taken all the same."""
+        """Refuse a message; return false for one that is accepted all the same."""
         try:
             message = jsonrpc.decode(frame)
         except jsonrpc.FrameError:
@@ -435,15 +435,15 @@ class ClientConnection(ServerConnection):
         else:
             self._silence = self.loop.call_at(due, self._check_silence)
 
-    # --- what goes out --------------------------------------------------------------------------------
+    # --- outgoing data --------------------------------------------------------------------------------
 
     def pause_writing(self) -> None:
-        """Begin to wait for a client that is behind."""
+        """Start waiting for a slow client."""
         super().pause_writing()
         self._stuck = self.loop.call_later(self._limits.stuck_s, self._give_up)
 
     def resume_writing(self) -> None:
-        """Go on with a client that has caught up."""
+        """Continue with a client that has caught up."""
         if self._stuck is not None:
             self._stuck.cancel()
             self._stuck = None

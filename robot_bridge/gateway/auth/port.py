@@ -1,4 +1,4 @@
-"""Port of the gateway: its address and names, its TLS, and the limits before authorisation."""
+"""The gateway's port: address and names, TLS, and the limits before authorisation."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ from .client_connection import ClientConnection
 
 log = logging.getLogger(__name__)
 
-# --- How far a gateway may be reached, and what it needs for that ---
+# --- Reach of a gateway: loopback only, unless it has TLS and accounts ---
 
 
 def is_loopback(host: str) -> bool:
-    """Tell whether an address to listen on is this computer's own; raises AccessError for none."""
+    """Return whether an address to listen on is this computer's own; raises AccessError if invalid."""
     try:
         return ipaddress.ip_address("127.0.0.1" if host == "localhost" else host).is_loopback
     except ValueError:
@@ -48,7 +48,7 @@ def is_loopback(host: str) -> bool:
 
 
 def address_here(host: str) -> str:
-    """Return the address by which this computer reaches what listens on ``host``."""
+    """Return the address by which this computer reaches a listener on ``host``."""
     return {"0.0.0.0": "127.0.0.1", "::": "::1"}.get(host, host)  # nosec B104 # read, not listened on
 
 
@@ -69,25 +69,25 @@ def check_reach(host: str, *, tls: bool, accounts: bool) -> None:
         )
 
 
-# --- Under which names the gateway's pages are asked for ---
+# --- Host names in requests for the gateway's pages ---
 # A web page somewhere can have its own name resolved to this computer's address (DNS rebinding), and its
-# script
-# may then read what is served here as if it were its own. Such a request names the page's host in ``Host``.
+# script may then read the pages served here as if they were its own. Such a request names the page's host in
+# ``Host``.
 
 LOCAL = ("localhost", "localhost.localdomain", "ip6-localhost")
 _SHOWN = 80
-"""characters of a host that are told back."""
+"""characters of a host shown in the answer."""
 
 
 def host_fault(headers: Iterable[str], names: Collection[str]) -> str | None:
-    """Return why a request with these ``Host`` headers is refused, None for one that is meant for us.
+    """Return why a request with these ``Host`` headers is refused, None for one addressed to this gateway.
 
-    It is when it names an address, this computer, or one of ``names``, of which ``*.example.org`` stands for
-    one name in front of that. An address is no name that somebody else could have resolved to ours.
+    Accepted are an address, this computer, or one of ``names``, where ``*.example.org`` stands for one label
+    in front. An address is not a name that somebody else could have resolved to ours.
     """
     hosts = list(headers)
     if not hosts:
-        # No browser leaves it out.
+        # No browser omits it.
         return None
     if len(hosts) > 1:
         return "the request has several Host headers; send one"
@@ -120,26 +120,26 @@ def _fits(host: str, name: str) -> bool:
     return host == name or (name.startswith("*.") and host.partition(".")[2] == name[2:])
 
 
-# --- TLS for the port: its certificate, taken anew when the files change ---
+# --- TLS for the port: its certificate, reloaded when the files change ---
 
 CIPHERS = "ECDHE+AESGCM:ECDHE+CHACHA20"
 """TLS 1.2 only with forward secrecy and authenticated encryption; TLS 1.3 has nothing else."""
 WATCH_INTERVAL = 2.0
 WARN_DAYS = 30
 WARN_INTERVAL = 86400.0
-"""seconds between two looks at when the certificate ends: a gateway runs for longer than one holds."""
+"""seconds between checks of the certificate's expiry: a gateway runs for longer than one is valid."""
 
 
 @dataclass(frozen=True)
 class ServerFiles:
-    """The gateway's certificate (with what leads to its authority) and its key, in PEM."""
+    """The gateway's certificate (with its chain) and its key, in PEM."""
 
     certificate: Path
     key: Path
 
 
 def server_files(certificate: Path | None, key: Path | None) -> ServerFiles | None:
-    """Return both files, None where neither is given; raises AccessError for one alone."""
+    """Return both files, None if neither is given; raises AccessError for one alone."""
     if certificate is None and key is None:
         return None
     if certificate is None or key is None:
@@ -148,7 +148,7 @@ def server_files(certificate: Path | None, key: Path | None) -> ServerFiles | No
 
 
 class ServerTls:
-    """The gateway's TLS: its context, and a new certificate in it whenever the files change."""
+    """The gateway's TLS: its context, with a new certificate whenever the files change."""
 
     def __init__(self, files: ServerFiles) -> None:
         """Read the files; raises AccessError when they cannot be used."""
@@ -156,11 +156,11 @@ class ServerTls:
         self._seen = _stamps(files)
         self.context = _server_context(files)
         self.until, self.names = _validity(files.certificate)
-        """Until when the certificate holds, and the names of this computer that it holds for."""
+        """End of the certificate's validity, and the names that it is valid for."""
         self._warn_of_expiry()
 
     def reload(self) -> bool:
-        """Take the certificate that lies there now for new connections; tell whether it can be used.
+        """Load the present certificate for new connections; return whether it can be used.
 
         One that cannot be used changes nothing.
         """
@@ -176,7 +176,7 @@ class ServerTls:
         return True
 
     async def watch(self) -> None:
-        """Reload whenever the files change, and warn once a day of an end that is near, until cancelled."""
+        """Reload whenever the files change, and warn once a day of a near expiry, until cancelled."""
         warned_at = time.monotonic()
         while True:
             await asyncio.sleep(WATCH_INTERVAL)
@@ -185,7 +185,7 @@ class ServerTls:
                 self._warn_of_expiry()
             stamps = _stamps(self._files)
             if stamps != self._seen:
-                # Both files are written one after the other: wait until they stand still.
+                # The files are written one after the other: wait until they no longer change.
                 await asyncio.sleep(WATCH_INTERVAL / 4)
                 if stamps == _stamps(self._files):
                     self._seen = stamps
@@ -208,7 +208,7 @@ def _server_context(files: ServerFiles) -> ssl.SSLContext:
     context.set_ciphers(CIPHERS)
     context.set_alpn_protocols(["http/1.1"])
     try:
-        # An encrypted key would ask for its password on the terminal, which a service does not have.
+        # An encrypted key would prompt for its password on a terminal, which a service lacks.
         context.load_cert_chain(files.certificate, files.key, password=_no_password)
     except ssl.SSLError as error:
         raise AccessError(
@@ -228,7 +228,7 @@ def _no_password() -> str:
 
 
 def _validity(certificate: Path) -> tuple[datetime.datetime, tuple[str, ...]]:
-    """Return until when a certificate holds, and for which names."""
+    """Return the end of a certificate's validity, and its names."""
     # A gateway without TLS starts without cryptography, which takes a tenth of the start to import.
     from .certificates import names_of, valid_until
 
@@ -243,24 +243,24 @@ def _stamps(files: ServerFiles) -> tuple[object, ...]:
         except OSError:
             stamps.append(None)
         else:
-            # The time of the last change of its owner or rights, too: it may be readable since then.
+            # Includes the time of the last change of owner or rights: it may be readable since then.
             stamps.append((status.st_mtime_ns, status.st_ctime_ns, status.st_ino, status.st_size))
     return tuple(stamps)
 
 
-# --- The gateway's port: how it is listened on, with the limits that hold before anybody is let in ---
+# --- The gateway's port: listening, with the limits before admission ---
 
 PING_INTERVAL = 5.0
 WRITE_LIMIT = 65_536
-"""bytes that wait in this process for a client before whoever sends to it has to wait too."""
+"""bytes buffered in this process for a client before its senders must wait."""
 
 SPARE_FILES = 512
-"""Files and connections to the database."""
+"""Number of files and database connections kept free."""
 ONE_ADDRESS = 65_536
-"""Connections that one address can have open with this port: silent ones are not to take the last file."""
+"""Connections that one address can have open with this port: silent ones must not use up all files."""
 
 BACKLOG = 1024
-"""Connections that wait to be taken: a whole fleet comes back in one moment when the gateway was away."""
+"""Connections that wait to be accepted: a whole fleet reconnects in one moment after an outage."""
 
 Handler = Callable[[ClientConnection], Awaitable[None]]
 Doorman = Callable[[ClientConnection, Request], Awaitable[Response | None]]
@@ -269,9 +269,9 @@ Doorman = Callable[[ClientConnection, Request], Awaitable[Response | None]]
 async def listen(
     gate: AuthGate, host: str, port: int, context: ssl.SSLContext | None, doorman: Doorman, handler: Handler
 ) -> Server:
-    """Listen; ``doorman`` tells who is let in, and ``handler`` serves them.
+    """Listen; ``doorman`` decides on admission, and ``handler`` serves the admitted.
 
-    :raises BridgeError: when the address cannot be listened on.
+    :raises BridgeError: when listening on the address fails.
     """
     _allow_connections(gate.limits)
     try:
@@ -299,12 +299,12 @@ async def listen(
 
 
 def files_needed(limits: LimitSettings) -> int:
-    """Return how many files the gateway has open when every connection is there that a site allows."""
+    """Return the number of open files with all connections that a site allows."""
     return limits.robots + limits.desks + limits.pending_per_address + SPARE_FILES
 
 
 def _allow_connections(limits: LimitSettings) -> None:
-    """Let this process hold so many connections beside its files, as far as the system allows."""
+    """Raise this process's limit of open files for so many connections, as far as the system allows."""
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
     needed = files_needed(limits)
     limit = needed + ONE_ADDRESS
@@ -318,7 +318,7 @@ def _allow_connections(limits: LimitSettings) -> None:
 
 
 def http_response(status: http.HTTPStatus, body: bytes, headers: Iterable[tuple[str, str]]) -> Response:
-    """Return what a page is answered with, after which its connection ends."""
+    """Return the response of a page, after which its connection ends."""
     every = [*headers, ("X-Content-Type-Options", "nosniff"), ("Connection", "close")]
     if status != http.HTTPStatus.NOT_MODIFIED:
         every.append(("Content-Length", str(len(body))))
@@ -326,7 +326,7 @@ def http_response(status: http.HTTPStatus, body: bytes, headers: Iterable[tuple[
 
 
 async def _ask(doorman: Doorman, connection: ClientConnection, request: Request) -> Response | None:
-    """Ask whether a visitor is let in; who meets a fault of the gateway's stays outside."""
+    """Ask whether a client is admitted; on an internal fault it is not."""
     if not _is_path(request.path):
         return connection.respond(http.HTTPStatus.BAD_REQUEST, "The path of the request cannot be read.\n")
     try:
@@ -345,7 +345,7 @@ def _is_path(path: str) -> bool:
 
 
 async def _serve(handler: Handler, connection: ClientConnection) -> None:
-    """Serve one connection; what goes wrong in that ends it alone, and is told to the log alone."""
+    """Serve one connection; an error ends only that connection, and is only logged."""
     try:
         await handler(connection)
     except Exception:

@@ -51,7 +51,7 @@ class _Content:
 
     @functools.cached_property
     def packed(self) -> bytes:
-        """The same compressed: for whoever asks first, not for those who start a gateway."""
+        """The same compressed: on the first request, not at the start of a gateway."""
         return gzip.compress(self.plain, mtime=0)
 
     @functools.cached_property
@@ -60,7 +60,7 @@ class _Content:
 
 
 class FieldPage:
-    """Answers requests for the page, its files and ``site.json``; nothing of the site is in the files."""
+    """Answers requests for the page, its files and ``site.json``; the files contain no site data."""
 
     def __init__(self, maps: SiteMaps) -> None:
         self._maps = maps
@@ -75,7 +75,7 @@ class FieldPage:
         self._making = asyncio.Lock()
 
     def serves(self, path: str) -> bool:
-        """Tell whether ``path`` is the page's or looks as if it were, of a site that has the page."""
+        """Return whether ``path`` belongs, or seems to belong, to the page, and the site has the page."""
         return self._maps.settings.field_page.served and (path == PAGE or path.startswith(f"{PAGE}/"))
 
     async def file(self, request: Request) -> Response:
@@ -87,7 +87,7 @@ class FieldPage:
         return await self._answer(request, content)
 
     async def site(self, request: Request) -> Response:
-        """Return the site as the page draws it, or 503 with the reason why it cannot be drawn."""
+        """Return the site for drawing, or 503 with the reason why it cannot be drawn."""
         site = self._maps.site
         async with self._making:
             if self._site is None or self._site[0] is not site:
@@ -114,7 +114,7 @@ class FieldPage:
         headers = [
             ("Content-Type", content.kind),
             ("ETag", content.tag),
-            # Looked for at each load: after an upgrade a phone has the new page at once.
+            # Revalidated at each load: after an upgrade a phone has the new page at once.
             ("Cache-Control", "no-cache"),
             ("Content-Security-Policy", self._policy(request)),
             ("Referrer-Policy", "no-referrer"),
@@ -125,13 +125,13 @@ class FieldPage:
         if content.tag in request.headers.get("If-None-Match", ""):
             return http_response(http.HTTPStatus.NOT_MODIFIED, b"", headers)
         if "gzip" in request.headers.get("Accept-Encoding", "") and len(content.plain) > _WORTH_PACKING:
-            # To compress one the first time takes milliseconds, in which robots' messages would wait.
+            # The first compression takes milliseconds, in which robots' messages would wait.
             packed = await asyncio.to_thread(getattr, content, "packed")
             return http_response(http.HTTPStatus.OK, packed, [*headers, ("Content-Encoding", "gzip")])
         return http_response(http.HTTPStatus.OK, content.plain, headers)
 
     def _policy(self, request: Request) -> str:
-        """Return what the page may load: its own files, its gateway's WebSocket, and the background map."""
+        """Return the content security policy: own files, the gateway's WebSocket, and the background map."""
         host = request.headers.get("Host", "")
         sockets = f" ws://{host} wss://{host}" if _HOST.fullmatch(host) else ""
         tiles = origin_of(self._maps.settings.field_page.tiles)
@@ -141,7 +141,7 @@ class FieldPage:
                 "script-src 'self'",
                 "style-src 'self'",
                 f"img-src 'self' data:{f' {tiles}' if tiles else ''}",
-                # Older browsers do not take 'self' for WebSockets.
+                # Older browsers do not accept 'self' for WebSockets.
                 f"connect-src 'self'{sockets}",
                 "manifest-src 'self'",
                 "base-uri 'none'",
@@ -152,7 +152,7 @@ class FieldPage:
 
 
 def origin_of(url: str) -> str:
-    """Return scheme, host and port of the address of tiles; empty where it has none."""
+    """Return scheme, host and port of a tile URL; empty if it has none."""
     parts = urlsplit(url)
     return f"{parts.scheme}://{parts.netloc}" if parts.netloc else ""
 
@@ -165,14 +165,14 @@ def _suffix(name: str) -> str:
     return "." + name.rpartition(".")[2]
 
 
-# --- The site as the page draws it: areas and lines on the earth, and where robots are there ---
+# --- The site for drawing: areas and lines in WGS 84, and the conversion of robots' positions ---
 
 MOST_POINTS = 60_000
-"""points of all that is drawn: some 300 kB on their way to a phone."""
+"""points of all drawn features: some 300 kB of transfer to a phone."""
 DIGITS = 7
 """decimals of a degree: a centimetre."""
 BESIDE = 0.25
-"""of the site's size on each side, within which robots are placed as well as on it."""
+"""share of the site's size on each side, within which robots are placed as accurately as on it."""
 METRES_PER_DEGREE = 111_320.0
 _GRID = 13
 _POWERS = [(i, j) for i in range(4) for j in range(4 - i)]
@@ -195,9 +195,9 @@ class EarthPolynomial(NamedTuple):
 
 
 def earth_polynomial(frame: SiteFrame, bounds: SiteBounds) -> EarthPolynomial:
-    """Return the way of places on and beside the site to the earth, as a browser computes it.
+    """Return the conversion of places on and beside the site to WGS 84, as computed by a browser.
 
-    :raises CrsError: when the site's CRS has no known place on the earth.
+    :raises CrsError: when the site's CRS cannot be converted to WGS 84.
     """
     to_lonlat = lonlat_of(frame)
     centre = ((bounds.x_min + bounds.x_max) / 2, (bounds.y_min + bounds.y_max) / 2)
@@ -216,12 +216,12 @@ def earth_polynomial(frame: SiteFrame, bounds: SiteBounds) -> EarthPolynomial:
 
 
 def site_outline(site: Site) -> dict[str, Any]:
-    """Return what the field page is told of ``site`` as values of JSON; all places as [lon, lat] in degrees.
+    """Return the outline of ``site`` for the field page as JSON values; places as [lon, lat] in degrees.
 
-    Keepouts come first, then roads, surfaces and the obstacles' outlines; what goes beyond MOST_POINTS is
-    left out, and named in ``left_out``.
+    Keepouts come first, then roads, surfaces and the obstacles' outlines; features beyond MOST_POINTS are
+    left out, and their kinds named in ``left_out``.
 
-    :raises CrsError: when the site's CRS has no known place on the earth.
+    :raises CrsError: when the site's CRS cannot be converted to WGS 84.
     """
     to_lonlat = lonlat_of(site.frame)
     budget = _Budget(MOST_POINTS)
@@ -263,10 +263,10 @@ class _Budget:
     def __init__(self, points: int) -> None:
         self._left = points
         self.left_out: list[str] = []
-        """The kinds of which something was left out."""
+        """The kinds of features left out."""
 
     def holds(self, kind: str, lines: Sequence[Points]) -> bool:
-        """Count ``lines`` and return whether they and all before are few enough."""
+        """Count ``lines`` and return whether the total is within the budget."""
         self._left -= sum(map(len, lines))
         if self._left < 0 and kind not in self.left_out:
             self.left_out.append(kind)

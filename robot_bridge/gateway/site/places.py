@@ -21,11 +21,11 @@ from ...core.sites.fences import Fences
 from ...core.sites.settings import SiteSettings
 from ...core.sites.site import Site
 
-# --- What the fleet needs of a site ---
+# --- Interface of a site for the fleet ---
 
 
 class ServedSite(Protocol):
-    """A site: its facts, its maps in the binary format, and what is drawn on them."""
+    """A site: its facts, its maps in the binary format, and the objects drawn on them."""
 
     @property
     def report(self) -> SiteReport:
@@ -33,97 +33,97 @@ class ServedSite(Protocol):
 
     @property
     def site(self) -> Site:
-        """The site as it was published last."""
+        """The site as last published."""
 
     @property
     def settings(self) -> SiteSettings:
         """The settings of the site."""
 
     def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies on the site."""
+        """Return whether (x, y), metres in the site frame, lies on the site."""
 
     @property
     def has_keepouts(self) -> bool:
-        """Tell whether there is any place where nobody may drive."""
+        """Return whether the site has any keepout."""
 
     def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
+        """Return the indices of ``tracks`` that enter a keepout, each with the keepout's name."""
 
     def keepouts_crossed(self, ways: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``ways`` that lead through a keepout in which neither end lies."""
+        """Return the indices of ``ways`` that cross a keepout in which neither end lies."""
 
     def fences(self) -> Fences:
-        """Return the areas that robots must not be in, with accepted objects; may take long.
+        """Return the areas forbidden to robots, with accepted objects; may take long.
 
-        The same as before where nothing has changed, and the same keepouts where only the objects have.
+        The same object while nothing has changed, and the same keepouts if only objects have.
         """
 
     def whole_map(self) -> bytes | None:
-        """Return the map of the whole site, None where it is larger than the site allows; may take long."""
+        """Return the map of the whole site, None if it is larger than the site allows; may take long."""
 
     def small_map_at_hand(self) -> EncodedMap | None:
-        """Return the map of the whole site if it is small and made already; waits for nothing."""
+        """Return the map of the whole site if it is small and built already; does not wait."""
 
     def map_at_once(self, place: tuple[float, float] | None) -> EncodedMap:
-        """Return the map of the whole site if small and at hand, else one of what is around ``place``."""
+        """Return the map of the whole site if small and at hand, else one around ``place``."""
 
     def is_quick(self, x: float, y: float, area: float) -> bool:
-        """Tell whether the map of such a square is made in a few milliseconds."""
+        """Return whether the map of such a square is built in a few milliseconds."""
 
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y)."""
 
     def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
-        """Return the road surface at each of ``points``; raises RefusedError for a CRS that leads nowhere."""
+        """Return the road surface at each of ``points``; raises RefusedError for an unusable CRS."""
 
     def to_site(self, points: Sequence[tuple[float, float]], crs: str) -> list[tuple[float, float]]:
         """Return ``points`` of ``crs``, x before y, in metres in the site frame.
 
-        Raises RefusedError for a CRS that leads nowhere, and for a point that has no place in the site's.
+        Raises RefusedError for an unusable CRS, and for a point that the site's CRS cannot represent.
         """
 
     def place_on_earth(
         self, lat: float, lon: float, heading: float | None
     ) -> tuple[tuple[float, float], float | None]:
-        """Return (x, y) and theta of a GPS position; raises RefusedError where the site has none."""
+        """Return (x, y) and theta of a GPS position; raises RefusedError if it has none."""
 
     def show(self, objects: Sequence[ObservationReport]) -> None:
         """Draw accepted objects, and no others, on the maps from now on."""
 
 
-# --- May a robot be sent there: is the place on the site, and the way outside its keepouts? ---
+# --- Checks of targets and ways: on the site, outside its keepouts ---
 
 Place = tuple[float, float]
 _ELSEWHERE = "choose a place or way outside it, or send it with an override"
 
 
 class Ground(Protocol):
-    """What is known of where a site reaches."""
+    """The extent of a site."""
 
     @property
     def report(self) -> SiteReport:
         """The facts of the site."""
 
     def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies on the site."""
+        """Return whether (x, y), metres in the site frame, lies on the site."""
 
 
 class Fenced(Protocol):
-    """What is known of where nobody may drive."""
+    """The keepouts of a site."""
 
     @property
     def has_keepouts(self) -> bool:
-        """Tell whether there is any place where nobody may drive."""
+        """Return whether the site has any keepout."""
 
     def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
+        """Return the indices of ``tracks`` that enter a keepout, each with the keepout's name."""
 
     def keepouts_crossed(self, ways: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``ways`` that lead through a keepout in which neither end lies."""
+        """Return the indices of ``ways`` that cross a keepout in which neither end lies."""
 
 
 def check_places(site: Ground, points: Iterable[tuple[float, float]]) -> None:
-    """Raise RefusedError for the first of ``points``, metres in the site frame, that is not on the site."""
+    """Raise RefusedError for the first of ``points`` (metres, site frame) outside the site."""
     for x, y in points:
         if not site.contains(x, y):
             x_min, y_min, x_max, y_max = site.report.bounds
@@ -134,14 +134,14 @@ def check_places(site: Ground, points: Iterable[tuple[float, float]]) -> None:
 
 
 def places_of(message: Command) -> list[tuple[float, float]]:
-    """Return the places that a command sends a robot to."""
+    """Return the places to which a command sends a robot."""
     if isinstance(message, SetPath):
         return message.points
     return [] if isinstance(message, Abort) else [(message.x, message.y)]
 
 
 async def check_keepouts(site: Fenced, messages: Sequence[Command]) -> None:
-    """Raise OverridableError for those of ``messages`` that send a robot into a keepout of the site."""
+    """Raise OverridableError if any of ``messages`` sends a robot into a keepout of the site."""
     refusals = [one for one in await keepout_refusals(site, messages) if one is not None]
     if refusals:
         raise OverridableError((found for one in refusals for found in one.found), _ELSEWHERE)
@@ -150,19 +150,18 @@ async def check_keepouts(site: Fenced, messages: Sequence[Command]) -> None:
 async def keepout_refusals(
     site: Fenced, messages: Sequence[Command], straight_from: Sequence[Place | None] | None = None
 ) -> list[OverridableError | None]:
-    """Return for each of ``messages`` why it must not be sent: it sends a robot into a keepout of the site.
+    """Return for each of ``messages`` a refusal if it sends a robot into a keepout of the site, else None.
 
-    Where a robot is told that it stands is not looked at. ``straight_from`` is for each of ``messages`` the
-    place that a robot drives straight to its target from, or to the first point of its path; None where it
-    does not do so or its place is not known: whoever stands in a keepout may come out of it, and nobody may
-    cross one.
+    Messages that set a robot's own position are not checked. ``straight_from`` has for each of ``messages``
+    the place from which the robot drives straight to its target or to the first point of its path; None if it
+    does not, or its place is unknown: a robot may leave a keepout, and none may cross one.
     """
     moving = [number for number, one in enumerate(messages) if isinstance(one, (SetPosEnd, SetPath))]
     refusals: list[OverridableError | None] = [None] * len(messages)
     if not moving or not site.has_keepouts:
         return refusals
     tracks: list[Track] = [places_of(messages[number]) for number in moving]
-    # All of them in one thread: a hop for each would take a thousand targets a thousand hops.
+    # All in one thread call: a thousand targets would otherwise need a thousand calls.
     for track, name in (await asyncio.to_thread(site.keepouts_entered, tracks)).items():
         refusals[moving[track]] = _refusal(tracks[track], name)
     straight = {
@@ -180,7 +179,7 @@ async def keepout_refusals(
 
 
 def crossing(way: Track, keepout: str, *, to_path: bool = False) -> str:
-    """Return that the straight way of a robot, to its target or ``to_path``, leads through a keepout."""
+    """Return the text that a robot's straight way, to its target or ``to_path``, crosses a keepout."""
     (x, y), (to_x, to_y) = way
     if to_path:
         return (
@@ -199,14 +198,14 @@ def _refusal(track: Track, keepout: str) -> OverridableError:
     return OverridableError([f"{what} the keepout {keepout!r}"], _ELSEWHERE)
 
 
-# --- Places that operators give in another CRS than the site's, brought into the site frame ---
+# --- Conversion of places in another CRS to the site frame ---
 
 BESIDE = 1000.0
-"""metres outside a site within which a way may be asked for."""
+"""metres outside a site within which a route may be requested."""
 
 
 class Georeferenced(Protocol):
-    """A site of which it is known where it lies."""
+    """A site with a known location."""
 
     @property
     def report(self) -> SiteReport:
@@ -262,7 +261,7 @@ def _task_at(task: QueueTask, places: list[Place]) -> QueueTask:
 async def _all_moved(
     site: Georeferenced, groups: Sequence[tuple[str | None, list[Place]]]
 ) -> list[list[Place]]:
-    """Return the places of each group in the site frame; all of one CRS in one go."""
+    """Return the places of each group in the site frame; all of one CRS in one call."""
     found: dict[str, list[Place]] = {}
     for crs in {crs for crs, _ in groups if crs is not None}:
         found[crs] = await _moved(
@@ -273,7 +272,7 @@ async def _all_moved(
 
 
 async def _moved(site: Georeferenced, places: Sequence[Place], crs: str, beside: float = 0.0) -> list[Place]:
-    # The first way from a CRS takes some hundredths of a second to find.
+    # The first transformation from a CRS takes some hundredths of a second to find.
     moved = await asyncio.to_thread(site.to_site, places, crs)
     for place, there in zip(places, moved, strict=True):
         if not _is_within(site, there, beside):

@@ -1,4 +1,4 @@
-"""Maps of the site in binary, with the objects that robots saw and operators accepted."""
+"""Maps of the site in the binary format, with accepted observations of robots."""
 
 from __future__ import annotations
 
@@ -30,25 +30,25 @@ from ...core.sites.frame import CrsTransform, GpsTransform, is_near
 from ...core.sites.settings import SiteSettings
 from ...core.sites.site import Site
 
-# --- What robots saw and operators accepted: new objects on the maps, and what is not there any more off
+# --- Accepted observations: new objects added to the maps, missing ones removed
 
 log = logging.getLogger(__name__)
 
 FIRST_ID = 1_000_000_000
-"""Obstacles from here on were seen by robots; those of the site's own layers are below."""
+"""Obstacle ids from here on are robots' observations; those of the site's own layers are below."""
 _IDS_EACH = 8
 """A window cuts the ring around an object into four chains at most."""
 _LARGEST_RADIUS = 50.0
-"""metres; what is larger has an outline of its own."""
+"""metres; larger objects have an outline of their own."""
 _ABOUT = 1.0
-"""metres by which the place of what is missing may be wrong."""
+"""metres of tolerance for the place of a missing object."""
 _SEMANTICS = "object"
 _HEIGHT = 1.0
-"""metres, where neither robot nor operator said; marked as an estimate."""
+"""metres, if neither robot nor operator gave it; marked as an estimate."""
 
 
 class ObservedArea(NamedTuple):
-    """Where an object is: the id of its obstacle, its name, and the ring around it, (n, 2)."""
+    """Area of an object: the id of its obstacle, its name, and its outline ring, (n, 2)."""
 
     id: int
     name: str
@@ -56,10 +56,10 @@ class ObservedArea(NamedTuple):
 
 
 class ObservedObjects:
-    """Accepted objects, each a ring around its place; ``radius`` is metres where nobody said it.
+    """Accepted objects, each a ring around its place; ``radius`` is the default in metres.
 
-    What operators agreed is not there any more is :attr:`missing`: observations by the ``src`` of the
-    obstacles that are left out. One that is elsewhere in another publication of the site is another obstacle.
+    :attr:`missing` are obstacles confirmed as gone: observations by the ``src`` of the obstacles that are
+    left out. An obstacle at another place in another publication of the site is a different one.
     """
 
     def __init__(self, objects: Sequence[ObservationReport], radius: float) -> None:
@@ -74,14 +74,14 @@ class ObservedObjects:
         return len(self._index)
 
     def areas(self) -> list[ObservedArea]:
-        """Return where the objects are, under what they are and the robot's id of them."""
+        """Return the areas of the objects, named by kind and the robot's id."""
         return [
             ObservedArea(_id(row.source), f"{_group(row.semantics)} {row.ext['id']}", row.points)
             for row in self._rows
         ]
 
     def texts(self, border: Border) -> list[GroupText]:
-        """Return the texts of those of the objects that lie in ``border``, in the order of their groups."""
+        """Return the texts of the objects in ``border``, in the order of their groups."""
         if not len(self._index):
             return []
         seen = self._numbered(self._index.map_of(Window.from_bounds(*border)).obstacles)
@@ -91,9 +91,9 @@ class ObservedObjects:
         )
 
     def join(self, robot_map: RobotMap) -> RobotMap:
-        """Return ``robot_map`` without what is missing, and with those of the objects that lie in it.
+        """Return ``robot_map`` without missing obstacles, and with the objects that lie in it.
 
-        They are grouped by what they are.
+        They are grouped by kind.
         """
         if self.missing:
             there = [one for one in robot_map.obstacles if not self._is_missing(one)]
@@ -111,7 +111,7 @@ class ObservedObjects:
         return any(_is_around(obstacle, one) for one in doubts)
 
     def _numbered(self, obstacles: Sequence[Obstacle]) -> list[Obstacle]:
-        """Return ``obstacles`` under ids that are those of the observations in every window."""
+        """Return ``obstacles`` with ids that are those of the observations in every window."""
         chains: Counter[str] = Counter()
         numbered = []
         for obstacle in obstacles:
@@ -123,7 +123,7 @@ class ObservedObjects:
 
 
 def _is_around(obstacle: Obstacle, doubt: ObservationReport) -> bool:
-    """Tell whether an obstacle is where a robot looked through it: its box is about that place."""
+    """Return whether an obstacle is where a robot found none: its box is about that place."""
     ends = np.concatenate([obstacle.a, obstacle.b])
     place = np.array([doubt.x, doubt.y])
     off = np.maximum(np.maximum(ends.min(axis=0) - place, place - ends.max(axis=0)), 0.0)
@@ -135,7 +135,7 @@ def _rows(objects: Sequence[ObservationReport], radius: float) -> Iterator[Outli
         try:
             yield _row(seen, radius)
         except (ValueError, TypeError, ArithmeticError) as error:
-            # One that cannot be drawn must not keep all others, and the whole map, from robots.
+            # An object that cannot be drawn must not keep the others, and the whole map, from robots.
             log.error("observation %s is not drawn: %s", seen.observation, error)
 
 
@@ -153,27 +153,27 @@ def _row(seen: ObservationReport, radius: float) -> OutlineRow:
 
 
 def _id(source: str) -> int:
-    """Return the obstacle's id of an observation, of which its chains have the next ones."""
+    """Return the obstacle id of an observation; its chains have the following ids."""
     return FIRST_ID + _IDS_EACH * int(source.rpartition(":")[2])
 
 
 def _group(semantics: str) -> str:
-    """Return the word by which the builder groups obstacles."""
+    """Return the word by which the map builder groups obstacles."""
     return semantics.partition(",")[0]
 
 
-# --- The site's facts and maps as the fleet sends them: binary, and the whole map made once ---
+# --- The site's facts and maps for the fleet: binary, the whole map built once ---
 
 AT_ONCE = 4000
-"""segments of a map that is made while a robot waits for its acknowledgement: some hundredths of a second."""
+"""segments of a map built while a robot waits for its acknowledgement: some hundredths of a second."""
 QUICK = 500
-"""segments of a map that is made in some 3 ms: another thread would hold the interpreter as long."""
+"""segments of a map built in some 3 ms: another thread would hold the interpreter as long."""
 STORED_AT_ONCE = 1_000_000
-"""bytes of a map that is stored meanwhile."""
+"""bytes of a map stored during that wait."""
 
 
 class MapContent(NamedTuple):
-    """What maps are made of: read at once, so that no map is half of one publication and half of the next."""
+    """The sources of maps, read at once, so that no map mixes two publications."""
 
     site: Site
     objects: ObservedObjects
@@ -184,7 +184,7 @@ def _encoded(drawn: MapContent) -> bytes | None:
     content = None if drawn.objects or drawn.objects.missing else site.whole_binary()
     if content is not None:
         return content if len(content) <= limit else None
-    # The size of a small one is known sooner than estimated.
+    # The size of a small one is known sooner than an estimate.
     if site.segment_count > AT_ONCE and site.is_too_large(limit):
         return None
     try:
@@ -196,7 +196,7 @@ def _encoded(drawn: MapContent) -> bytes | None:
 
 
 def _whole(drawn: MapContent) -> str | RobotMap:
-    """Return the whole map: from its stored texts, unless something of these is to be left out."""
+    """Return the whole map: from its stored texts, unless some of these must be left out."""
     site, objects = drawn
     if objects.missing:
         return objects.join(site.whole_map())
@@ -225,12 +225,12 @@ class SiteMaps:
         self._drawn = MapContent(site, self._drawn.objects)
 
     def note_problem(self, problem: str | None) -> None:
-        """Note why this gateway does not serve the site that was chosen for the fleet; None where it does."""
+        """Record why this gateway does not serve the site chosen for the fleet; None if it does."""
         self._problem = problem
 
     @property
     def site(self) -> Site:
-        """The site as it was published last."""
+        """The site as last published."""
         return self._site
 
     @property
@@ -240,7 +240,7 @@ class SiteMaps:
 
     @property
     def report(self) -> SiteReport:
-        """The facts of the site that operators are told."""
+        """The facts of the site, as sent to operators."""
         site, settings = self._site, self._site.settings
         return SiteReport(
             id=site.id,
@@ -258,16 +258,16 @@ class SiteMaps:
         )
 
     def contains(self, x: float, y: float) -> bool:
-        """Tell whether (x, y), metres in the site frame, lies on the site."""
+        """Return whether (x, y), metres in the site frame, lies on the site."""
         return self._site.contains(x, y)
 
     @property
     def has_keepouts(self) -> bool:
-        """Tell whether there is any place where nobody may drive."""
+        """Return whether the site has any keepout."""
         return bool(self._site.keepouts)
 
     def keepouts_entered(self, tracks: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``tracks`` that come into a keepout, each with that one's name."""
+        """Return the indices of ``tracks`` that enter a keepout, each with the keepout's name."""
         site = self._site
         if not site.keepouts:
             return {}
@@ -276,7 +276,7 @@ class SiteMaps:
         return {track: site.keepouts[area].label for track, area in index.entered(tracks).items()}
 
     def keepouts_crossed(self, ways: Sequence[Track]) -> dict[int, str]:
-        """Return the numbers of those of ``ways`` that lead through a keepout in which neither end lies.
+        """Return the indices of ``ways`` that cross a keepout in which neither end lies.
 
         Each with that keepout's name.
         """
@@ -288,7 +288,7 @@ class SiteMaps:
         return {number: name for number, name in found.items() if name is not None}
 
     def fences(self) -> Fences:
-        """Return the areas that robots must not be in: of the publication, and what operators accepted."""
+        """Return the areas forbidden to robots: those of the publication, and accepted objects."""
         drawn, made = self._drawn, self._fences
         if made is None or made[0] is not drawn:
             observed = FencedPolygons.of(drawn.objects.areas())
@@ -297,9 +297,9 @@ class SiteMaps:
         return made[1]
 
     def whole_map(self) -> bytes | None:
-        """Return the map of the whole site in the binary format, None where that is larger than allowed.
+        """Return the map of the whole site in the binary format, None if that is larger than allowed.
 
-        A large one takes as long as it takes to be made; whoever else asks meanwhile waits for the same.
+        A large one takes long to build; concurrent callers wait for the same one.
         """
         with self._making:
             drawn, made = self._drawn, self._whole_map
@@ -308,7 +308,7 @@ class SiteMaps:
             return made[1]
 
     def small_map_at_hand(self) -> EncodedMap | None:
-        """Return the map of the whole site if it is small and made already; waits for nothing."""
+        """Return the map of the whole site if it is small and built already; does not wait."""
         drawn, made = self._drawn, self._whole_map
         if made is None or made[0] is not drawn or made[1] is None or len(made[1]) > STORED_AT_ONCE:
             return None
@@ -330,7 +330,7 @@ class SiteMaps:
         return EncodedMap(encode(drawn.objects.join(part)), part.border, is_whole=False)
 
     def is_quick(self, x: float, y: float, area: float) -> bool:
-        """Tell whether :meth:`map_around` takes a few milliseconds at most, or refuses it as quickly."""
+        """Return whether :meth:`map_around` takes a few milliseconds at most, or refuses it as quickly."""
         site = self._site
         try:
             return site.has_index and site.segments_around(x, y, area) <= QUICK
@@ -340,7 +340,7 @@ class SiteMaps:
     def map_around(self, x: float, y: float, area: float) -> bytes:
         """Return the map of a square of ``area`` square metres centred on (x, y) in the binary format.
 
-        :raises RefusedError: when that square is none, being smaller than a map is exact.
+        :raises RefusedError: when that square is smaller than the precision of a map.
         """
         drawn = self._drawn
         try:
@@ -352,16 +352,15 @@ class SiteMaps:
         """Draw accepted objects, and no others, on the maps from now on."""
         site = self._site
         shown = list(objects), site.settings.observations.object_radius_m
-        # The map of a large site takes long to be made again.
+        # The map of a large site takes long to rebuild.
         if shown != self._shown:
             self._shown = shown
             self._drawn = MapContent(site, ObservedObjects(*shown))
 
     def surfaces_at(self, points: Sequence[tuple[float, float]], crs: str | None) -> list[Surface | None]:
-        """Return the road surface at each of ``points``, None where there is none.
+        """Return the road surface at each of ``points``, or None.
 
-        They are metres in the site frame, or in ``crs``, x before y. Raises RefusedError for a CRS that leads
-        nowhere.
+        They are metres in the site frame, or in ``crs``, x before y. Raises RefusedError for an unusable CRS.
         """
         site = self._site
         try:
@@ -375,7 +374,7 @@ class SiteMaps:
     def to_site(self, points: Sequence[tuple[float, float]], crs: str) -> list[tuple[float, float]]:
         """Return ``points`` of ``crs``, x before y, in metres in the site frame, to a tenth of a millimetre.
 
-        Raises RefusedError for a CRS that leads nowhere, and for a point that has no place in the site's.
+        Raises RefusedError for an unusable CRS, and for a point that the site's CRS cannot represent.
         """
         try:
             moved = self._any_crs.to_site(points, crs)

@@ -1,1 +1,1 @@
-"""Trajectories: which positions are stored, for how long, and how they leave the database."""
+"""Trajectories: selection, storage, export and archiving of positions."""

@@ -1,7 +1,7 @@
 """An archive of trajectories: each whole day (UTC) as one GeoParquet 1.1 file, written in bounded memory.
 
-A point for each stored position, as WKB in the site's CRS, in the order of time. pyarrow is imported here and
-by nothing else: ``robot-bridge trajectories archive`` alone uses this module.
+A point for each stored position, as WKB in the site's CRS, in the order of time. pyarrow is imported only
+here; only ``robot-bridge trajectories archive`` uses this module.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ _BOX = ("xmin", "ymin", "xmax", "ymax")
 
 @dataclass(frozen=True)
 class ArchivedDay:
-    """What was written of a day: where, how many positions, and of how many robots."""
+    """An archived day: its file, and the numbers of positions and robots."""
 
     file: Path
     positions: int
@@ -44,7 +44,7 @@ class ArchivedDay:
 def require_pyarrow() -> None:
     """Raise BridgeError where pyarrow is not installed."""
     try:
-        import pyarrow.parquet  # noqa: F401 - only whether it is there
+        import pyarrow.parquet  # noqa: F401 - only to see if it is installed
     except ImportError as error:
         raise BridgeError(
             f"an archive needs pyarrow ({error}); install it with: "
@@ -52,7 +52,7 @@ def require_pyarrow() -> None:
         ) from None
 
 
-# --- Which days ---
+# --- Choice of days ---
 
 
 def choose_days(
@@ -60,10 +60,10 @@ def choose_days(
 ) -> AsyncIterator[int]:
     """Return the days from ``first`` to ``last``, days since 1970-01-01, of which positions are stored.
 
-    Unless given, ``last`` is yesterday (UTC). Where old positions are deleted one by one (``keep_days``)
-    ``first`` is the first day of which none is deleted yet; where days are dropped whole, the oldest.
+    Unless given, ``last`` is yesterday (UTC). If old positions are deleted one by one (``keep_days``),
+    ``first`` is the first day without deletions; if days are dropped whole, the oldest.
 
-    :raises BridgeError: for a day that is not over at ``now``, and where no day is from first to last.
+    :raises BridgeError: for a day not over at ``now``, and if there is no day from first to last.
     """
     today = int(now // DAY)
     if last is not None and last >= today:
@@ -91,7 +91,7 @@ def day_name(day: int) -> str:
     return datetime.fromtimestamp(day * DAY, UTC).strftime("%Y-%m-%d")
 
 
-# --- From the database into files, each whole or not at all ---
+# --- Export from the database into files, each whole or not at all ---
 
 
 async def archive_days(
@@ -103,10 +103,10 @@ async def archive_days(
     replace: bool,
     report: Callable[[ArchivedDay], None],
 ) -> int:
-    """Write ``days`` into ``folder``, and report each; return how many were there and were left alone.
+    """Write ``days`` into ``folder``, and report each; return how many already existed and were kept.
 
-    :raises BridgeError: when a file cannot be written, and when a day is deleted on the way; StoreError for
-        the database. What was written before that stays.
+    :raises BridgeError: when a file cannot be written, and when a day is deleted meanwhile; StoreError for
+    the database. Files written before stay.
     """
     kept = 0
     async for day in days:
@@ -126,7 +126,7 @@ async def archive_days(
 
 
 async def _write_day(database: Database, day: int, frame: SiteFrame, file: Path) -> tuple[int, int]:
-    """Write ``file``; return how many positions, of how many robots."""
+    """Write ``file``; return the numbers of positions and robots."""
     with DayFile(file, frame) as written:
         query = TrajectoryQuery(since=day * DAY, until=math.nextafter((day + 1) * DAY, 0))
         begin = page = await database.run(trajectories.read, query, PAGE)
@@ -136,7 +136,7 @@ async def _write_day(database: Database, day: int, frame: SiteFrame, file: Path)
                 break
             after = PageMark(page[-1].received_at, page[-1].id)
             page = await database.run(trajectories.read, query, PAGE, after)
-        # What is too old is deleted oldest first, or the day at once.
+        # Old positions are deleted oldest first, or the day at once.
         if not begin or await database.run(trajectories.read, query, 1) != begin[:1]:
             raise BridgeError(
                 f"positions of {day_name(day)} were deleted or added while they were archived; that day is "
@@ -172,7 +172,7 @@ class DayFile:
         return self
 
     def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
-        """Write the end of the file, with what it says of its geometry."""
+        """Write the end of the file, with its geometry metadata."""
         if kind is None:
             self._writer.add_key_value_metadata(self._metadata())
         self._writer.close()
@@ -213,7 +213,7 @@ class DayFile:
             "covering": {"bbox": {name: ["bbox", name] for name in _BOX}},
         }
         geo = {"version": "1.1.0", "primary_column": "geometry", "columns": {"geometry": geometry}}
-        # Where x, y and theta are measured from.
+        # The frame of x, y and theta.
         own = {"crs": frame.crs, "origin": frame.origin, "rotation_deg": math.degrees(frame.rotation)}
         return {"geo": json.dumps(geo), "site_frame": json.dumps(own)}
 

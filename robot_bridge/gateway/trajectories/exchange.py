@@ -1,4 +1,4 @@
-"""Exchange of trajectories: a GeoPackage of positions and lines written, recorded drives read."""
+"""Exchange of trajectories: export to a GeoPackage, import of recorded drives."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from .recording import PositionThinning
 
 # --- Trajectories as a GeoPackage: every stored position, and the lines between them with times ---
 # Layer ``positions``: points with the site's coordinates and UTC times. Layer ``tracks``: one line for each
-# time a robot was under way, its measure M the time in seconds since 1970-01-01 UTC. The CRS is the site's.
+# drive of a robot, its measure M the time in seconds since 1970-01-01 UTC. The CRS is the site's.
 
 POSITIONS, TRACKS = "positions", "tracks"
 
@@ -45,7 +45,7 @@ class TrajectoryLine:
 
     @property
     def length(self) -> float:
-        """Metres from place to place."""
+        """Length in metres."""
         xy = np.asarray(self.rows)[:, 1:]
         return float(np.hypot(*np.diff(xy, axis=0).T).sum())
 
@@ -53,7 +53,7 @@ class TrajectoryLine:
 class TrajectoryFile:
     """Writes a GeoPackage of trajectories, page by page.
 
-    A robot that was not heard of for more than ``gap`` seconds begins a new track.
+    A robot silent for more than ``gap`` seconds begins a new track.
     """
 
     def __init__(self, file: Path, frame: SiteFrame, gap: float) -> None:
@@ -65,7 +65,7 @@ class TrajectoryFile:
         self.tracks = 0
 
     def add(self, places: Sequence[StoredPosition]) -> None:
-        """Write the next page of places, which come in the order of their time.
+        """Write the next page of places, in the order of their time.
 
         :raises BridgeError: when the file cannot be written.
         """
@@ -80,7 +80,7 @@ class TrajectoryFile:
         self._write_tracks(ended)
 
     def finish(self) -> None:
-        """Write the tracks that have no end yet."""
+        """Write the unfinished tracks."""
         open_tracks, self._open = list(self._open.values()), {}
         self._write_tracks(open_tracks)
 
@@ -106,7 +106,7 @@ class TrajectoryFile:
         self._write(TRACKS, "Measured LineString", _blobs(_line_blob(track) for track in lines), columns)
 
     def _write(self, layer: str, kind: str, geometry: Any, columns: dict[str, Any]) -> None:
-        projections()  # before pyogrio imports pyproj aloud
+        projections()  # before pyogrio imports pyproj with warnings
         try:
             write_geopackage_layer(self._file, layer, kind, geometry, columns, self._frame.crs)
         except OSError as error:
@@ -118,7 +118,7 @@ class TrajectoryFile:
 def position_columns(places: Sequence[StoredPosition], frame: SiteFrame) -> dict[str, Any]:
     """Return (n,) columns of ``places`` by name, in the site frame; times to the millisecond, UTC.
 
-    What is not known of a place is NaN. ``heading`` is in degrees, clockwise from grid north.
+    Unknown values are NaN. ``heading`` is in degrees, clockwise from grid north.
     """
     numbers = np.array(
         [
@@ -169,7 +169,7 @@ def _blobs(blobs: Iterable[bytes]) -> Any:
     return column
 
 
-# --- From the database into a GeoPackage, whole or not at all ---
+# --- Export from the database into a GeoPackage, whole or not at all ---
 
 PAGE = 20_000
 """positions read and written at once."""
@@ -178,9 +178,9 @@ PAGE = 20_000
 async def export_trajectories(
     database: Database, query: TrajectoryQuery, frame: SiteFrame, file: Path, gap: float
 ) -> TrajectoryFile:
-    """Write what ``query`` asks for into the new GeoPackage ``file``; return what was written.
+    """Write the result of ``query`` into the new GeoPackage ``file``; return the written file.
 
-    :raises BridgeError: for a robot of which nothing is stored, and when the file cannot be written;
+    :raises BridgeError: for a robot without stored positions, and when the file cannot be written;
         StoreError for the database.
     """
     await _check_robots(database, query.robots)
@@ -214,19 +214,19 @@ async def _copy(database: Database, query: TrajectoryQuery, written: TrajectoryF
     await asyncio.to_thread(written.finish)
 
 
-# --- Recorded drives into the database: where nothing is stored of a robot, thinned as the gateway does
+# --- Import of recorded drives, into times without stored positions, thinned as by the gateway
 
 log = logging.getLogger(__name__)
 
 BATCH = 5000
-"""positions in one transaction: a gateway that runs on the database waits no longer than for these."""
+"""positions in one transaction: a gateway running on the database waits for no more than these."""
 
 
 @dataclass(frozen=True)
 class RecordedDrive:
-    """What is recorded of ``robot`` from ``begin`` to ``end``, seconds since 1970.
+    """A recording of ``robot`` from ``begin`` to ``end``, seconds since 1970.
 
-    ``fixes`` are in the order of their times, and are gone through once.
+    ``fixes`` are in the order of their times, and are iterated once.
     """
 
     robot: str
@@ -236,17 +236,17 @@ class RecordedDrive:
 
     @property
     def span(self) -> str:
-        """Its times for people."""
+        """Its times as readable text."""
         return f"{_text(self.begin)} to {_text(self.end)}"
 
 
 async def import_drives(
     database: Database, drives: Sequence[RecordedDrive], settings: TrajectorySettings, now: float
 ) -> int:
-    """Store ``drives``, all or none; return how many positions of them were worth storing.
+    """Store ``drives``, all or none; return the number of positions stored after thinning.
 
-    :raises BridgeError: where positions of a robot are stored in the time of its drive, for drives that the
-        gateway would delete at once, and such that have not ended yet; StoreError for the database.
+    :raises BridgeError: if positions of a robot are stored in the time of its drive, for drives that the
+    gateway would delete at once, and for unfinished ones; StoreError for the database.
     """
     for drive in drives:
         _check_times(drive, settings, now)
@@ -267,7 +267,7 @@ async def import_drives(
                 count += len(batch)
     except BaseException:
         for drive in begun:
-            await _take_back(database, drive)
+            await _undo(database, drive)
         raise
     return count
 
@@ -286,7 +286,7 @@ def _check_times(drive: RecordedDrive, settings: TrajectorySettings, now: float)
         )
 
 
-async def _take_back(database: Database, drive: RecordedDrive) -> None:
+async def _undo(database: Database, drive: RecordedDrive) -> None:
     while await database.run(trajectories.forget_within, drive.robot, drive.begin, drive.end, BATCH):
         log.info("robot %s: positions are taken back", drive.robot)
 

@@ -27,14 +27,13 @@ from ..storage.repositories.robots import SOLE_FENCE, OwnerFence
 from ..storage.repositories.trajectories import Fix, PackedFix, PageMark, TrajectoryQuery, pack
 from ..storage.rows import Row
 
-# --- Which of a robot's positions are worth storing; no I/O ---
+# --- Thinning: which of a robot's positions are stored; no I/O ---
 
 
 class PositionThinning:
-    """Keeps what a robot's track needs: where it moved or turned, where it came to stand, and a sign of life.
+    """Keeps the positions that a track needs: movements, turns, stops, and one at intervals.
 
-    The last position of each robot that was not worth it is remembered, so that a robot that falls silent
-    is found where it was last.
+    The last skipped position of each robot is kept, so that a silent robot is stored at its last position.
     """
 
     def __init__(self) -> None:
@@ -42,7 +41,7 @@ class PositionThinning:
         self._passed: dict[str, Fix] = {}
 
     def keeps(self, fix: Fix, settings: TrajectorySettings) -> bool:
-        """Tell whether ``fix`` is to be stored; fixes of a robot come in the order of their time."""
+        """Return whether ``fix`` must be stored; fixes of a robot come in the order of their time."""
         last = self._kept.get(fix.robot)
         if last is None or _worth_it(last, fix, settings):
             self._kept[fix.robot] = fix
@@ -52,7 +51,7 @@ class PositionThinning:
         return False
 
     def silent(self, before: float = math.inf) -> list[Fix]:
-        """Return, once, the last fixes passed over of robots that said nothing since ``before``."""
+        """Return, once, the last skipped fixes of robots silent since ``before``."""
         found = [fix for fix in self._passed.values() if fix.received_at < before]
         for fix in found:
             self._kept[fix.robot] = self._passed.pop(fix.robot)
@@ -61,7 +60,7 @@ class PositionThinning:
 
 def _worth_it(last: Fix, fix: Fix, settings: TrajectorySettings) -> bool:
     elapsed = fix.received_at - last.received_at
-    # A clock that was set back must not end the recording until it has caught up.
+    # A clock set back must not stop the recording until it has caught up.
     if elapsed >= settings.max_interval_s or elapsed < 0:
         return True
     if elapsed < settings.min_interval_s:
@@ -76,21 +75,21 @@ def _moved(last: SendPos, pose: SendPos, settings: TrajectorySettings) -> bool:
     return turn >= math.radians(settings.min_turn_deg)
 
 
-# --- Positions on their way into the database: thinned, kept while it is away or slow ---
+# --- Queue of positions for the database: thinned, kept while it is away or slow ---
 
 log = logging.getLogger(__name__)
 
 BATCH = 5000
 """positions in one transaction: a few hundredths of a second of the database's thread."""
 LOOK_INTERVAL = 1.0
-"""seconds between two looks for robots that have fallen silent."""
+"""seconds between checks for robots that have fallen silent."""
 
 
 class TrajectoryRecorder:
-    """Collects positions and hands them out in batches; the ``site`` is asked for its settings each time.
+    """Collects positions and returns them in batches; the settings are read from ``site`` each time.
 
-    Where more than ``largest_backlog`` of them wait, the database is away or takes them more slowly than they
-    come: the oldest are given up, which is logged once and counted.
+    If more than ``largest_backlog`` wait, the database is away or slower than the positions: the oldest are
+    dropped, which is logged once and counted.
     """
 
     def __init__(self, site: SettingsSource) -> None:
@@ -103,21 +102,21 @@ class TrajectoryRecorder:
 
     @property
     def waiting(self) -> int:
-        """Return how many positions wait to be stored."""
+        """Return the number of positions that wait to be stored."""
         return len(self._waiting)
 
     def observe(self, fixes: Sequence[Fix]) -> None:
-        """Take in where robots are."""
+        """Receive positions of robots."""
         settings = self._site.settings.trajectories
         kept = [pack(fix) for fix in fixes if self._thinning.keeps(fix, settings)]
         if kept:
             self._waiting.extend(kept)
             if len(self._waiting) > settings.largest_backlog:
-                self._give_up_the_oldest()
+                self._drop_oldest()
 
     def next_batch(self, now: float) -> list[PackedFix]:
-        """Return the oldest positions to be stored; what cannot be stored is handed to :meth:`give_back`."""
-        # Not each time: it looks at every robot, and this is called for every few requests.
+        """Return the oldest positions to be stored; failed ones must be passed to :meth:`give_back`."""
+        # Not each time: it checks every robot, and this is called for every few requests.
         if not 0 <= now - self._looked_at < LOOK_INTERVAL:
             self._looked_at = now
             self._wait(self._thinning.silent(now - self._site.settings.trajectories.max_interval_s))
@@ -127,19 +126,19 @@ class TrajectoryRecorder:
         return [self._waiting.popleft() for _ in range(min(BATCH, len(self._waiting)))]
 
     def finish(self) -> None:
-        """Let the last position of every robot be stored, however near the one before: no more will come."""
+        """Queue the last position of every robot, however near the previous one: no more will come."""
         self._wait(self._thinning.silent())
 
     def give_back(self, fixes: Sequence[PackedFix]) -> None:
-        """Keep positions that could not be stored; they are the oldest."""
+        """Requeue positions that could not be stored, as the oldest."""
         self._waiting.extendleft(reversed(fixes))
-        self._give_up_the_oldest()
+        self._drop_oldest()
 
     def _wait(self, fixes: Iterable[Fix]) -> None:
         self._waiting.extend(map(pack, fixes))
-        self._give_up_the_oldest()
+        self._drop_oldest()
 
-    def _give_up_the_oldest(self) -> None:
+    def _drop_oldest(self) -> None:
         too_many = len(self._waiting) - self._site.settings.trajectories.largest_backlog
         if too_many <= 0:
             return
@@ -156,21 +155,21 @@ class TrajectoryRecorder:
         self.given_up += too_many
 
 
-# --- Where robots are and have been, on its way into the database, in an order in which nothing is lost
+# --- Storage of robots' tracks and current poses, in an order that loses nothing
 
 
 class WrittenRobots(NamedTuple):
-    """What came of storing robots: which somebody has removed, and which the database refused."""
+    """Outcome of storing robots: those removed by others, and those refused by the database."""
 
     removed: set[str]
     refused: set[str]
 
 
 class TrajectoryWriter:
-    """Stores positions, and then where robots are.
+    """Stores positions, and then robots' current poses.
 
-    In this order: a stored pose makes older ones late, and a request that is dealt with again tells one. So
-    where robots are is written only when no position waits, and none is on its way.
+    In this order: a stored pose makes older ones late, and a request processed again carries one. So current
+    poses are written only when no position waits or is being written.
     """
 
     def __init__(
@@ -188,41 +187,42 @@ class TrajectoryWriter:
         self._fence = fence
         self._unsaved: set[str] = set()
         self._stored: set[str] = set()
-        """robots that are stored, unless somebody has removed them from there."""
+        """robots that are stored, unless removed by others."""
         self._removed: set[str] = set()
         self._jotted: list[tuple[int, list[PackedFix]]] = []
-        """what a server may still forget, with the session in which it was written."""
+        """positions that a server may still lose, with the session in which they were written."""
         self._complained: set[str] = set()
-        """robots of which the log was told that something cannot be stored."""
+        """robots for which a storage error was logged."""
         self._writing = asyncio.Lock()
         self._begun = self._done = 0
-        """how often robots were written: the number of the last time, and of the last one that succeeded."""
+        """counts of writes of robots: the number of the last begun one, and of the last one that
+        succeeded."""
 
     def begin(self, robots: Iterable[str]) -> None:
-        """Go on with ``robots``, which an earlier gateway stored."""
+        """Continue with ``robots``, which an earlier gateway stored."""
         self._stored.update(robots)
 
     def drop(self, robots: Iterable[str]) -> None:
-        """Store nothing more of where robots are that another gateway has."""
+        """Stop storing poses of robots that another gateway owns."""
         self._unsaved.difference_update(robots)
         self._stored.difference_update(robots)
 
     def take_removed(self) -> set[str]:
-        """Return the robots that somebody has removed from the database since the last call."""
+        """Return the robots removed from the database by others since the last call."""
         removed, self._removed = self._removed, set()
         return removed
 
     def observe(self, now: float, poses: Sequence[RobotPose]) -> None:
-        """Have the places of robots stored."""
+        """Queue poses of robots."""
         self._unsaved.update([robot for robot, _ in poses])
         self._recorder.observe([Fix(robot, now, pose) for robot, pose in poses])
 
     def touch(self, robot: str) -> None:
-        """Have what is known of a robot stored again."""
+        """Have the state of a robot stored again."""
         self._unsaved.add(robot)
 
     async def save(self, *robots: str) -> None:
-        """Store where robots have been and are, those of ``robots`` in any case; raises StoreError.
+        """Store tracks and current poses, those of ``robots`` in any case; raises StoreError.
 
         Whoever waits meanwhile for robots of his own has them stored together with all others, or alone where
         somebody else has locked what those need.
@@ -238,8 +238,7 @@ class TrajectoryWriter:
     async def write_with(self, work: Callable[..., None], *arguments: Any, lasting: bool = False) -> None:
         """Do ``work(connection, *arguments, positions)`` in one transaction with the positions that wait.
 
-        Unless it is ``lasting`` a power cut may undo it; the positions are then stored again. Raises
-        StoreError.
+        Unless ``lasting``, a power cut may undo it; the positions are then stored again. Raises StoreError.
         """
         await to_its_end(self._write_with(work, arguments, lasting=lasting))
 
@@ -252,7 +251,7 @@ class TrajectoryWriter:
             try:
                 await write(work, *arguments, fixes)
             except DataRefusedError:
-                # One of the positions is refused, or something of the work: each is stored by itself.
+                # A position or part of the work is refused: each is stored separately.
                 await self._write_or_give_back(fixes)
                 fixes = []
                 await write(work, *arguments, fixes)
@@ -269,12 +268,12 @@ class TrajectoryWriter:
                 self._jotted.append((session, fixes))
 
     async def _save(self, begun: int | None) -> None:
-        """Store robots; those who wait for some of which no more had been written than ``begun`` says."""
+        """Store robots, unless a write after number ``begun`` has already done so."""
         async with self._writing:
             if begun is not None and self._done > begun:
-                # Written by whoever had the turn before, since this was asked for.
+                # Already written by the previous holder of the lock, after this was requested.
                 return
-            self._take_back()
+            self._requeue_lost()
             while True:
                 fixes = self._recorder.next_batch(self._clock.time())
                 last, unsaved = not self._recorder.waiting, set[str]()
@@ -282,7 +281,7 @@ class TrajectoryWriter:
                     unsaved, self._unsaved = self._unsaved, set()
                     self._begun += 1
                 try:
-                    # As they are now: by the time they are written they may be further on than is stored.
+                    # As they are now: when they are written they may be ahead of the stored positions.
                     known = [
                         stored_robots.row(self._robots.get(name)) for name in unsaved if name in self._robots
                     ]
@@ -296,8 +295,8 @@ class TrajectoryWriter:
                 self._removed |= written.removed
                 self._stored.update(row[0] for row in known if row[0] not in written.refused)
                 self._stored -= written.removed
-                taken_back = self._take_back()
-                # Now that this is stored for good, so is what was jotted down before in the same session.
+                taken_back = self._requeue_lost()
+                # With this commit, earlier relaxed writes of the same session are durable, too.
                 self._jotted.clear()
                 if last and not taken_back:
                     return
@@ -311,7 +310,7 @@ class TrajectoryWriter:
             self._stored -= written.removed
 
     async def _write(self, known: Sequence[Row], fixes: Sequence[PackedFix]) -> WrittenRobots:
-        """Store robots and positions; of what the database refuses as data only that is left out."""
+        """Store robots and positions; only data that the database refuses is left out."""
         try:
             return WrittenRobots(
                 await self._database.run(_write, known, fixes, self._stored, self._fence), set()
@@ -334,10 +333,10 @@ class TrajectoryWriter:
             self._recorder.give_back(fixes)
             raise
 
-    def _take_back(self) -> bool:
-        """Have that stored again which was jotted down in a session that has ended; tell whether any was.
+    def _requeue_lost(self) -> bool:
+        """Requeue relaxed writes of an ended session; return whether there were any.
 
-        The server may have died, and have forgotten it.
+        The server may have died and lost them.
         """
         session = self._database.session
         forgotten = [fixes for number, fixes in self._jotted if number != session]
@@ -350,7 +349,7 @@ class TrajectoryWriter:
 def _halves(
     known: Sequence[Row], fixes: Sequence[PackedFix]
 ) -> list[tuple[Sequence[Row], Sequence[PackedFix]]] | None:
-    """Return robots and positions in two parts; None for what cannot be parted."""
+    """Return robots and positions in two parts; None if they cannot be split."""
     if known and fixes:
         return [(known, []), ([], fixes)]
     if len(known) > 1:
@@ -369,9 +368,9 @@ def _write(
     stored: Set[str],
     fence: OwnerFence,
 ) -> set[str]:
-    """Write robots and positions; return those of the robots ``stored`` that are there no more.
+    """Write robots and positions; return those of the robots ``stored`` that are no longer there.
 
-    They are not written again: somebody has removed them. Nor are robots that another gateway has.
+    They are not written again: they were removed. Nor are robots that another gateway owns.
     """
     removed = fence.missing(connection, stored)
     gone = removed | fence.lost(connection, [row[0] for row in robots])
@@ -380,7 +379,7 @@ def _write(
     return removed
 
 
-# --- A page of where robots have been, as an operator asks for it ---
+# --- Pages of stored positions for operators ---
 
 
 class TrajectoryPages:
