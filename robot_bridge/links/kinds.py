@@ -1,4 +1,4 @@
-"""The kinds of links. A kind is imported when it is asked for: none needs what only others need."""
+"""The kinds of links. A kind is imported on demand: none needs the packages of others."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .base.settings import LinkSettings
 class Kind:
     """A kind of link: ``module`` has ``load(file)``, which returns its settings and its adapter.
 
-    ``extra`` is what of this project's optional packages it needs, as pip is asked for it.
+    ``extra`` is this project's optional extra that it needs, as named to pip.
     """
 
     module: str
@@ -32,11 +32,11 @@ KINDS = {
     "tracker": Kind("tracker.adapter", "Phones and GPS receivers: seen, and not commanded."),
     "vda5050": Kind("vda5050.adapter", "Vehicles that speak VDA 5050, over an MQTT broker.", "vda5050"),
 }
-"""Kinds by the names that the command line and the settings give them."""
+"""Kinds by their names on the command line and in the settings."""
 
 
 def load(kind: str, file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return what the settings in ``file`` say of a link of ``kind``, and its adapter.
+    """Return the settings in ``file`` of a link of ``kind``, and its adapter.
 
     :raises LinkError: for settings that cannot be used, and for a package that is missing.
     """

@@ -1,1 +1,1 @@
-"""What all adapters share: settings, frames, the connection to the gateway, and what outlives a restart."""
+"""Shared parts of all adapters: settings, frames, connection to the gateway, persistent memory."""

@@ -15,14 +15,14 @@ from .errors import CommandRefusedError
 from .frames import LinkFrame
 from .settings import LinkSettings
 
-# --- What an adapter tells the gateway of its robots, and what it may know of the gateway's site ---
+# --- Interface from the adapter to the gateway: reports on robots, and the gateway's site ---
 
 
 class Link(Protocol):
-    """The way to the gateway, as an adapter has it: all methods are called in the adapter's loop.
+    """The gateway as seen by an adapter: all methods are called in the adapter's loop.
 
-    What is said of a robot while the gateway does not listen is left out where it would be old (positions),
-    and kept where it counts (:meth:`stopped`, :meth:`give_up`, :meth:`ask`).
+    Reports made while the gateway is away are dropped if they would be old (positions), and kept if they
+    matter (:meth:`stopped`, :meth:`give_up`, :meth:`ask`).
     """
 
     @property
@@ -39,11 +39,11 @@ class Link(Protocol):
 
     @property
     def largest_image_bytes(self) -> int:
-        """How large an image may be; a larger one would end the connection."""
+        """Largest size of an image in bytes; a larger one would end the connection."""
 
     @property
     def is_connected(self) -> bool:
-        """Whether the gateway listens."""
+        """Whether the gateway has admitted this link."""
 
     @property
     def robots(self) -> list[str]:
@@ -52,37 +52,37 @@ class Link(Protocol):
     def add(self, robot: str, abilities: Sequence[Ability] = (), *, path_cones: bool = False) -> None:
         """Speak for ``robot`` from now on; without ``abilities`` it is seen and not commanded.
 
-        Said again, with what it can do now, the gateway is told that.
+        Called again, it reports changed abilities to the gateway.
 
-        :raises MessageError: for a name that no robot can have.
+        :raises MessageError: for an invalid name of a robot.
         """
 
     def remove(self, robot: str) -> None:
-        """Speak for ``robot`` no more: it becomes stale and lost, or is offline where it said Stopped."""
+        """Stop speaking for ``robot``: it becomes stale and lost, or offline after a Stopped."""
 
     def restarted(self, robot: str) -> None:
-        """Note that the robot has started anew and forgotten its tasks: what is open is sent once more."""
+        """Record that the robot has restarted and forgotten its tasks: open messages are sent again."""
 
     def adrift(self, robot: str) -> None:
-        """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all.
+        """Record that ``robot`` may execute a task not requested under this name: it is stopped first.
 
-        Its open commands have failed then.
+        Its open commands fail.
         """
 
     def position(self, robot: str, position: SendPos | SendGPS) -> None:
-        """Tell where ``robot`` is; of several within a moment the last is told, and none that is old."""
+        """Report a position of ``robot``; of several within a moment the last is sent, and no old one."""
 
     def alive(self, robot: str) -> None:
-        """Tell that ``robot`` is there; at least every second while it says nothing else."""
+        """Report that ``robot`` is alive; call at least every second without other reports."""
 
     def stopped(self, robot: str) -> None:
-        """Tell that ``robot`` stands and has nothing to do: kept until the gateway has acknowledged it."""
+        """Report that ``robot`` stands and is idle; kept until the gateway has acknowledged it."""
 
     def give_up(self, robot: str, command: int, reason: str) -> None:
-        """Tell that ``robot`` gave up a command that it had taken on; ``reason`` is for operators."""
+        """Report that ``robot`` gave up an accepted command; ``reason`` is for operators."""
 
     async def ask(self, robot: str, request: Request) -> OpAck:
-        """Say what is acknowledged, such as SetObject, SendImage or GetMap; return the acknowledgement.
+        """Send an acknowledged request, such as SetObject, SendImage or GetMap; return the acknowledgement.
 
         It is kept over reconnects until then. Give an observation a ``source``, so that it is stored once.
 
@@ -92,7 +92,7 @@ class Link(Protocol):
     async def areas(self, box: tuple[float, float, float, float]) -> SiteAreas:
         """Return the site's keepouts and roads that touch ``box``: x_min, y_min, x_max, y_max, site frame.
 
-        Asked again on each new connection until the gateway has answered.
+        The request is repeated on each new connection until the gateway has answered.
 
         :raises CommandRefusedError: when the gateway refuses it, with its reason.
         """
@@ -105,32 +105,32 @@ class Link(Protocol):
         counts: dict[str, float] | None = None,
         reached: bool = False,
     ) -> None:
-        """Tell how the link's own side is: ``ok`` false is an alarm for operators.
+        """Report the state of the link's own side: ``ok`` false is an alarm for operators.
 
-        ``reached`` where that is the matter with some of its robots, and none is out of reach.
+        Set ``reached`` if only some of its robots have faults, and none is out of reach.
         """
 
 
 MOST_FAULTS = 3
-"""that are told in words."""
+"""faults given as text."""
 
 
 def summary(faults: Sequence[str]) -> str | None:
-    """Return what is the matter with robots, as one line for operators; None for nothing."""
+    """Return the faults of robots as one line for operators; None without faults."""
     more = f" (and {len(faults) - MOST_FAULTS} more)" if len(faults) > MOST_FAULTS else ""
     return "; ".join(faults[:MOST_FAULTS]) + more or None
 
 
-# --- What an adapter is: one kind of robots, as its process drives it and is driven by it ---
+# --- Interface of an adapter: one kind of robots, called by the link's process ---
 
 
 @dataclass(frozen=True)
 class Command:
     """A message for ``robot``: SetPosEnd, SetPath, SetPosIni, SetMap or SetSurface, metres in the site frame.
 
-    ``id`` tells it from every other message of the gateway's database, and stays the same however often the
-    message is sent. ``again``: an earlier process began it, and died before it noted what came of it. Whoever
-    makes the id of an order or a goal from ``id`` gives the robot's side the means to do it once.
+    ``id`` identifies it among all messages of the gateway's database, and stays the same when it is sent
+    again. ``again``: an earlier process began it, and died before it recorded the outcome. An order or goal
+    id derived from ``id`` lets the robot's side execute it once.
     """
 
     robot: str
@@ -145,46 +145,47 @@ class Adapter(ABC):
     kind: ClassVar[str]
     """Its name on the command line."""
     holds_s: float = 0.0
-    """seconds for which it may hold a command before the robot's side is asked."""
+    """seconds for which it may hold a command before sending it to the robot's side."""
 
     @abstractmethod
     async def run(self, link: Link) -> None:
-        """Connect to the robots' side and tell ``link`` what happens there, until cancelled.
+        """Connect to the robots' side and report to ``link``, until cancelled.
 
-        It is called once the gateway has told the site, so that ``link.frame`` is known. What it raises ends
-        the process; raise LinkError for what a person has to put right.
+        It is called once the gateway has sent the site, so that ``link.frame`` is known. Its errors end the
+        process; raise LinkError for faults that a person must put right.
         """
 
     @abstractmethod
     async def command(self, command: Command) -> None:
-        """Have the robot take on ``command``; return when it has.
+        """Have the robot accept ``command``; return when it has.
 
         Commands of one robot come one at a time, in order. When an Abort comes this is cancelled, and
         :meth:`stop` is called.
 
-        :raises CommandRefusedError: when the robot will not do it.
+        :raises CommandRefusedError: when the robot refuses it.
         """
 
     @abstractmethod
     async def stop(self, robot: str, *, emergency: bool) -> None:
-        """Have the robot give up what it does and stand; return when it has taken that on.
+        """Have the robot drop its task and stand; return when it has accepted that.
 
-        Called at once, whatever else goes on, and for each robot by itself. Called again it does the same.
+        Called at once, concurrently with other calls, for each robot separately. Called again it does the
+        same.
 
         :raises CommandRefusedError: when the robot's side does not answer, or refuses.
         """
 
     def playback(self, change: Playback) -> PlaybackReport:
-        """Play a recording otherwise from now on, and return how it is played.
+        """Change the playback of a recording, and return its state.
 
-        :raises CommandRefusedError: when there is none, or it cannot be played so.
+        :raises CommandRefusedError: when there is none, or the change is impossible.
         """
         raise CommandRefusedError(f"a link of kind {self.kind} plays no recording")
 
     def admitted(self, robot: str) -> None:
-        """Note that the gateway has let ``robot`` in: tell where it is, if that is known."""
+        """Handle the admission of ``robot`` by the gateway: report its position, if known."""
         return
 
     def refused(self, robot: str, reason: str) -> None:
-        """Note that the gateway does not let ``robot`` in; it is asked again by itself."""
+        """Handle the refusal of ``robot`` by the gateway; the request is repeated automatically."""
         return

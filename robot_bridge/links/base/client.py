@@ -1,4 +1,4 @@
-"""Client of the gateway's ``/link``: the robots that it speaks for, and nothing done twice."""
+"""Client of the gateway's ``/link``: the robots that it speaks for; no message is executed twice."""
 
 from __future__ import annotations
 
@@ -38,16 +38,16 @@ from .settings import LinkSettings
 log = logging.getLogger(__name__)
 
 SAY_AGAIN = 1.0
-"""seconds after which is said once more what the gateway could not store."""
+"""seconds until a message that the gateway could not store is sent again."""
 MEMORY_EVERY = 2.0
-"""seconds after which it is tried once more to write what a full disk did not take."""
+"""seconds between attempts to write what a full disk refused."""
 
 
 class LinkClient:
     """The robots that an adapter speaks for at the gateway: its :class:`.adapter.Link`.
 
-    Of what lay on a connection while this program stood still for ``longest_pause_s`` seconds only an Abort
-    is done: see :class:`.link_websocket.LinkWebSocket`.
+    Of messages received while this program stood still for ``longest_pause_s`` seconds only an Abort is
+    executed: see :class:`.link_websocket.LinkWebSocket`.
     """
 
     def __init__(
@@ -65,20 +65,21 @@ class LinkClient:
         self._robots: dict[str, LinkedRobot] = {}
         self._commanding = self._new_commanding()
         self._calming: dict[str, asyncio.Task[None]] = {}
-        """What stops robots that are adrift."""
+        """Tasks that stop robots adrift."""
         self._is_welcome = False
         self._status = LinkStatus(ok=True)
         self._reported_fault: str | None = None
         self._refused: dict[str, str] = {}
-        """Why the gateway does not let robots in, such as one of a name that another link speaks for."""
+        """Why the gateway refuses robots, such as one whose name another link speaks for."""
         self._site: SiteReport | None = None
         self._frame: LinkFrame | None = None
         self._is_known = asyncio.Event()
         self._areas: dict[asyncio.Future[SiteAreas], tuple[float, float, float, float]] = {}
-        """What was asked of the site, and not answered yet."""
+        """Requests for areas of the site without an answer yet."""
         self.largest_image_bytes = 0
 
-    # --- what an adapter is told ----------------------------------------------------------------------------
+    # --- information for the adapter
+    # ----------------------------------------------------------------------------
 
     @property
     def settings(self) -> LinkSettings:
@@ -99,7 +100,7 @@ class LinkClient:
 
     @property
     def is_connected(self) -> bool:
-        """Whether the gateway listens."""
+        """Whether the gateway has admitted this link."""
         return self._is_welcome
 
     @property
@@ -108,70 +109,70 @@ class LinkClient:
         return list(self._robots)
 
     async def site_known(self) -> None:
-        """Return when the gateway has told which site it serves."""
+        """Wait until the gateway has sent its site."""
         await self._is_known.wait()
 
-    # --- what it tells of robots ----------------------------------------------------------------------------
+    # --- reports on robots ----------------------------------------------------------------------------
 
     def add(self, robot: str, abilities: Sequence[Ability] = (), *, path_cones: bool = False) -> None:
-        """Speak for ``robot`` from now on; say Ready once more for one that can do something else now."""
+        """Speak for ``robot`` from now on; send Ready again for one whose abilities changed."""
         known = self._robots.get(robot)
         if known is not None:
             if known.change(tuple(abilities), path_cones) and self._is_welcome:
                 known.lose()
-                self._say_ready(known)
+                self._send_ready(known)
             return
         check_robot_name(robot)
         self._robots[robot] = known = LinkedRobot(robot, tuple(abilities), path_cones)
         self._memory.magic(robot)
         if self._is_welcome:
-            self._say_ready(known)
+            self._send_ready(known)
 
     def remove(self, robot: str) -> None:
-        """Speak for ``robot`` no more."""
+        """Stop speaking for ``robot``."""
         known = self._robots.pop(robot, None)
-        self._note_refusal(robot, None)
+        self._record_refusal(robot, None)
         if known is not None:
             self._commanding.drop(robot)
             for kept in known.kept:
                 kept.answer.cancel()
 
     def restarted(self, robot: str) -> None:
-        """Note that the robot has started anew: what is open is sent once more."""
+        """Record that the robot has restarted: open messages are sent again."""
         known = self._robots[robot]
         self._memory.renew(robot)
         self._commanding.drop(robot)
         if self._is_welcome:
             known.lose()
-            self._say_ready(known)
+            self._send_ready(known)
 
     def adrift(self, robot: str) -> None:
-        """Note that ``robot`` may do what nobody asked of it under this name: it is stopped first of all."""
+        """Record that ``robot`` may execute a task not requested under this name: it is stopped first."""
         self._memory.set_adrift(robot)
         known = self._robots.get(robot)
         if known is not None and self._is_welcome:
             known.lose()
-            self._say_ready(known)
+            self._send_ready(known)
 
     def position(self, robot: str, position: SendPos | SendGPS) -> None:
-        """Tell where ``robot`` is."""
+        """Report the position of ``robot``."""
         known = self._robots[robot]
         known.place(position)
         self._connection.write_soon()
 
     def alive(self, robot: str) -> None:
-        """Tell that ``robot`` is there."""
+        """Report that ``robot`` is alive."""
         self._robots[robot].is_alive = True
         self._connection.write_soon()
 
     def stopped(self, robot: str) -> None:
-        """Tell that ``robot`` stands and has nothing to do."""
+        """Report that ``robot`` stands and is idle."""
         self._keep(robot, Stopped())
 
     def give_up(self, robot: str, command: int, reason: str) -> None:
-        """Tell that ``robot`` gave up a command that it had taken on."""
+        """Report that ``robot`` gave up an accepted command."""
         if not self._memory.has_begun(robot, command):
-            # Of another database, where this number is another command's.
+            # From another database, in which this id is another command's.
             log.warning(
                 "robot %s gave up message %d, which is none of this gateway: %s", robot, command, reason
             )
@@ -179,11 +180,11 @@ class LinkClient:
         self._keep(robot, OpAck(id=command, ok=False, reason=reason))
 
     async def ask(self, robot: str, request: Request) -> OpAck:
-        """Say what is acknowledged; return the acknowledgement."""
+        """Send an acknowledged request; return the acknowledgement."""
         return await self._keep(robot, request)
 
     async def areas(self, box: tuple[float, float, float, float]) -> SiteAreas:
-        """Ask for the site's keepouts and roads in a box."""
+        """Request the site's keepouts and roads in a box."""
         answer: asyncio.Future[SiteAreas] = asyncio.get_running_loop().create_future()
         self._areas[answer] = box
         if self._is_welcome:
@@ -201,17 +202,17 @@ class LinkClient:
         counts: dict[str, float] | None = None,
         reached: bool = False,
     ) -> None:
-        """Tell how the link's own side is."""
+        """Report the state of the link's own side."""
         status = LinkStatus(ok, text, counts or {}, None if ok else reached or None)
         if status != self._status:
             self._status = status
             if self._is_welcome:
-                self._say_status()
+                self._send_status()
 
     # --- the connection -------------------------------------------------------------------------------------
 
     async def run(self) -> None:
-        """Carry messages until cancelled; raises LinkError for what a person has to put right."""
+        """Carry messages until cancelled; raises LinkError for faults that a person must put right."""
         watching = asyncio.create_task(self._watch_memory())
         try:
             await self._connection.run(self)
@@ -219,19 +220,19 @@ class LinkClient:
             watching.cancel()
 
     def lose(self) -> None:
-        """Go by a connection that is lost: no robot is let in until the next one."""
+        """Handle a lost connection: no robot is admitted until the next one."""
         self._is_welcome = False
         self._refused.clear()
         for robot in self._robots.values():
             robot.lose()
 
     def pass_over(self, seconds: float) -> None:
-        """Drop what was not begun: this program stood still for so many ``seconds``."""
+        """Drop commands not begun: this program stood still for so many ``seconds``."""
         for name in self._robots:
             self._commanding.drop(name, f"the link stood still for {seconds:.0f} s before it was begun")
 
     def news(self) -> list[str | bytes]:
-        """Return the frames of what is new of the robots' places."""
+        """Return the frames with new positions of robots."""
         if not self._is_welcome:
             return []
         frames: list[str | bytes] = []
@@ -250,10 +251,11 @@ class LinkClient:
                 frames.append(jsonrpc.call(Alive.__name__, {"robot": robot.name}))
         return frames
 
-    # --- what comes in --------------------------------------------------------------------------------------
+    # --- incoming messages
+    # --------------------------------------------------------------------------------------
 
     def handle(self, call: jsonrpc.Call) -> None:
-        """Deal with a call of the gateway; raises LinkError and MessageError."""
+        """Process a call of the gateway; raises LinkError and MessageError."""
         params = dict(call.params) if isinstance(call.params, dict) else {}
         robot = params.pop("robot", None)
         # In Start, and in a notification when they have changed.
@@ -268,27 +270,27 @@ class LinkClient:
         elif call.method == Abort.__name__ and robot is None:
             for name, known in list(self._robots.items()):
                 if not known.is_only_seen:
-                    # What goes wrong with one robot keeps the stop from no other.
+                    # An error with one robot must not keep the stop from others.
                     with log_and_continue(log, f"stopping robot {name!r}"):
                         self._stop(name, f"{name}/{params.get('call')}", emergency=True)
         elif robot in self._robots:
-            self._take_answer(robot, call, params)
+            self._receive_answer(robot, call, params)
         elif call.id is not None:
             text = f"this link does not speak for robot {robot!r}"
             self._connection.post(jsonrpc.error(call.id, jsonrpc.REFUSED, text))
 
     def _played(self, id: int | str | None, params: dict[str, Any]) -> str:
-        """Return the reply to a gateway that has a recording played otherwise."""
+        """Return the reply to a change of playback by the gateway."""
         try:
             return jsonrpc.result(id, to_json(self._adapter.playback(msgspec.convert(params, Playback))))
         except (msgspec.ValidationError, MessageError, CommandRefusedError) as error:
             return jsonrpc.error(id, jsonrpc.REFUSED, str(error))
 
-    def _take_answer(self, robot: str, call: jsonrpc.Call, params: dict[str, Any]) -> None:
+    def _receive_answer(self, robot: str, call: jsonrpc.Call, params: dict[str, Any]) -> None:
         try:
             answer = decode_answer(call.method, params)
         except MessageError as error:
-            # Of a newer gateway, which would send it for ever if nobody refused it.
+            # From a newer gateway, which would repeat it for ever unless refused.
             log.error("robot %s: the gateway said what this link does not know: %s", robot, error)
             if call.id is not None:
                 text = f"this link does not know it: {error}"
@@ -316,14 +318,14 @@ class LinkClient:
         self._is_welcome = True
         self._connection.addresses.answered()
         self._is_known.set()
-        self._say_status()
+        self._send_status()
         for robot in list(self._robots.values()):
-            self._say_ready(robot)
+            self._send_ready(robot)
         for answer in self._areas:
             self._ask_areas(answer)
 
     def _use_site(self, site: SiteReport, database: str) -> None:
-        """Go by a site and a database; raises FrameChangedError where the site's metres are other places."""
+        """Use a site and a database; raises FrameChangedError if the site's frame is another one."""
         frame = SiteFrame(site.crs, site.origin, site.rotation)
         before = self._site
         if before is None:
@@ -336,7 +338,7 @@ class LinkClient:
             self._forget()
 
     def _forget(self) -> None:
-        """Forget what another gateway asked, and what is still to be said to it: it means nothing here."""
+        """Drop requests of, and messages for, a gateway on another database: they are not valid here."""
         self._commanding.close()
         self._commanding = self._new_commanding()
         for robot in self._robots.values():
@@ -363,7 +365,7 @@ class LinkClient:
 
     # --- robots ---------------------------------------------------------------------------------------------
 
-    def _say_status(self) -> None:
+    def _send_status(self) -> None:
         status, self._reported_fault = self._status, self._memory.fault
         if self._reported_fault is not None:
             text = f"{self._reported_fault}; its robots take on nothing, and can be stopped"
@@ -379,9 +381,9 @@ class LinkClient:
             await asyncio.sleep(MEMORY_EVERY)
             await self._memory.recover()
             if self._is_welcome and self._memory.fault != self._reported_fault:
-                self._say_status()
+                self._send_status()
 
-    def _say_ready(self, robot: LinkedRobot) -> None:
+    def _send_ready(self, robot: LinkedRobot) -> None:
         if not self._is_welcome or self._robots.get(robot.name) is not robot or robot.admitted:
             return
         if self._memory.is_adrift(robot.name) and not robot.is_only_seen:
@@ -392,7 +394,7 @@ class LinkClient:
         self._connection.call(Ready.__name__, params, lambda reply: self._readied(robot, reply))
 
     async def _calm(self, robot: LinkedRobot) -> None:
-        """Stop a robot that is adrift before anything can be asked of it; what it was to do has failed."""
+        """Stop a robot adrift before any command to it; its open commands have failed."""
         log.warning("robot %s may do what it was asked before all changed: it is stopped", robot.name)
         try:
             refusal = await self._commanding.calm(robot.name)
@@ -403,53 +405,53 @@ class LinkClient:
         if robot.name in self._robots:
             for id in self._memory.taken_on(robot.name):
                 self.give_up(robot.name, id, f"the link's settings or site have changed: {how}")
-        self._say_ready(robot)
+        self._send_ready(robot)
 
     def _readied(self, robot: LinkedRobot, reply: jsonrpc.Reply) -> None:
         ack = reply.result if isinstance(reply.result, dict) else {}
         if reply.error is None and ack.get("ok", True):
             self._connection.addresses.learn(ack.get("gateways"))
             robot.admit()
-            self._note_refusal(robot.name, None)
+            self._record_refusal(robot.name, None)
             self._adapter.admitted(robot.name)
             self._connection.write_soon()
             for kept in robot.untold():
-                self._say(robot, kept)
+                self._send(robot, kept)
             return
         reason = reply.error or str(ack.get("reason"))
         log.warning("robot %s is not let in: %s", robot.name, reason)
-        self._note_refusal(robot.name, reason)
+        self._record_refusal(robot.name, reason)
         self._adapter.refused(robot.name, reason)
         self._ready_later(robot)
 
-    def _note_refusal(self, robot: str, reason: str | None) -> None:
-        """Have operators see which robots are not let in, and why."""
+    def _record_refusal(self, robot: str, reason: str | None) -> None:
+        """Report to operators which robots are refused, and why."""
         known = robot in self._refused
         if reason is None or robot not in self._robots:
             self._refused.pop(robot, None)
         else:
             self._refused[robot] = reason
         if self._is_welcome and known != (robot in self._refused):
-            self._say_status()
+            self._send_status()
 
     def _ready_later(self, robot: LinkedRobot) -> None:
-        asyncio.get_running_loop().call_later(robot.next_wait(), self._say_ready, robot)
+        asyncio.get_running_loop().call_later(robot.next_wait(), self._send_ready, robot)
 
     def _keep(self, robot: str, request: Request) -> asyncio.Future[OpAck]:
         known = self._robots[robot]
         answer: asyncio.Future[OpAck] = asyncio.get_running_loop().create_future()
-        # Nobody may wait for it: what went wrong is in the log all the same.
+        # Possibly not awaited: errors are logged anyway.
         answer.add_done_callback(lambda done: done.cancelled() or done.exception())
         kept = Kept(request, answer)
         known.keep(kept)
         if known.admitted:
-            self._say(known, kept)
+            self._send(known, kept)
         return answer
 
-    def _say(self, robot: LinkedRobot, kept: Kept) -> None:
+    def _send(self, robot: LinkedRobot, kept: Kept) -> None:
         if not robot.admitted or kept not in robot.kept:
             return
-        # What was told of its place before goes before it.
+        # Its earlier position is sent first.
         if robot.fresh and isinstance(robot.position, SendPos):
             robot.fresh = False
             self._connection.post(jsonrpc.call("SendPos", {"robot": robot.name, **to_json(robot.position)}))
@@ -459,7 +461,7 @@ class LinkClient:
     def _answered(self, robot: LinkedRobot, kept: Kept, reply: jsonrpc.Reply) -> None:
         if reply.code in (jsonrpc.INTERNAL_ERROR, jsonrpc.TOO_MANY):
             kept.call = None
-            asyncio.get_running_loop().call_later(SAY_AGAIN, self._say, robot, kept)
+            asyncio.get_running_loop().call_later(SAY_AGAIN, self._send, robot, kept)
             return
         if kept in robot.kept:
             robot.kept.remove(kept)

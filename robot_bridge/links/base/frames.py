@@ -1,4 +1,4 @@
-"""Frames of robots: from the coordinates that they speak to metres in the site frame, and back."""
+"""Frames of robots: from their coordinates to metres in the site frame, and back."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ Points = npt.NDArray[np.float64]
 
 SITE, UTM, WGS84 = "site", "utm", "wgs84"
 _STEP = 10.0
-"""metres ahead at which it is looked where a heading leads."""
+"""metres ahead to the point by which a heading is transformed."""
 
 
 class FrameSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Table ``[frame]``: what the coordinates of the link's robots are.
+    """Table ``[frame]``: the coordinates of the link's robots.
 
     ``crs`` is ``site`` (metres in the site frame), ``utm`` (the zone of the site), ``wgs84`` (longitude
     before latitude, degrees) or a code such as ``EPSG:32633``. The robots' (0, 0) is at ``origin`` in that
@@ -40,7 +40,7 @@ class FrameSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     largest_residual_m: float = 1.0
 
     def check_metres(self, where: str) -> None:
-        """Raise LinkError for coordinates in degrees, which robots that are sent somewhere do not speak.
+        """Raise LinkError for coordinates in degrees, which robots with targets do not use.
 
         ``where`` is file and key.
         """
@@ -77,7 +77,7 @@ class Similarity:
 
 @dataclass(frozen=True)
 class Fit:
-    """A similarity found by least squares, and how far it leaves each pair from its place, in metres."""
+    """A similarity found by least squares, with the residual of each pair in metres."""
 
     similarity: Similarity
     residuals: tuple[float, ...]
@@ -89,7 +89,7 @@ class Fit:
 
     @property
     def text(self) -> str:
-        """What people are told of it."""
+        """The result as text for people."""
         worst = max(range(len(self.residuals)), key=self.residuals.__getitem__)
         turned = math.degrees(self.similarity.rotation)
         return (
@@ -100,12 +100,12 @@ class Fit:
 
 
 def fit(own: Points, there: Points, *, scale: bool = False) -> Fit:
-    """Return the similarity that takes ``own`` closest to ``there``, both (n, 2) metres.
+    """Return the similarity that maps ``own`` closest to ``there``, both (n, 2) metres.
 
     S. Umeyama, Least-squares estimation of transformation parameters between two point patterns, IEEE PAMI 13
     (1991), in the plane.
 
-    :raises ValueError: for fewer than two points, or points that are all in one place.
+    :raises ValueError: for fewer than two points, or points that all coincide.
     """
     if len(own) < 2:
         raise ValueError("give two pairs or more")
@@ -130,7 +130,7 @@ class LinkFrame:
 
     In ``wgs84`` a position is (longitude, latitude) and a heading is counter-clockwise from east.
 
-    :raises LinkError: for settings that are none, naming the key; ``where`` is their file.
+    :raises LinkError: for invalid settings, naming the key; ``where`` is their file.
     """
 
     def __init__(self, settings: FrameSettings, site: SiteFrame, where: str = "[frame]") -> None:
@@ -151,7 +151,7 @@ class LinkFrame:
             raise LinkError(f"{where}: frame.origin and frame.rotation_deg mean nothing with crs = 'wgs84'")
 
     def to_site(self, x: float, y: float) -> tuple[float, float]:
-        """Return the site's (x, y) of a robot's; raises ValueError for what has no place there."""
+        """Return the site's (x, y) of a robot's; raises ValueError if it has none."""
         there = self._own.forward(x, y)
         if self._is_site:
             return there
@@ -162,7 +162,7 @@ class LinkFrame:
         return site_x, site_y
 
     def from_site(self, x: float, y: float) -> tuple[float, float]:
-        """Return a robot's (x, y) of the site's; raises ValueError for what has no place there."""
+        """Return a robot's (x, y) of the site's; raises ValueError if it has none."""
         if self._is_site:
             return self._own.back(x, y)
         ((east, north),) = self._site.to_crs([(x, y)]).tolist()

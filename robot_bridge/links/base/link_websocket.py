@@ -1,4 +1,4 @@
-"""A link's connection to the gateway: it comes back, at another gateway too, and carries frames both ways."""
+"""A link's connection to the gateway: it reconnects, also to other gateways, and carries frames both ways."""
 
 from __future__ import annotations
 
@@ -32,30 +32,30 @@ LARGEST_FRAME = 64 << 20
 
 
 class CallHandler(Protocol):
-    """What a connection carries messages for."""
+    """The user of a connection."""
 
     @property
     def is_connected(self) -> bool:
-        """Whether the gateway has let this link in."""
+        """Whether the gateway has admitted this link."""
 
     def handle(self, call: jsonrpc.Call) -> None:
-        """Deal with a call of the gateway; raises LinkError and MessageError."""
+        """Process a call of the gateway; raises LinkError and MessageError."""
 
     def news(self) -> list[str | bytes]:
-        """Return the frames of what is new; asked for when they can be sent."""
+        """Return the new frames; called when they can be sent."""
 
     def pass_over(self, seconds: float) -> None:
-        """Drop what was not begun: this program stood still for so many ``seconds``."""
+        """Drop commands not begun: this program stood still for so many ``seconds``."""
 
     def lose(self) -> None:
-        """Go by a connection that is lost."""
+        """Handle a lost connection."""
 
 
 class LinkWebSocket:
-    """The connection of one link: frames and calls go out by it, and calls of the gateway come in.
+    """The connection of one link: it sends frames and calls, and receives calls of the gateway.
 
-    Of what lay on it while this program stood still for ``longest_pause_s`` seconds only an Abort is done:
-    nobody may want the rest any more. What is still wanted comes again on the next one.
+    Of messages received while this program stood still for ``longest_pause_s`` seconds only an Abort is
+    executed: the rest may be obsolete. Messages still valid come again on the next connection.
     """
 
     def __init__(self, settings: LinkSettings, longest_pause_s: float = LONGEST_PAUSE_S) -> None:
@@ -75,10 +75,11 @@ class LinkWebSocket:
         self._longest_pause_s = longest_pause_s
         self._standstill = StandstillWatch(longest_pause_s)
 
-    # --- what goes out --------------------------------------------------------------------------------------
+    # --- outgoing messages
+    # --------------------------------------------------------------------------------------
 
     def post(self, frame: str, *, urgent: bool = False) -> None:
-        """Send a frame; those that tell what became of an Abort before all others."""
+        """Send a frame; outcomes of Aborts before all others."""
         (self._urgent if urgent else self._outgoing).append(frame)
         self._wake.set()
 
@@ -90,7 +91,7 @@ class LinkWebSocket:
         return id
 
     def write_soon(self) -> None:
-        """Ask the link for its news in a moment."""
+        """Request the link's new frames in a moment."""
         if self._waking is None:
             self._waking = asyncio.get_running_loop().call_later(TOGETHER, self._woken)
 
@@ -105,7 +106,7 @@ class LinkWebSocket:
                 self._wake.clear()
                 while self._urgent or self._outgoing:
                     await connection.send((self._urgent or self._outgoing).popleft())
-                # Made when they can be sent: of what waited for a slow line only the newest is sent.
+                # Built when they can be sent: on a slow line only the newest positions are sent.
                 for frame in link.news():
                     await connection.send(frame)
         except ConnectionClosed:
@@ -114,7 +115,7 @@ class LinkWebSocket:
     # --- the connection -------------------------------------------------------------------------------------
 
     async def run(self, link: CallHandler) -> None:
-        """Carry messages until cancelled; raises LinkError for what a person has to put right."""
+        """Carry messages until cancelled; raises LinkError for faults that a person must put right."""
         while True:
             url, ends = f"{self.addresses.current}?link={quote(self._settings.name)}", False
             try:
@@ -157,32 +158,33 @@ class LinkWebSocket:
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def _end_when_old(self, connection: ClientConnection, link: CallHandler) -> None:
-        """End a connection on which what was received is too old to be done."""
+        """End a connection whose received messages are too old to execute."""
         await self._standstill.wait()
         seconds = self._standstill.seconds
         name = self._settings.name
         log.warning("link %s stood still for %.0f s: what came meanwhile is asked for again", name, seconds)
         link.pass_over(seconds)
         await asyncio.sleep(ABORTS_WITHIN_S)
-        # Closed in good order it would seem that its robots were switched off.
+        # A clean close would mean that its robots were switched off.
         connection.transport.abort()
 
-    # --- what comes in --------------------------------------------------------------------------------------
+    # --- incoming messages
+    # --------------------------------------------------------------------------------------
 
     def _receive(self, frame: str | bytes, link: CallHandler) -> None:
-        # Once it is let in, what goes wrong with a message ends no connection by which robots are stopped.
+        # Once admitted, an error in a message must not end a connection by which robots are stopped.
         known = (LinkError, MessageError) if link.is_connected else Exception
         try:
             message = jsonrpc.decode(frame)
             with log_and_continue(log, "what the gateway said", except_for=known):
                 if isinstance(message, jsonrpc.Reply):
-                    self._take_reply(message)
+                    self._receive_reply(message)
                 elif not self._standstill.check() or message.method == Abort.__name__:
                     link.handle(message)
         except (jsonrpc.FrameError, MessageError) as error:
             log.error("the gateway said what cannot be understood: %s", error)
 
-    def _take_reply(self, reply: jsonrpc.Reply) -> None:
+    def _receive_reply(self, reply: jsonrpc.Reply) -> None:
         answered = self._pending_calls.pop(reply.id, None) if isinstance(reply.id, int) else None
         if answered is not None:
             answered(reply)
@@ -191,7 +193,7 @@ class LinkWebSocket:
 
 
 def _reason(error: OSError | InvalidHandshake) -> str:
-    """Return why there is no connection, in the gateway's own words where it gave some."""
+    """Return why there is no connection, in the gateway's own words if it gave any."""
     if isinstance(error, InvalidStatus):
         text = bytes(error.response.body or b"").decode("utf-8", "replace").strip()
         return f"the gateway refuses (HTTP {error.response.status_code}): {text[:300]}"

@@ -1,4 +1,4 @@
-"""Robots of a link: what is known of each, commands in their order, positions as binary frames."""
+"""Robots of a link: their state, commands in order, positions as binary frames."""
 
 from __future__ import annotations
 
@@ -24,17 +24,17 @@ from .adapter import Adapter, Command
 from .errors import CommandRefusedError, LinkError
 from .memory import CompletedCall, LinkMemory
 
-# --- One robot of a link, as the link's side knows it; no I/O ---
+# --- State of one robot of a link; no I/O ---
 
 NEW_ENOUGH = 2.0
-"""seconds: an older position is not told when the gateway is back."""
+"""seconds: an older position is not sent when the gateway is back."""
 FIRST_WAIT, LONGEST_WAIT = 1.0, 30.0
-"""seconds after which a robot that was refused says Ready once more."""
+"""seconds until Ready is sent again for a refused robot."""
 
 
 @dataclass
 class Kept:
-    """What a robot said, kept until the gateway has acknowledged it; ``call`` is its id while it is asked."""
+    """A robot's request, kept until the gateway has acknowledged it; ``call`` is its id while pending."""
 
     request: Request
     answer: asyncio.Future[OpAck]
@@ -43,7 +43,7 @@ class Kept:
 
 @dataclass
 class LinkedRobot:
-    """``can`` is what its Ready declares. A position is ``fresh`` until it is on its way to the gateway."""
+    """``can`` are the abilities declared in its Ready. A position is ``fresh`` until sent to the gateway."""
 
     name: str
     can: tuple[Ability, ...]
@@ -58,41 +58,41 @@ class LinkedRobot:
 
     @property
     def is_only_seen(self) -> bool:
-        """Whether it takes no commands, and so nothing to stop."""
+        """Whether it takes no commands, so that there is nothing to stop."""
         return not self.can
 
     def ready(self, magic: int) -> Ready:
-        """Return what it says first."""
+        """Return its first request."""
         return Ready(magic, path_cones=self.path_cones or None, abilities=list(self.can))
 
     def change(self, can: tuple[Ability, ...], path_cones: bool) -> bool:
-        """Take what it can do now; tell whether that is something else than before."""
+        """Set its present abilities; return whether they changed."""
         before = self.can, self.path_cones
         self.can, self.path_cones = can, path_cones
         return before != (can, path_cones)
 
     def place(self, position: SendPos | SendGPS) -> None:
-        """Take its newest position in place of the last."""
+        """Replace its position by the newest."""
         self.position, self.position_at, self.fresh = position, time.monotonic(), True
 
     def admit(self) -> None:
-        """Note that the gateway has let it in: where it was a moment ago is told again."""
+        """Record that the gateway has admitted it: its recent position is sent again."""
         self.admitted, self.wait = True, FIRST_WAIT
         self.fresh = self.position is not None and time.monotonic() - self.position_at < NEW_ENOUGH
 
     def lose(self) -> None:
-        """Note that the gateway does not listen to it any more."""
+        """Record that the gateway no longer admits it."""
         self.admitted = self.fresh = self.is_alive = False
         for kept in self.kept:
             kept.call = None
 
     def next_wait(self) -> float:
-        """Return the seconds until it says Ready once more."""
+        """Return the seconds until its next Ready."""
         wait, self.wait = self.wait, min(self.wait * 2, LONGEST_WAIT)
         return wait
 
     def keep(self, kept: Kept) -> None:
-        """Keep what it says; a Stopped takes the place of one that was not told yet."""
+        """Keep a request; a Stopped replaces one that was not sent yet."""
         if isinstance(kept.request, Stopped):
             for older in [k for k in self.kept if isinstance(k.request, Stopped) and k.call is None]:
                 self.kept.remove(older)
@@ -100,7 +100,7 @@ class LinkedRobot:
         self.kept.append(kept)
 
     def untold(self) -> Iterator[Kept]:
-        """Yield what was not asked yet on this connection."""
+        """Yield the requests not sent yet on this connection."""
         return (kept for kept in list(self.kept) if kept.call is None)
 
 
@@ -110,7 +110,7 @@ NOTHING = float("nan")
 
 
 def frame_of(positions: Sequence[tuple[str, SendPos]]) -> bytes:
-    """Return the frame that tells where robots are; what is known of none of them is left out."""
+    """Return the frame with positions of robots; fields unknown for all of them are omitted."""
     columns: dict[str, npt.NDArray[np.float64]] = {}
     words: dict[str, int] = {}
     poses = [pose for _, pose in positions]
@@ -129,11 +129,11 @@ def frame_of(positions: Sequence[tuple[str, SendPos]]) -> bytes:
 
 
 def gps_call(robot: str, fix: SendGPS) -> str:
-    """Return the frame that tells where on the earth a robot is."""
+    """Return the frame with a robot's GPS position."""
     return jsonrpc.call(SendGPS.__name__, {"robot": robot, **to_json(fix)})
 
 
-# --- What robots are told: each in its own order, a message once, and what stops a robot before all else
+# --- Messages to robots: in order for each robot, each executed once, stops before all others
 
 log = logging.getLogger(__name__)
 
@@ -150,7 +150,7 @@ class Post(Protocol):
 
 
 class _Line:
-    """What one robot is still to be told, and the task that tells it."""
+    """The waiting messages of one robot, and the task that delivers them."""
 
     def __init__(self) -> None:
         self.waiting: deque[tuple[CallId, Answer]] = deque()
@@ -158,7 +158,7 @@ class _Line:
 
 
 class Commanding:
-    """Hands the adapter its commands and tells the gateway what came of each."""
+    """Passes commands to the adapter and sends the gateway the outcome of each."""
 
     def __init__(self, adapter: Adapter, memory: LinkMemory, answer_within: float, post: Post) -> None:
         self._adapter = adapter
@@ -170,7 +170,7 @@ class Commanding:
         self._is_closed = False
 
     def enqueue(self, robot: str, call: CallId, message: Answer) -> None:
-        """Have ``robot`` told ``message`` behind what it is still to be told."""
+        """Queue ``message`` for ``robot`` behind its waiting ones."""
         line = self._lines.setdefault(robot, _Line())
         if any(known == call for known, _ in line.waiting):
             return
@@ -179,14 +179,14 @@ class Commanding:
             line.task = asyncio.create_task(self._work(robot, line))
 
     def stop(self, robot: str, call: CallId, *, emergency: bool) -> None:
-        """Have ``robot`` stop now; what it was not told yet it is never told."""
+        """Stop ``robot`` now; its waiting messages are dropped."""
         self.drop(robot, OVERTAKEN)
         task = asyncio.create_task(self._stop(robot, call, emergency=emergency))
         self._stops.add(task)
         task.add_done_callback(self._stops.discard)
 
     def drop(self, robot: str, reason: str = GONE) -> None:
-        """Give up what ``robot`` was not told yet, and what it is being told."""
+        """Drop the waiting messages of ``robot``, and cancel the one being delivered."""
         line = self._lines.pop(robot, None)
         if line is None:
             return
@@ -197,13 +197,13 @@ class Commanding:
             line.task.cancel(OVERTAKEN if reason == GONE else reason)
 
     def close(self) -> None:
-        """Give up all commands; note and answer nothing more: their ids are those of other messages now."""
+        """Drop all commands; record and answer nothing more: their ids now belong to other messages."""
         self._is_closed = True
         for robot in list(self._lines):
             self.drop(robot)
 
     async def calm(self, robot: str) -> str | None:
-        """Stop a robot without being asked to; return None, or why its side has not confirmed that."""
+        """Stop a robot without a request; return None, or why its side has not confirmed the stop."""
         self.drop(robot)
         return await self._stopped(robot, emergency=False)
 

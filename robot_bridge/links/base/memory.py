@@ -1,4 +1,4 @@
-"""What a link keeps on the disk, so that a process that is started anew does nothing twice."""
+"""Memory of a link on the disk, so that a restarted process executes nothing twice."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ from .errors import LinkError
 log = logging.getLogger(__name__)
 
 MOST_OPEN = 20
-"""messages of one robot that may be under way: its map, its start, a target."""
+"""unfinished messages of one robot: its map, its start, a target."""
 MOST_DONE = 1000
-"""messages of one robot that are remembered: many more than a gateway ever has on their way to it."""
+"""remembered messages of one robot: many more than a gateway ever has in flight."""
 LONGEST_FILE = 256 << 20
 """bytes."""
 LOCKED_FOR = 5.0
-"""seconds for the link's process before to end."""
+"""seconds for the link's previous process to end."""
 PASSING = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EIO})
-"""errors of a file that was set up well: its disk is full or broken. A link stops its robots all the same."""
+"""errors of a file set up correctly, with a full or broken disk. A link still stops its robots."""
 
 
 @dataclass(frozen=True)
 class CompletedCall:
-    """What came of a message: ``refusal`` is None where the robot took it on."""
+    """Outcome of a message: ``refusal`` is None if the robot accepted it."""
 
     refusal: str | None = None
 
@@ -46,14 +46,14 @@ class CompletedCall:
 class _Robot:
     magic: int
     begun: OrderedDict[int, CompletedCall | None] = field(default_factory=OrderedDict)
-    """what came of each message, None while that is not known."""
+    """outcome of each message, None while unknown."""
 
 
 class LinkMemory:
-    """The runs of robots, and what came of their messages: a file that is only ever added to.
+    """The runs of robots, and the outcomes of their messages, in an append-only file.
 
-    Without a file it lasts as long as the process. While its disk is full or broken no message is begun, as
-    another process would do it once more; what stops robots needs no memory.
+    Without a file it lasts as long as the process. While its disk is full or broken no message is begun,
+    since another process would repeat it; stops need no memory.
     """
 
     def __init__(self, file: Path | None = None) -> None:
@@ -71,18 +71,18 @@ class LinkMemory:
 
     @property
     def fault(self) -> str | None:
-        """Why nothing can be written now, None where all that is known is in the file."""
+        """Why nothing can be written now, None if everything is in the file."""
         if self._fault is None:
             return None
         return f"memory {self._file} cannot be written: {self._fault.strerror or self._fault}"
 
     def magic(self, robot: str) -> int:
-        """Return the number of the robot's run; it is a new one for a robot that is not known."""
+        """Return the number of the robot's run; a new one for an unknown robot."""
         known = self._robots.get(robot)
         return known.magic if known is not None else self.renew(robot)
 
     def renew(self, robot: str) -> int:
-        """Return a new number for a robot that has started anew and forgotten its tasks."""
+        """Return a new run number for a robot that has restarted and forgotten its tasks."""
         magic = secrets.randbits(53)
         begun = self._robots[robot].begun if robot in self._robots else OrderedDict()
         self._robots[robot] = _Robot(magic, begun)
@@ -90,17 +90,17 @@ class LinkMemory:
         return magic
 
     def use_database(self, database: str, frame: str = "") -> bool:
-        """Forget the messages of another database: their ids begin again.
+        """Forget the messages of another database: its ids start again.
 
-        ``frame`` is where robots' coordinates lie. Who was asked anything with another database, or in
-        another frame, is adrift; return whether it is another one.
+        ``frame`` is the frame of robots' coordinates. Robots with commands from another database, or in
+        another frame, are adrift; return whether the database is another one.
         """
         before = self._database, self._frame
         if before == (database, frame):
             return False
         is_other = before[0] not in (None, database) or before[1] not in (None, frame)
         if is_other:
-            # Before the rest: a process that is killed in between finds another database once more.
+            # Before the rest: a process restarted after a kill in between finds another database again.
             for name in [name for name, robot in self._robots.items() if robot.begun]:
                 self.set_adrift(name)
         self._serve(database, frame)
@@ -114,40 +114,40 @@ class LinkMemory:
         self._database, self._frame = database, frame
 
     def is_adrift(self, robot: str) -> bool:
-        """Tell whether a robot may do what was asked of it with another database, or in another frame."""
+        """Return whether a robot may execute a task from another database, or in another frame."""
         return robot in self._adrift
 
     def set_adrift(self, robot: str) -> None:
-        """Note that a robot is adrift, until :meth:`clear_adrift`, whatever becomes of this process."""
+        """Record that a robot is adrift, until :meth:`clear_adrift`, also over restarts."""
         if robot not in self._adrift:
             self._adrift.add(robot)
             self._append_if_possible({"robot": robot, "adrift": True})
 
     def clear_adrift(self, robot: str) -> None:
-        """Note that a robot was stopped."""
+        """Record that a robot was stopped."""
         if robot in self._adrift:
             self._adrift.discard(robot)
             self._append_if_possible({"robot": robot, "adrift": False})
 
     def find(self, robot: str, id: int) -> CompletedCall | None:
-        """Return what came of a message, None where it was never finished."""
+        """Return the outcome of a message, None if it was never finished."""
         known = self._robots.get(robot)
         return None if known is None else known.begun.get(id)
 
     def has_begun(self, robot: str, id: int) -> bool:
-        """Tell whether a message of this database was ever begun."""
+        """Return whether a message of this database was ever begun."""
         return robot in self._robots and id in self._robots[robot].begun
 
     def taken_on(self, robot: str) -> list[int]:
-        """Return the newest messages that a robot took on: what it does is for one of them."""
+        """Return the newest messages that a robot accepted: its present task is one of them."""
         known = self._robots.get(robot)
         begun = () if known is None else known.begun.items()
         return [id for id, done in begun if done == CompletedCall()][-MOST_OPEN:]
 
     async def begin(self, robot: str, id: int) -> bool:
-        """Note that a message is about to be done; return whether it was begun before.
+        """Record that a message is about to be executed; return whether it was begun before.
 
-        :raises LinkError: when that cannot be written; it must not be done then.
+        :raises LinkError: when that cannot be written; the message must not be executed then.
         """
         begun = self._robots[robot].begun
         if id in begun:
@@ -161,7 +161,7 @@ class LinkMemory:
         return False
 
     async def finish(self, robot: str, id: int, done: CompletedCall) -> None:
-        """Note what came of a message; it is on the disk when this returns, if the disk takes anything."""
+        """Record the outcome of a message; it is on the disk on return, if the disk is writable."""
         self._note(robot, id, done)
         refusal = {} if done.refusal is None else {"refusal": done.refusal}
         with contextlib.suppress(LinkError):
@@ -176,7 +176,7 @@ class LinkMemory:
     # --- the file -------------------------------------------------------------------------------------------
 
     async def recover(self) -> None:
-        """Write what could not be written, if that is possible by now."""
+        """Write the data that failed before, if possible by now."""
         if self._fault is not None:
             with contextlib.suppress(LinkError):
                 await self._append_surely({})
@@ -188,7 +188,7 @@ class LinkMemory:
                 self._append(line)
 
     async def _append_surely(self, line: dict[str, Any]) -> None:
-        """Add a line, or all that is known where an earlier one could not be added; raises LinkError."""
+        """Append a line, or the whole state if an earlier append failed; raises LinkError."""
         if self._file is None:
             return
         self._revision += 1
@@ -196,9 +196,9 @@ class LinkMemory:
             if self._fault is None:
                 await asyncio.shield(asyncio.to_thread(self._append, line, surely=True))
             else:
-                # Made here: robots come and go in this thread.
+                # Built here: the set of robots changes in this thread.
                 lines = list(self._lines())
-                await asyncio.shield(asyncio.to_thread(self._write_anew, lines, self._revision))
+                await asyncio.shield(asyncio.to_thread(self._rewrite, lines, self._revision))
 
     def _append(self, line: dict[str, Any], *, surely: bool = False) -> None:
         if self._file is None:
@@ -212,7 +212,7 @@ class LinkMemory:
         except OSError as error:
             raise self._failed(error) from None
 
-    def _write_anew(self, lines: Sequence[dict[str, Any]], revision: int) -> None:
+    def _rewrite(self, lines: Sequence[dict[str, Any]], revision: int) -> None:
         assert self._file is not None
         try:
             _write_lines(self._file, lines)
@@ -239,12 +239,12 @@ class LinkMemory:
             raise LinkError(f"memory {file} cannot be read: {error.strerror or error}") from None
         for number, line in enumerate(text.splitlines(), 1):
             try:
-                self._take_line(decode_json(line, SHORT))
+                self._apply_line(decode_json(line, SHORT))
             except (DecodingError, KeyError, TypeError, ValueError) as error:
-                # The last line of a process that was killed while it wrote.
+                # The last line of a process killed during a write.
                 log.warning("memory %s, line %d is left out: %s", file, number, error)
 
-    def _take_line(self, line: dict[str, Any]) -> None:
+    def _apply_line(self, line: dict[str, Any]) -> None:
         if "database" in line:
             frame = line.get("frame")
             self._serve(str(line["database"]), None if frame is None else str(frame))
@@ -259,7 +259,7 @@ class LinkMemory:
             self._note(line["robot"], int(line["begun"]), None)
 
     def _begin_file(self, file: Path) -> None:
-        """Write the file anew with what is still known: it shows that it can be written, too."""
+        """Rewrite the file with the present state, which also checks that it is writable."""
         try:
             _write_lines(file, self._lines())
         except OSError as error:
@@ -290,7 +290,7 @@ class LinkMemory:
 async def only_process(memory: Path, within: float = LOCKED_FOR) -> AsyncIterator[None]:
     """Keep other processes from running the link of this memory: they would command the same robots.
 
-    The one before may still be ending, for ``within`` seconds.
+    The previous process may still be ending, for ``within`` seconds.
 
     :raises LinkError: where another one runs.
     """
@@ -298,7 +298,8 @@ async def only_process(memory: Path, within: float = LOCKED_FOR) -> AsyncIterato
     try:
         file = os.open(lock, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
     except OSError as error:
-        # That of the memory says the same, and what to do; a full disk keeps no link from stopping robots.
+        # The memory's fault reports the same, with advice; a full disk must not keep a link from stopping
+        # robots.
         log.warning("%s cannot be written, so a second process would not be noticed: %s", lock, error)
         yield
         return
@@ -326,7 +327,7 @@ def _locked(file: int) -> bool:
     except BlockingIOError:
         return False
     except OSError as error:
-        # Some network folders have no locks.
+        # Some network file systems have no locks.
         log.warning("a second process of this link would not be noticed: %s", error.strerror or error)
     return True
 

@@ -22,16 +22,16 @@ Load = Callable[[], tuple[LinkSettings, Adapter]]
 
 
 def run(load: Load, *, until_stdin_closes: bool = False) -> None:
-    """Run an adapter until SIGTERM or SIGINT; raises BridgeError for what has to be put right.
+    """Run an adapter until SIGTERM or SIGINT; raises BridgeError for faults to put right.
 
-    Also ``until_stdin_closes``, which it does when the gateway that started this ends, however that ends.
-    ``load`` returns its settings and the adapter itself: once more for a site of another frame.
+    Also ``until_stdin_closes``, which happens when the gateway that started this ends in any way.
+    ``load`` returns its settings and the adapter: again for a site of another frame.
     """
     asyncio.run(_run_until_stdin_closes(_serve_frames(load), until_stdin_closes))
 
 
 async def _serve_frames(load: Load) -> None:
-    """Run adapters, each on sites of one frame: nothing that one knew of places is kept for the next."""
+    """Run adapters, each on sites of one frame: no coordinates are kept for the next one."""
     while True:
         settings, adapter = load()
         try:

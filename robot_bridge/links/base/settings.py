@@ -23,7 +23,7 @@ LARGEST_FILE = 1 << 20
 
 
 class GatewayAddressSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """Table ``[gateway]``: where the gateway is, and what is shown to it; files lie beside the settings."""
+    """Table ``[gateway]``: the gateway's address, and the credentials; files are beside the settings."""
 
     url: str = ""
     token_file: str | None = None
@@ -31,10 +31,10 @@ class GatewayAddressSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=
 
 
 class LinkSettings(msgspec.Struct, frozen=True):
-    """What every link has; ``file`` is where it stands, and ``name`` that file's name without its ending.
+    """Settings of every link; ``file`` is their file, and ``name`` its name without suffix.
 
-    ``state_folder`` is where it remembers what it has done. A robot's side has ``answer_within_s`` seconds to
-    take on a command.
+    ``state_folder`` holds the record of executed messages. A robot's side has ``answer_within_s`` seconds to
+    accept a command.
     """
 
     name: str
@@ -46,21 +46,21 @@ class LinkSettings(msgspec.Struct, frozen=True):
 
     @property
     def folder(self) -> Path:
-        """The folder that files in the settings are beside."""
+        """The folder to which file names in the settings are relative."""
         return self.file.resolve().parent
 
     @property
     def memory_file(self) -> Path:
-        """The file of what it remembers."""
+        """The file of the link's memory."""
         return self.state_folder / f"{self.name}.state"
 
     def beside(self, name: str) -> Path:
-        """Return the path of a file that the settings name."""
+        """Return the path of a file named in the settings."""
         return self.folder / name
 
 
 def read_settings(file: Path, table: str, of: type[Table]) -> tuple[LinkSettings, Table]:
-    """Return what the file says of the link, and of its kind: the table ``[table]`` as ``of``.
+    """Return the settings of the link, and of its kind: the table ``[table]`` as ``of``.
 
     ``of`` is a msgspec.Struct with ``forbid_unknown_fields``.
 
@@ -76,7 +76,7 @@ def read_settings(file: Path, table: str, of: type[Table]) -> tuple[LinkSettings
     own = tables.get(table, {})
     gateway = _convert(tables.get("gateway", {}), GatewayAddressSettings, file, "gateway")
     if not gateway.url:
-        # That of the gateway that started this link, where one did.
+        # The URL of the gateway that started this link, if one did.
         gateway = msgspec.structs.replace(gateway, url=os.environ.get("ROBOT_BRIDGE_LINK_URL", URL))
     if not re.fullmatch(r"wss?://[^/?#]+/link", gateway.url):
         raise LinkError(f"{file}: gateway.url = {gateway.url!r}: write it as ws://127.0.0.1:8765/link")
@@ -92,7 +92,7 @@ def read_settings(file: Path, table: str, of: type[Table]) -> tuple[LinkSettings
 
 
 def kind_in(file: Path) -> str:
-    """Return the kind of link that the settings in ``file`` are of: its key ``kind``; raises LinkError."""
+    """Return the kind of link in the settings ``file``, key ``kind``; raises LinkError."""
     kind = _tables(file).get("kind")
     if not isinstance(kind, str):
         raise LinkError(f"{file}: kind is missing; write the kind of the link, as kind = 'tracker'")

@@ -1,4 +1,4 @@
-"""Adapter of recordings: settings, clock, player; recorded drives as robots that are only seen."""
+"""Adapter of recordings: settings, clock, player; recorded drives as robots that take no commands."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ from ..base.settings import LinkSettings, read_settings
 # --- Table ``[replay]`` of a link's settings: which file is played, and how ---
 
 PREFIX = "replay-"
-"""What the names of all replayed robots begin with, also where only names are stored."""
+"""Prefix of the names of all replayed robots, also where only names are stored."""
 _SLOWEST, _FASTEST = 0.1, 1000.0
 _UNUSABLE = re.compile(r"[^A-Za-z0-9_.-]+")
 
@@ -40,10 +40,10 @@ _UNUSABLE = re.compile(r"[^A-Za-z0-9_.-]+")
 class ReplaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """``file`` is beside the settings; ``robots`` gives recorded robots other names.
 
-    ``speed``, ``start_s`` (seconds after its begin), ``loop`` and ``paused`` may be changed while it is
-    played. A robot of which the file says nothing for ``largest_gap_s`` of its seconds is silent.
-    ``columns``, ``delimiter``, ``time_unit`` and ``theta_unit`` are those of CSV; ``topics`` are patterns of
-    the topics of a bag.
+    ``speed``, ``start_s`` (seconds after the beginning), ``loop`` and ``paused`` may be changed during
+    playback. A robot without records in the file for ``largest_gap_s`` of its seconds is silent. ``columns``,
+    ``delimiter``, ``time_unit`` and ``theta_unit`` are those of CSV; ``topics`` are patterns of the topics of
+    a bag.
     """
 
     file: str
@@ -60,7 +60,7 @@ class ReplaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     topics: list[str] = []
 
     def check(self, file: Path) -> None:
-        """Raise LinkError, naming file and key, for what cannot be."""
+        """Raise LinkError, naming file and key, for invalid values."""
         bounds = {"speed": (_SLOWEST, _FASTEST), "start_s": (0.0, 1e9), "largest_gap_s": (0.1, 1e6)}
         for key, (least, most) in bounds.items():
             if not least <= getattr(self, key) <= most:
@@ -74,13 +74,13 @@ class ReplaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def reading(self) -> ReadingOptions:
-        """How the file is to be read."""
+        """Options for reading the file."""
         return ReadingOptions(
             TableForm(self.columns, self.delimiter, self.time_unit, self.theta_unit), tuple(self.topics)
         )
 
     def is_same_recording(self, other: ReplaySettings) -> bool:
-        """Tell whether ``other`` differs only in what may be changed while it is played."""
+        """Return whether ``other`` differs only in settings that may be changed during playback."""
         changed = msgspec.structs.replace(
             other, speed=self.speed, start_s=self.start_s, loop=self.loop, paused=self.paused
         )
@@ -105,13 +105,13 @@ class ReplaySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
         return names
 
 
-# --- Where in a recording it is, by a clock that only goes forward; no I/O ---
+# --- The position in a recording, by a monotonic clock; no I/O ---
 
 
 class PlayClock:
     """Seconds of a recording, ``speed`` of them for each second of the clock that ``now`` is read from.
 
-    The place is always reckoned from where it was set last, never summed up, so it does not drift.
+    The place is computed from where it was last set, never accumulated, so it does not drift.
     """
 
     def __init__(self, place: float, speed: float, now: float, *, paused: bool = False) -> None:
@@ -127,7 +127,7 @@ class PlayClock:
 
     @property
     def is_paused(self) -> bool:
-        """Whether it stands."""
+        """Whether it is paused."""
         return self._paused
 
     def place(self, now: float) -> float:
@@ -135,7 +135,7 @@ class PlayClock:
         return self._place if self._paused else self._place + (now - self._since) * self._speed
 
     def when(self, place: float) -> float:
-        """Return the clock's time at which ``place`` is reached; infinite while it stands."""
+        """Return the clock's time at which ``place`` is reached; infinite while paused."""
         return math.inf if self._paused else self._since + (place - self._place) / self._speed
 
     def seek(self, place: float, now: float) -> None:
@@ -143,16 +143,16 @@ class PlayClock:
         self._place, self._since = place, now
 
     def change(self, now: float, *, speed: float, paused: bool) -> None:
-        """Go on from where it is with another speed, or stand."""
+        """Continue from the present place with another speed, or pause."""
         self.seek(self.place(now), now)
         self._speed, self._paused = speed, paused
 
 
-# --- What of a recording is to be told when its clock is at a place; no I/O ---
+# --- The positions due when the clock is at a place of the recording; no I/O ---
 
 
 class ReplayPresence(Enum):
-    """Whether the recording knows of a robot at a place: not yet, now, silent for too long, or no more."""
+    """Presence of a robot at a place of the recording: not yet, now, silent for too long, or ended."""
 
     BEFORE, HERE, SILENT, OVER = range(4)
 
@@ -161,15 +161,15 @@ class ReplayPresence(Enum):
 class _Cursor:
     track: Track
     at: int = -1
-    """the number of the position that was told last, -1 for none."""
+    """the index of the last reported position, -1 for none."""
 
     def move(self, place: float) -> bool:
-        """Go to the last position up to ``place``; return whether that is another one."""
+        """Move to the last position up to ``place``; return whether it changed."""
         last, self.at = self.at, int(self.track.t.searchsorted(place, side="right")) - 1
         return self.at != last
 
     def presence(self, place: float, largest_gap: float) -> ReplayPresence:
-        """Return whether the recording knows of the robot."""
+        """Return the robot's presence in the recording."""
         if self.at < 0:
             return ReplayPresence.BEFORE
         if place - self.track.t[self.at] <= largest_gap:
@@ -179,7 +179,7 @@ class _Cursor:
 
 @dataclass(frozen=True)
 class ReplayedPosition:
-    """Position number ``at`` of a track is told; ``is_new`` unless it was told before."""
+    """Position number ``at`` of a track is due; ``is_new`` unless it was reported before."""
 
     track: Track
     at: int
@@ -188,9 +188,9 @@ class ReplayedPosition:
 
 
 class Player:
-    """Goes through the tracks of a recording.
+    """Plays the tracks of a recording.
 
-    A robot of which the recording says nothing for more than ``largest_gap`` of its seconds is silent.
+    A robot without records for more than ``largest_gap`` seconds of the recording is silent.
     """
 
     def __init__(self, recording: Recording, largest_gap: float) -> None:
@@ -205,19 +205,19 @@ class Player:
             yield ReplayedPosition(cursor.track, cursor.at, cursor.presence(place, self._largest_gap), is_new)
 
     def next_place(self) -> float:
-        """Return when the recording says something new, infinite at its end."""
+        """Return the time of the next record, infinite at the end."""
         following = (float(c.track.t[c.at + 1]) for c in self._cursors if c.at + 1 < len(c.track.t))
         return min(following, default=math.inf)
 
 
-# --- The adapter of recordings: tells where robots were, when the recording's clock is there ---
+# --- The adapter of recordings: reports recorded positions by the recording's clock ---
 
 log = logging.getLogger(__name__)
 
 LEAST_STEP = 0.05
-"""seconds between two looks at what is due: a connection tells no more often."""
+"""seconds between checks of due positions: a connection does not send more often."""
 LOOK_EVERY = 1.0
-"""seconds between two signs of life, and two looks at the file of settings."""
+"""seconds between signs of life, and between checks of the settings' file."""
 ONLY_SEEN = "this is a recording that is played: it can be seen and not commanded"
 
 
@@ -235,7 +235,7 @@ class ReplayAdapter(Adapter):
         self._frames: tuple[LinkFrame, LinkFrame] | None = None
         self._outside: Counter[str] = Counter()
         self._latest = 0.0
-        """seconds that a position was told too late, at most, since the last report."""
+        """largest delay of a position in seconds since the last report."""
         self._has_sought = True
         self._looked_at = 0.0
         self._sent_count = 0
@@ -243,7 +243,7 @@ class ReplayAdapter(Adapter):
         self._is_changed = asyncio.Event()
 
     async def run(self, link: Link) -> None:
-        """Play until cancelled; what is at its end stays until the settings are changed."""
+        """Play until cancelled; at the end the robots stay until the settings are changed."""
         settings = self._settings
         begin = self._recording.begin + settings.start_s
         clock = PlayClock(begin, settings.speed, time.monotonic(), paused=settings.paused)
@@ -253,11 +253,11 @@ class ReplayAdapter(Adapter):
             now = time.monotonic()
             is_look = now - self._looked_at >= LOOK_EVERY
             if is_look:
-                self._look_at_settings(clock, now)
+                self._check_settings(clock, now)
             if self._settings.loop and clock.place(now) > self._player.end:
-                # It begins anew at the very moment it ended, however late this is noticed.
+                # It restarts at the exact moment of its end, however late this is noticed.
                 clock.seek(self._player.begin, clock.when(self._player.end))
-            if self._tell(link, clock, now, again=is_look):
+            if self._report_positions(link, clock, now, again=is_look):
                 reported_at = now
             if is_look:
                 self._looked_at = now
@@ -266,7 +266,7 @@ class ReplayAdapter(Adapter):
             await self._wait_until(min(due, self._looked_at + LOOK_EVERY))
 
     def playback(self, change: Playback) -> PlaybackReport:
-        """Play on otherwise, from where it is or from another place, until the settings' file is changed."""
+        """Change the playback, from here or from another place, until the settings' file is changed."""
         clock, now, settings = self._clock, time.monotonic(), self._settings
         if clock is None:
             raise CommandRefusedError("the recording has not begun")
@@ -306,12 +306,12 @@ class ReplayAdapter(Adapter):
         raise CommandRefusedError(ONLY_SEEN)
 
     async def stop(self, robot: str, *, emergency: bool) -> None:
-        """Do nothing: who is only seen cannot be stopped."""
+        """Do nothing: replayed robots cannot be stopped."""
 
-    def _tell(self, link: Link, clock: PlayClock, now: float, *, again: bool) -> bool:
-        """Tell where robots are that are somewhere else, with ``again`` that the others are there, too.
+    def _report_positions(self, link: Link, clock: PlayClock, now: float, *, again: bool) -> bool:
+        """Report the robots that moved, with ``again`` also that the others are alive.
 
-        Return whether any was somewhere else.
+        Return whether any moved.
         """
         sent_before = self._sent_count
         known = set(link.robots)
@@ -323,7 +323,7 @@ class ReplayAdapter(Adapter):
                     link.add(name)
                 if position.is_new:
                     self._sent_count += 1
-                    self._note_delay(now - clock.when(float(position.track.t[position.at])))
+                    self._record_delay(now - clock.when(float(position.track.t[position.at])))
                 self._place(link, name, position, status, stands=clock.is_paused)
             elif position.presence is ReplayPresence.HERE and again:
                 link.alive(name)
@@ -333,8 +333,8 @@ class ReplayAdapter(Adapter):
         self._has_sought = False
         return self._sent_count > sent_before
 
-    def _note_delay(self, seconds: float) -> None:
-        # After a jump the last position before that place is told: it is as old as it is.
+    def _record_delay(self, seconds: float) -> None:
+        # After a jump the last position before that place is reported, whatever its age.
         if not self._has_sought:
             self._latest = max(self._latest, seconds)
 
@@ -358,7 +358,7 @@ class ReplayAdapter(Adapter):
         return f"replay of {self._recording.file.name} ×{clock.speed:g}{paused}"
 
     def _frame(self, link: Link) -> LinkFrame:
-        """Return the frame of the file where it says one, else that of the link's settings."""
+        """Return the frame of the file if it names one, else that of the link's settings."""
         crs, site = self._recording.crs, link.site
         if crs is None:
             return link.frame
@@ -367,7 +367,7 @@ class ReplayAdapter(Adapter):
             self._frames = link.frame, own
         return self._frames[1]
 
-    def _look_at_settings(self, clock: PlayClock, now: float) -> None:
+    def _check_settings(self, clock: PlayClock, now: float) -> None:
         stamp = _stamp(self._file)
         if stamp == self._stamp:
             return
@@ -421,7 +421,7 @@ def _stamp(file: Path) -> tuple[int, int] | None:
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter that plays what they name; raises LinkError."""
+    """Return the settings in ``file`` and the adapter that plays their recording; raises LinkError."""
     settings, own = read_settings(file, "replay", ReplaySettings)
     own.check(file)
     try:

@@ -1,4 +1,4 @@
-"""Adapter of robots behind a rosbridge server: topics of each read, its actions and services called."""
+"""Adapter of robots behind a rosbridge server: reads their topics, calls their actions and services."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from .settings import RosbridgeSettings, Server, check, server_of
 
 @dataclass
 class _Subscription:
-    """A topic that is read."""
+    """A subscribed topic."""
 
     topic: str
     type_name: str
@@ -46,7 +46,7 @@ class _Subscription:
 
 
 class RosbridgeSubscriptions:
-    """Reads a robot's topics while they are there, and hands their messages to its sensing."""
+    """Reads a robot's topics while they exist, and passes their messages to its sensing."""
 
     def __init__(
         self, sensing: Sensing, settings: RosbridgeSettings, connection: RosbridgeConnection
@@ -59,7 +59,7 @@ class RosbridgeSubscriptions:
         """The topic of its images, and its type."""
 
     def connect(self, network: Graph) -> None:
-        """Read what is offered under the robot's names now; what has another type now is read anew."""
+        """Subscribe to the topics present under the robot's names; again for those with another type."""
         for kind, topic in self._sensing.topics().items():
             declared = network.topics.get(topic)
             if kind == "image":
@@ -67,12 +67,12 @@ class RosbridgeSubscriptions:
                 continue
             known = self._subscriptions.get(kind)
             if declared is None or (known is not None and known.type_name == declared):
-                # A topic that is gone stays asked for: the server tells it as soon as it is there again.
+                # A missing topic stays subscribed: the server sends it as soon as it is back.
                 continue
             self._read(kind, topic, declared)
 
     def poll(self) -> SendPos | SendGPS | None:
-        """Take in what has come; return the robot's newest position, None where none came."""
+        """Process received messages; return the robot's newest position, or None."""
         self._watch()
         newest: SendPos | SendGPS | None = None
         for kind, subscription in list(self._subscriptions.items()):
@@ -90,7 +90,7 @@ class RosbridgeSubscriptions:
         return newest
 
     def _watch(self) -> None:
-        """Read images only while one is waited for: a camera sends more than a network should carry."""
+        """Subscribe to images only while one is awaited: a camera sends more than a network should carry."""
         if self._camera is not None and self._sensing.wants_image:
             if "image" not in self._subscriptions:
                 self._read("image", *self._camera)
@@ -98,7 +98,7 @@ class RosbridgeSubscriptions:
             self._connection.unsubscribe(subscription.topic)
 
     def _read(self, kind: str, topic: str, declared: str) -> None:
-        """Read a topic of which rosapi has told the type."""
+        """Subscribe to a topic whose type rosapi has reported."""
         if self._subscriptions.pop(kind, None) is not None:
             self._connection.unsubscribe(topic)
         type_name = self._sensing.check_type(kind, topic, declared, declared)
@@ -111,21 +111,21 @@ class RosbridgeSubscriptions:
     def _subscription_of(self, kind: str, type_name: str) -> Subscription:
         own = self._settings
         if kind in ("tf", "tf_static"):
-            # Each message has other frames: none may be left out.
+            # Each message has other frames: none may be skipped.
             return Subscription(type_name, compression=own.compression)
         return Subscription(type_name, own.throttle_ms, own.queue_length, own.compression)
 
 
-# --- What one robot is told over rosbridge: its actions, its services, its topics ---
+# --- Commands to one robot over rosbridge: its actions, services and topics ---
 
 log = logging.getLogger(__name__)
 
 MOST_ANSWERS = 1000
-"""of services that wait to be read."""
+"""answers of services that wait to be read."""
 
 
 class RosbridgeActions:
-    """Speaks to one robot. ``server`` is another one when its action servers have started anew."""
+    """Commands one robot. ``server`` changes when its action servers have restarted."""
 
     def __init__(
         self,
@@ -148,20 +148,20 @@ class RosbridgeActions:
 
     @property
     def feedback(self) -> str | None:
-        """How far its goal is yet."""
+        """The progress of its goal."""
         return self._goals.feedback
 
     def forget_feedback(self) -> None:
-        """Forget how far its goal was."""
+        """Forget the progress of its goal."""
         self._goals.forget_feedback()
 
     @property
     def written(self) -> list[str]:
-        """The topics of which it matters who listens to them."""
+        """The topics whose subscribers are counted."""
         return [self._topic(setting) for setting in WRITTEN if setting in self._patterns]
 
     def connect(self, network: Graph) -> None:
-        """Meet the servers and listeners that are there now."""
+        """Connect to the present servers and subscribers."""
         for action, setting in ACTIONS.items():
             if setting in self._patterns:
                 self._goals.meet(action, self._topic(setting), network)
@@ -176,7 +176,7 @@ class RosbridgeActions:
 
     @property
     def abilities(self) -> Abilities:
-        """Who of the robot's side was there when the network was last looked at."""
+        """The robot's abilities, by the servers present at the last read of the network."""
         return Abilities(
             self._goals.actions,
             goal_topic="goal_pose" in self._listened_to,
@@ -187,11 +187,11 @@ class RosbridgeActions:
         )
 
     def hears(self, setting: str) -> bool:
-        """Tell whether somebody listens to the topic of a setting."""
+        """Return whether the topic of a setting has subscribers."""
         return setting in self._listened_to
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
-        """Take in what servers have said; return the effects."""
+        """Process messages of servers; return the effects."""
         effects = self._goals.poll(tasks, now, fault)
         while self._answers:
             what, action, came = self._answers.popleft()
@@ -202,28 +202,28 @@ class RosbridgeActions:
         return effects
 
     def send_goal(self, request: SendGoal, here: Pose | None) -> None:
-        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+        """Send a goal; ``here`` is the robot's pose. Raises ValueError if it cannot be converted."""
         self._goals.send(request, self._outgoing.goal(request.action, request.task, here))
 
     def ask_result(self, request: SendGoal) -> None:
-        """Nothing is to be asked: rosbridge tells the result to who sent the goal."""
+        """Do nothing: rosbridge sends the result to the sender of the goal."""
 
     def cancel(self, request: CancelGoals) -> None:
         """Cancel goals."""
         cancelled = self._goals.cancel(request)
         if cancelled is None:
             return
-        answered = self._note("cancel" if request.goal_id is None else "cancel one", request.action)
+        answered = self._keeper("cancel" if request.goal_id is None else "cancel one", request.action)
         topic = self._topic(ACTIONS[request.action])
         self._connection.call(f"{topic}/_action/cancel_goal", cancelled, answered, urgent=True)
 
     def call(self, setting: str) -> None:
         """Call a service of type Trigger."""
         if setting in self._services:
-            self._connection.call(self._topic(setting), {}, self._note(setting), urgent=True)
+            self._connection.call(self._topic(setting), {}, self._keeper(setting), urgent=True)
 
     def publish_task(self, request: PublishTask, here: Pose | None) -> None:
-        """Publish a target or a path; raises ValueError where it has no place there."""
+        """Publish a target or a path; raises ValueError if it cannot be converted."""
         if isinstance(request.task, SetPath):
             self._publish("path", self._outgoing.path(request.task))
         else:
@@ -234,22 +234,22 @@ class RosbridgeActions:
         self._publish("goal_pose", self._outgoing.goal(RosAction.TO_POSE, target, here)["pose"])
 
     def publish_zero(self) -> None:
-        """Publish speed 0, with or without a time as its listeners want it."""
+        """Publish speed 0, with or without a time stamp as its subscribers expect."""
         twist = {"linear": {"x": 0.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": 0.0}}
         self._publish("cmd_vel", twist if self._types.get("cmd_vel") == TWIST else {"twist": twist})
 
     def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
-        """Publish where the robot is to take itself to be."""
+        """Publish the robot's initial pose."""
         self._publish("initial_pose", self._outgoing.start(start, here))
 
     def publish_latched(self, setting: str, message: bytes) -> None:
-        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+        """Publish an encoded message on a topic of LATCHED: later subscribers receive it, too."""
         topic = self._topic(setting)
         self._connection.advertise(topic, LATCHED[setting], latched=True)
         self._connection.publish(topic, msgspec.Raw(message), latched=True)
 
     def serve_map(self, grid: bytes) -> None:
-        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+        """Answer the service ``get_map`` with an encoded map."""
         reply = msgspec.Raw(b'{"map":' + grid + b"}")
         self._connection.serve(self._topic("get_map"), GET_MAP, reply)
 
@@ -271,7 +271,7 @@ class RosbridgeActions:
         if setting in self._listened_to:
             self._connection.publish(self._topic(setting), message, urgent=True)
 
-    def _note(self, what: str, action: RosAction | None = None) -> Callable[[Answer], None]:
+    def _keeper(self, what: str, action: RosAction | None = None) -> Callable[[Answer], None]:
         return partial(self._keep, what, action)
 
     def _keep(self, what: str, action: RosAction | None, came: Answer) -> None:
@@ -281,7 +281,7 @@ class RosbridgeActions:
     def _answered(
         self, what: str, action: RosAction | None, came: ServiceResponse, tasks: Tasks
     ) -> list[Effect]:
-        """Take in what a service said; one that could not be called has said a text in place of values."""
+        """Process a service's answer; a failed call has a text instead of values."""
         if action is not None:
             if not came.result:
                 raise FaultError(f"its {CANCEL_GOAL} of {action.value} failed: {str(came.values)[:200]}")
@@ -298,14 +298,14 @@ class RosbridgeActions:
         return tasks.cone_answered(answer.success, answer.message)
 
 
-# --- The adapter of ROS 2 robots behind a rosbridge server: finds them there and leads each, in one loop
+# --- The adapter of ROS 2 robots behind a rosbridge server: discovers and controls them in one loop
 
 EVERY = 0.02
-"""seconds between two looks at what has come."""
+"""seconds between polls of received messages."""
 
 
 class RosbridgeAdapter(RosAdapter[Graph]):
-    """The robots behind one rosbridge server; ``file`` is where it notes the goals that it has sent."""
+    """The robots behind one rosbridge server; ``file`` stores the goals that it has sent."""
 
     kind: ClassVar[str] = "rosbridge"
 
@@ -319,7 +319,7 @@ class RosbridgeAdapter(RosAdapter[Graph]):
         self._goals: list[ActionGoals] = []
 
     async def run(self, link: Link) -> None:
-        """Lead the robots behind the server until cancelled."""
+        """Control the robots behind the server until cancelled."""
         work = (self._connection.run(), self._watch.run(), self._lead_all(link))
         tasks = [asyncio.create_task(one) for one in work]
         try:
@@ -332,13 +332,13 @@ class RosbridgeAdapter(RosAdapter[Graph]):
             await asyncio.gather(*tasks, return_exceptions=True)
 
     async def command(self, command: Command) -> None:
-        """Have a robot take on a command."""
+        """Have a robot accept a command."""
         if self._connection.away is not None:
             raise CommandRefusedError(self._connection.away)
         await super().command(command)
 
     async def stop(self, robot: str, *, emergency: bool) -> None:
-        """Stop a robot; without the server it is asked as soon as that is there."""
+        """Stop a robot; without a connection the stop is sent as soon as the server is back."""
         try:
             await super().stop(robot, emergency=emergency)
         except CommandRefusedError as error:
@@ -381,25 +381,25 @@ class RosbridgeAdapter(RosAdapter[Graph]):
 
     @property
     def written_topics(self) -> list[str]:
-        """The topics of its robots of which it matters who listens to them."""
+        """The topics of its robots whose subscribers are counted."""
         return [topic for acting in self._acting for topic in acting.written]
 
     @property
     def watched_topics(self) -> list[str]:
-        """The topics of its robots of which it matters how many publish them."""
+        """The topics of its robots whose publishers are counted."""
         return [topic for goals in self._goals for topic in goals.watched]
 
     def _store(self, robot: str) -> GoalStore:
         return self._books.setdefault(robot, GoalStore())
 
     def note_goals(self) -> None:
-        """Write down which goals are open, so that the next process of this link sends none of them twice."""
+        """Store the open goals, so that the next process of this link sends none of them twice."""
         noted = {robot: rows for robot, store in self._books.items() if (rows := store.to_json())}
         self._notes.write(noted)
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
+    """Return the settings in ``file`` and the adapter with them; raises LinkError."""
     settings, own = read_settings(file, "rosbridge", RosbridgeSettings)
     check(settings, own)
     state = settings.state_folder / f"{settings.name}.goals"

@@ -24,31 +24,31 @@ from ..ros.errors import FaultError
 from . import decoding
 from .settings import Server
 
-# --- ROS messages as JSON, as they are sent to a rosbridge server: it fills in what is left out ---
+# --- ROS messages as JSON for a rosbridge server, which fills in omitted fields ---
 
 LARGEST_SENT = 10_000_000
-"""bytes of a message: what a rosbridge server takes in unless it is set otherwise."""
+"""bytes of a message: the default limit of a rosbridge server."""
 _WITH_GOALS = ("kilted", "lyrical")
-"""Distributions whose NavigateThroughPoses takes nav_msgs/Goals."""
+"""Distributions whose NavigateThroughPoses uses nav_msgs/Goals."""
 
 
 class JsonMessages:
-    """Makes messages: objects by the names of their fields."""
+    """Builds messages: dicts by field names."""
 
     def __init__(self, distribution: str) -> None:
         self._distribution = distribution
 
     def knows(self, type_name: str) -> bool:
-        """Tell whether the robots' distribution has a type."""
+        """Return whether the robots' distribution has a type."""
         return type_name != "nav_msgs/msg/Goals" or self._distribution in _WITH_GOALS
 
     def make(self, type_name: str, **fields: Any) -> Any:
-        """Return a message; fields that are left out are zero, empty, or made of such."""
+        """Return a message; omitted fields are zero, empty, or built of such."""
         return fields
 
 
 def encode(_type_name: str, message: Any) -> bytes:
-    """Return a message as JSON; raises ValueError for one that no server takes."""
+    """Return a message as JSON; raises ValueError for one that no server accepts."""
     encoded = msgspec.json.encode(message, enc_hook=plain)
     if len(encoded) > LARGEST_SENT:
         raise ValueError(
@@ -65,39 +65,38 @@ def plain(value: Any) -> Any:
     raise TypeError(f"{type(value).__name__} cannot be written as JSON")
 
 
-# --- The connection to a rosbridge server: it comes back, with every topic that was read or written ---
-# What is said while there is no connection is thrown away: who has to be heard says it again while it is
-# due.
+# --- The connection to a rosbridge server: reconnects, and renews all subscriptions and publications ---
+# Messages without a connection are discarded: senders of important ones repeat them while due.
 
 log = logging.getLogger(__name__)
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 10.0
-"""seconds between two attempts to connect."""
+"""seconds between attempts to connect."""
 STABLE_AFTER = 5.0
-"""seconds after which a connection counts as one that holds."""
+"""seconds after which a connection counts as stable."""
 PING_EVERY = 5.0
-"""seconds; a server that does not answer for as long again is gone."""
+"""seconds between pings; a server without an answer for as long again is gone."""
 MOST_KEPT = 64
-"""messages of one topic that wait to be read; older ones are thrown away beyond them."""
+"""messages of one topic that wait to be read; beyond that the oldest are discarded."""
 MOST_WAITING = 2_000
-"""operations that wait to be sent; further ones are thrown away, but for what robots are told."""
+"""operations that wait to be sent; further ones are discarded, except commands to robots."""
 MOST_ANSWERS_WAITING = 100
-"""operations that wait beyond which no service is answered."""
+"""waiting operations beyond which no service call is answered."""
 MOST_CALLS = 10_000
-"""services and goals whose answers are waited for."""
+"""services and goals with pending answers."""
 MOST_FAULTS = 100
 LATELY = 10.0
-"""seconds that a frame which cannot be used is told of."""
+"""seconds for which an unusable frame is reported."""
 TOGETHER = 100
-"""frames that are read before others get a turn."""
+"""frames read before other tasks get a turn."""
 
 MOST_UNREAD, MOST_COMMANDS_UNREAD = 20, 30
-"""operations that a server may not have dealt with yet; the second is for what robots are told. One that has
-256 operations of a client waiting, or 64 answers to it, ends the connection (rosbridge-server-rs)."""
+"""operations that a server may not have processed yet; the second limit is for commands to robots. A server
+with 256 waiting operations of a client, or 64 answers to it, ends the connection (rosbridge-server-rs)."""
 ASK_EVERY = 10
-"""operations after which it is asked whether the server has dealt with them."""
+"""operations after which the server is probed for their completion."""
 UNANSWERED_AFTER = 3.0
-"""seconds without an answer to that after which nothing waits until one comes: stops have to go out."""
+"""seconds without an answer to the probe after which sending continues: stops must go out."""
 
 Frame = bytes | Callable[[], bytes]
 Answer = decoding.ServiceResponse | decoding.ActionFeedback | decoding.ActionResult
@@ -105,12 +104,12 @@ Answer = decoding.ServiceResponse | decoding.ActionFeedback | decoding.ActionRes
 
 @dataclass
 class Inbox:
-    """What has come for one reader, oldest first: messages of a topic, or answers."""
+    """Received items for one reader, oldest first: messages of a topic, or answers."""
 
     waiting: deque[Any] = field(default_factory=lambda: deque(maxlen=MOST_KEPT))
 
     def drain(self) -> list[Any]:
-        """Return what has come, and keep nothing of it."""
+        """Return and remove the received items."""
         came = list(self.waiting)
         self.waiting.clear()
         return came
@@ -118,7 +117,7 @@ class Inbox:
 
 @dataclass(frozen=True)
 class Subscription:
-    """How a topic is asked for."""
+    """Parameters of a subscription."""
 
     type_name: str
     throttle_ms: int = 0
@@ -127,9 +126,9 @@ class Subscription:
 
 
 class RosbridgeConnection:
-    """A client of one server. Not for several threads.
+    """A client of one server. Not thread-safe.
 
-    ``session`` counts the connections; ``away`` says why there is none, and is None while there is one.
+    ``session`` counts the connections; ``away`` is why there is none, None while connected.
     """
 
     def __init__(self, server: Server) -> None:
@@ -137,25 +136,25 @@ class RosbridgeConnection:
         self.away: str | None = f"{server.url}: not connected yet"
         self.session = 0
         self._faults: dict[str, tuple[float, str]] = {}
-        """When something was wrong with a frame, and in words what, by its beginning."""
+        """Times and texts of faulty frames, by the beginning of the text."""
         self._subscribed: dict[str, tuple[Subscription, Inbox]] = {}
         self._advertised: dict[str, bytes] = {}
         self._latched: dict[str, Frame] = {}
         self._served: dict[str, tuple[str, Any]] = {}
-        """Type and reply of the services that are served here."""
+        """Type and reply of the services served here."""
         self._pending_calls: dict[str, Callable[[Answer], None]] = {}
         self._ids = itertools.count(1)
         self._commands: deque[Frame] = deque()
-        """What robots are told, in order: a cancel never comes before the goal that it cancels."""
+        """Commands to robots, in order: a cancel never precedes the goal that it cancels."""
         self._others: deque[Frame] = deque()
         self._wake = asyncio.Event()
         self._sent = self._dealt_with = 0
-        """Operations of this connection, and those that the server has dealt with, for all that is known."""
+        """Operations sent on this connection, and those known to be processed by the server."""
         self._is_answering = True
 
     @property
     def faults(self) -> list[str]:
-        """What is wrong with the connection and what came over it lately, in words."""
+        """Faults of the connection and of recent frames, as texts."""
         since = time.monotonic() - LATELY
         recent = [text for at, text in self._faults.values() if at > since]
         return [*([self.away] if self.away else []), *recent]
@@ -163,7 +162,7 @@ class RosbridgeConnection:
     # --- topics ---------------------------------------------------------------------------------------------
 
     def subscribe(self, topic: str, subscription: Subscription) -> Inbox:
-        """Read a topic, now and after each reconnect."""
+        """Subscribe to a topic, now and after each reconnect."""
         known = self._subscribed.get(topic)
         if known is not None and known[0] == subscription:
             return known[1]
@@ -175,18 +174,18 @@ class RosbridgeConnection:
         return inbox
 
     def renew(self, topic: str) -> None:
-        """Read a topic anew: a server that knows who publishes it asks for what is latched."""
+        """Renew a subscription: a server that knows the publishers requests their latched messages."""
         subscription = self._subscribed[topic][0]
         self._send(_unsubscribe(topic))
         self._send(_subscribe(topic, subscription))
 
     def unsubscribe(self, topic: str) -> None:
-        """Read a topic no more."""
+        """End a subscription."""
         if self._subscribed.pop(topic, None) is not None:
             self._send(_unsubscribe(topic))
 
     def advertise(self, topic: str, type_name: str, *, latched: bool = False) -> None:
-        """Say that a topic will be written, now and after each reconnect."""
+        """Advertise a topic, now and after each reconnect."""
         advertisement = _encoded({"op": "advertise", "topic": topic, "type": type_name, "latch": latched})
         if self._advertised.get(topic) == advertisement:
             return
@@ -199,7 +198,7 @@ class RosbridgeConnection:
         """Publish a message; one that is ``latched`` again after each reconnect."""
         operation = {"op": "publish", "topic": topic, "msg": message}
         if latched:
-            # Encoded when it is its turn: the maps of many robots are one in memory.
+            # Encoded when sent: the maps of many robots share one in memory.
             self._latched[topic] = partial(_encoded, operation)
             self._post(self._latched[topic])
         else:
@@ -210,13 +209,13 @@ class RosbridgeConnection:
     def call(
         self, service: str, args: Any, answered: Callable[[Answer], None], *, urgent: bool = False
     ) -> None:
-        """Call a service; ``answered`` is called once, or never where the connection ends before."""
+        """Call a service; ``answered`` is called once, or never if the connection ends before."""
         id = f"call:{next(self._ids)}"
         self._expect(id, answered)
         self._send({"op": "call_service", "id": id, "service": service, "args": args}, urgent=urgent)
 
     def serve(self, service: str, type_name: str, reply: Any) -> None:
-        """Answer a service with ``reply``, whoever calls it, now and after each reconnect."""
+        """Serve a service with the fixed ``reply``, now and after each reconnect."""
         is_new = service not in self._served
         self._served[service] = (type_name, reply)
         if is_new:
@@ -246,7 +245,7 @@ class RosbridgeConnection:
     # --- the connection -------------------------------------------------------------------------------------
 
     async def run(self) -> None:
-        """Carry operations until cancelled; raises LinkError for what a person has to put right."""
+        """Carry operations until cancelled; raises LinkError for faults that a person must put right."""
         wait = FIRST_WAIT
         loop = asyncio.get_running_loop()
         while True:
@@ -307,7 +306,7 @@ class RosbridgeConnection:
             try:
                 self._receive(decoding.decode_frame(frame))
             except FaultError as error:
-                self._note(str(error))
+                self._record_fault(str(error))
             count += 1
             if count % TOGETHER == 0:
                 await asyncio.sleep(0)
@@ -321,7 +320,7 @@ class RosbridgeConnection:
             self._answer(came)
         elif isinstance(came, decoding.StatusText):
             if came.level == "error":
-                self._note(f"the server said {came.msg[:200]!r}")
+                self._record_fault(f"the server said {came.msg[:200]!r}")
         else:
             last = not isinstance(came, decoding.ActionFeedback)
             answered = self._pending_calls.pop(came.id, None) if last else self._pending_calls.get(came.id)
@@ -329,14 +328,14 @@ class RosbridgeConnection:
                 answered(came)
 
     def _answer(self, came: decoding.ServiceCall) -> None:
-        """Answer a call, unless so much waits already that whoever calls does not read."""
+        """Answer a call, unless too many operations wait: the caller does not read then."""
         if came.service in self._served and len(self._others) < MOST_ANSWERS_WAITING:
             reply = self._served[came.service][1]
             answer = {"op": "service_response", "id": came.id, "service": came.service}
             self._post(partial(_encoded, {**answer, "values": reply, "result": True}))
 
-    def _note(self, text: str) -> None:
-        """Keep what was wrong, and log it once."""
+    def _record_fault(self, text: str) -> None:
+        """Record a fault, and log it once."""
         what = text.partition(":")[0]
         if what not in self._faults:
             log.warning("rosbridge at %s: %s", self._server.url, text)
@@ -353,19 +352,19 @@ class RosbridgeConnection:
                     await connection.send(frame if isinstance(frame, bytes) else frame(), text=True)
                     self._sent += 1
                     if self._sent % ASK_EVERY == 0:
-                        await connection.send(self._question(self.session, self._sent), text=True)
+                        await connection.send(self._probe(self.session, self._sent), text=True)
         except ConnectionClosed:
             return
 
     def _next(self) -> Frame | None:
-        """Return what is to be sent now; None for nothing, or while the server has too much of ours."""
+        """Return the next frame to send; None without one, or while the server has too many unprocessed."""
         unread = self._sent - self._dealt_with if self._is_answering else 0
         if self._commands:
             return self._commands.popleft() if unread < MOST_COMMANDS_UNREAD else None
         return self._others.popleft() if self._others and unread < MOST_UNREAD else None
 
-    def _question(self, session: int, sent: int) -> bytes:
-        """Return a call whose answer says that the server has dealt with all that was ``sent`` before it."""
+    def _probe(self, session: int, sent: int) -> bytes:
+        """Return a call whose answer shows that the server has processed all ``sent`` before it."""
 
         def answered(_: Answer) -> None:
             self._dealt_with, self._is_answering = max(self._dealt_with, sent), True

@@ -1,7 +1,7 @@
-"""The one decoder of what comes from a rosbridge server: bounded before anything is built of it.
+"""Decoder of all data from a rosbridge server: size limits are checked before decoding.
 
 A frame, JSON or CBOR, is one of the operations of the protocol; the fields of a ROS message become a type of
-:mod:`.messages`, with what was asked for and nothing else.
+:mod:`.messages`, with the requested fields and nothing else.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from ...core.json_decoder import DecodingError, JsonBounds, decode_json
 from ..ros.errors import FaultError
 
 LARGEST_FRAME = 32 << 20
-"""bytes beyond which the connection is given up."""
+"""bytes beyond which the connection is closed."""
 LARGEST_DECODED = 4 << 20
-"""bytes: nothing that is asked for is as large."""
+"""bytes: no requested message is as large."""
 BOUNDS = JsonBounds(depth=32, length=LARGEST_DECODED, values=200_000)
 
 _TOPIC_IN_FRAME = re.compile(rb"topic[^/]{1,6}(/[A-Za-z0-9_/]{1,254})")
@@ -53,7 +53,7 @@ _MEANINGS = (
     43000,
     55799,
 )
-"""CBOR tags that cbor2 makes objects of; no rosbridge server sends any of them."""
+"""CBOR tags that cbor2 decodes to objects; no rosbridge server sends any of them."""
 
 T = TypeVar("T")
 
@@ -66,7 +66,7 @@ class Publication(msgspec.Struct, tag_field="op", tag="publish"):
 
 
 class ServiceResponse(msgspec.Struct, tag_field="op", tag="service_response"):
-    """What a service said; ``values`` is a text where ``result`` is false."""
+    """A service's response; ``values`` is a text if ``result`` is false."""
 
     id: str = ""
     values: Any = None
@@ -74,21 +74,21 @@ class ServiceResponse(msgspec.Struct, tag_field="op", tag="service_response"):
 
 
 class ServiceCall(msgspec.Struct, tag_field="op", tag="call_service"):
-    """Somebody calls a service that is served here."""
+    """A call of a service served here."""
 
     service: str
     id: str = ""
 
 
 class ActionFeedback(msgspec.Struct, tag_field="op", tag="action_feedback"):
-    """How far a goal is."""
+    """The progress of a goal."""
 
     id: str = ""
     values: Any = None
 
 
 class ActionResult(msgspec.Struct, tag_field="op", tag="action_result"):
-    """What became of a goal; ``status`` is of action_msgs/GoalStatus, 0 for one not taken on."""
+    """The result of a goal; ``status`` is of action_msgs/GoalStatus, 0 for a refused one."""
 
     id: str = ""
     values: Any = None
@@ -97,7 +97,7 @@ class ActionResult(msgspec.Struct, tag_field="op", tag="action_result"):
 
 
 class StatusText(msgspec.Struct, tag_field="op", tag="status"):
-    """What the server says of an operation that failed."""
+    """The server's message on a failed operation."""
 
     msg: str = ""
     level: str = ""
@@ -119,7 +119,7 @@ def decode_frame(frame: str | bytes) -> Operation:
 
 
 def check_cbor() -> None:
-    """Raise FaultError where CBOR cannot be decoded within bounds here."""
+    """Raise FaultError if CBOR cannot be decoded within bounds here."""
     try:
         _decode_cbor(b"\xa0")
     except (DecodingError, TypeError):
@@ -138,7 +138,7 @@ def convert(content: Any, kind: type[T], what: str) -> T:
 
 
 def _named(frame: str | bytes) -> str:
-    """Return what a frame is, in words, without decoding it."""
+    """Return a description of a frame without decoding it."""
     head = frame[:400]
     found = _TOPIC_IN_FRAME.search(head.encode("utf-8", "replace") if isinstance(head, str) else head)
     return f"a message of {found[1].decode()}" if found else "a message"
@@ -179,7 +179,7 @@ def _refuse(*_: Any) -> Any:
 
 
 def _root(error: BaseException) -> str:
-    """Return the text of what began an error: cbor2 wraps what its hooks raise."""
+    """Return the text of an error's root cause: cbor2 wraps errors of its hooks."""
     while error.__cause__ is not None:
         error = error.__cause__
     return str(error)

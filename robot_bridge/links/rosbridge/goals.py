@@ -1,4 +1,4 @@
-"""Goals of actions over rosbridge: sent, followed, and kept for the next process."""
+"""Goals of actions over rosbridge: sent, tracked, and stored for the next process."""
 
 from __future__ import annotations
 
@@ -20,23 +20,22 @@ from .decoding import ActionFeedback, ActionResult, convert
 from .graph import Graph
 from .messages import GoalStatusArray, NavigationFeedback, NavigationResult
 
-# --- Which of an action server's goals is for which of the gateway's messages; no I/O ---
-# rosbridge lets the server side choose a goal's id, and says it to nobody. So the goals that were known are
-# kept before one is sent: the one that is new afterwards is ours. That is written down before it is sent,
-# and
-# outlives this process.
+# --- Assignment of an action server's goals to the gateway's messages; no I/O ---
+# rosbridge lets the server side choose a goal's id, and does not report it. So the known goals are stored
+# before one is sent: the new one afterwards is ours. That is stored before sending, and outlives this
+# process.
 
 MOST_ENTRIES = 10
-"""goals of one robot that are remembered."""
+"""remembered goals of one robot."""
 MOST_BEFORE = 1000
-"""goals of others that are remembered from before."""
+"""remembered earlier goals of others."""
 
 
 @dataclass
 class Entry:
-    """A goal that was sent: ``goal`` is its id here, ``real`` the one that it has on the robot.
+    """A sent goal: ``goal`` is its id here, ``real`` its id on the robot.
 
-    ``doomed``: it is to be canceled as soon as that is known. ``was_shown``: an action server has named it
+    ``doomed``: it must be canceled as soon as that is known. ``was_shown``: an action server has listed it
     over this connection.
     """
 
@@ -60,22 +59,22 @@ class GoalStore:
         return next((one for one in reversed(self.entries) if one.goal == goal), None)
 
     def add(self, action: RosAction, goal: bytes, known: frozenset[bytes]) -> Entry:
-        """Note that a goal is about to be sent to a server whose goals are ``known``."""
+        """Record that a goal is about to be sent to a server whose goals are ``known``."""
         for earlier in self.entries:
-            # The server has not shown it until now, or has been told by its own id to cancel it.
+            # The server has not listed it until now, or was sent a cancel with its own id.
             earlier.is_over |= earlier.action is action and earlier.real is None
         entry = Entry(action, goal, frozenset(sorted(known)[:MOST_BEFORE]))
         self.entries = [*self.entries, entry][-MOST_ENTRIES:]
         return entry
 
     def forget(self) -> None:
-        """Take it that no server knows any goal."""
+        """Assume that no server knows any goal."""
         self.entries = []
 
     def translate(
         self, action: RosAction, statuses: Mapping[bytes, GoalStatus]
     ) -> tuple[dict[bytes, GoalStatus], bool]:
-        """Return the statuses under the ids that are used here, and whether a goal was found by that."""
+        """Return the statuses by the ids used here, and whether a goal was identified."""
         found = self._claim(action, statuses)
         ours = {one.real: one for one in self.entries if one.action is action and one.real is not None}
         translated = {}
@@ -88,7 +87,7 @@ class GoalStore:
         return translated, found
 
     def _claim(self, action: RosAction, statuses: Mapping[bytes, GoalStatus]) -> bool:
-        """Find the goals that were sent, and whose ids are not known yet, among those that are new."""
+        """Identify sent goals without a known id among the new ones."""
         claimed = {one.real for one in self.entries}
         found = False
         for entry in self.entries:
@@ -102,7 +101,7 @@ class GoalStore:
         return found
 
     def to_json(self) -> list[dict[str, Any]]:
-        """Return it as it is written down."""
+        """Return the goals as JSON values."""
         return [
             {
                 "action": one.action.value,
@@ -116,7 +115,7 @@ class GoalStore:
 
     @classmethod
     def from_json(cls, rows: Any) -> GoalStore:
-        """Return what was written down; raises ValueError, TypeError or KeyError where it was not by us."""
+        """Return the stored goals; raises ValueError, TypeError or KeyError for invalid data."""
         store = cls()
         for row in rows[-MOST_ENTRIES:]:
             real = bytes.fromhex(row["real"]) if row["real"] is not None else None
@@ -125,15 +124,14 @@ class GoalStore:
         return store
 
 
-# --- The goals of one robot's action servers over rosbridge: sent, found on the status topic, lost and told
-# of The status topic decides what a goal is, as it does over DDS; results and feedback, which the server
-# tells to
-# who sent the goal, are details, and stand in where that topic cannot be read.
+# --- The goals of one robot's action servers over rosbridge: sent, identified on the status topic, lost
+# The status topic decides what a goal is, as over DDS; results and feedback, which the server sends to the
+# sender of the goal, are details, and stand in where that topic cannot be read.
 
 log = logging.getLogger(__name__)
 
 SETTLED_AFTER = 2.0
-"""seconds of a connection until a latched message of each status topic has come, if there is one."""
+"""seconds of a connection until the latched message of each status topic has arrived, if any."""
 CANCELED = (GoalStatus.CANCELED, GoalStatus.CANCELING)
 MOST_ANSWERS = 1000
 LOST = "its goal ended while rosbridge was away, and how is not known; look where it is"
@@ -141,14 +139,14 @@ LEFT = "its goal was canceled while rosbridge was away; some servers do that to 
 
 
 class GoalNotes(Protocol):
-    """Where the books of goals are kept for the next process."""
+    """The storage of goals for the next process."""
 
     def note_goals(self) -> None:
-        """Write down which goals are open."""
+        """Store the open goals."""
 
 
 class ActionGoals:
-    """Sends goals and says what becomes of them; ``notes`` has its book written down."""
+    """Sends goals and reports their outcomes; ``notes`` stores them."""
 
     def __init__(
         self, robot: str, connection: RosbridgeConnection, store: GoalStore, notes: GoalNotes
@@ -173,29 +171,29 @@ class ActionGoals:
         """The connection over which a server was last seen there."""
         self._gone: set[RosAction] = set()
         self._publishers: dict[RosAction, int] = {}
-        """How many published a status topic when that was last counted."""
+        """Number of publishers of a status topic at the last count."""
         self._epoch = 0
         self.actions: frozenset[RosAction] = frozenset()
         self.feedback: str | None = None
 
     @property
     def server(self) -> bytes | None:
-        """Who has the robot's goals: another one when servers were seen to have started anew."""
+        """Identity of the servers with the robot's goals: it changes when servers were seen to restart."""
         return self._epoch.to_bytes(8, "big") if self.actions else None
 
     def forget_feedback(self) -> None:
-        """Forget how far a goal was: its server has started anew."""
+        """Forget a goal's progress: its server has restarted."""
         self.feedback = None
 
     @property
     def watched(self) -> list[str]:
-        """The status topics whose publishers are to be counted: those of goals that are open."""
+        """The status topics whose publishers must be counted: those of open goals."""
         open_ones = {one.action for one in self._store.entries if not one.is_over}
         return [f"{self._topics[one]}/_action/status" for one in open_ones if one in self._topics]
 
     def meet(self, action: RosAction, topic: str, network: Graph) -> None:
-        """Note whether an action's server is there now, and whether it is another one than before."""
-        # Over a new connection the server may not have met the robots yet: that tells nothing.
+        """Record whether an action's server is present, and whether it is another one than before."""
+        # On a new connection the server may not have discovered the robots yet: no conclusion.
         is_same = self._seen_over.get(action) == network.session
         if topic not in network.actions:
             if is_same:
@@ -222,13 +220,13 @@ class ActionGoals:
             self._since[action] = time.monotonic()
 
     def send(self, request: SendGoal, goal: Any) -> None:
-        """Send a goal as soon as those are known that are there; one that was sent is not sent again."""
+        """Send a goal once the present goals are known; a sent one is not sent again."""
         entry = self._store.find(request.goal_id)
         if entry is None or entry.is_over or entry.doomed:
             self._held = (request, goal)
 
     def cancel(self, request: CancelGoals) -> dict[str, Any] | None:
-        """Return what its service is to be asked, None where that says nothing to it."""
+        """Return the request to the cancel service, None if it would have no effect."""
         if self._held is not None and request.goal_id in (None, self._held[0].goal_id):
             self._held = None
         if request.goal_id is None:
@@ -243,7 +241,7 @@ class ActionGoals:
         return {"goal_info": {"goal_id": {"uuid": list(entry.real)}}}
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
-        """Take in what has come; return the effects."""
+        """Process received messages; return the effects."""
         if self._connection.away is not None:
             return []
         if self._session != self._connection.session:
@@ -263,7 +261,7 @@ class ActionGoals:
         return effects
 
     def _begin(self) -> None:
-        """Begin with a connection: nothing has been said over it yet."""
+        """Reset the state for a new connection."""
         self._session = self._connection.session
         self._known.clear()
         self._answers.clear()
@@ -272,7 +270,7 @@ class ActionGoals:
             entry.was_shown = False
 
     def _renew(self) -> None:
-        """Take it that the servers have started anew and know no goal."""
+        """Assume that the servers have restarted and know no goal."""
         self._epoch += 1
         self._store.forget()
         self._known.clear()
@@ -302,7 +300,7 @@ class ActionGoals:
         return effects + tasks.statuses_came(action, translated, now)
 
     def _ended(self, entry: Entry, status: GoalStatus, why: str) -> list[Effect]:
-        """Return what is to be said of a goal of an earlier process that is over."""
+        """Return the effects of the end of a goal of an earlier process."""
         message = message_of(entry.goal)
         if status is GoalStatus.SUCCEEDED or message is None:
             return [Idle()]
@@ -310,7 +308,7 @@ class ActionGoals:
         return [Answered(message, reason), Idle()]
 
     def _missing(self, tasks: Tasks, now: float) -> list[Effect]:
-        """Return what is to be said of goals that were sent over an earlier connection and are on no list."""
+        """Return the effects of goals sent over an earlier connection and missing in all lists."""
         effects: list[Effect] = []
         for entry in self._store.entries:
             sent_now = self._sent_in.get(entry.goal) == self._session
@@ -327,7 +325,7 @@ class ActionGoals:
         return effects
 
     def _is_settled(self, action: RosAction, now: float) -> bool:
-        """Tell whether a latched status would have come by now."""
+        """Return whether a latched status would have arrived by now."""
         is_read = self._seen_over.get(action) == self._session
         return is_read and now - self._since[action] >= SETTLED_AFTER
 
@@ -335,7 +333,7 @@ class ActionGoals:
         return self._store.translate(action, self._known.get(action, {}))[0]
 
     def _send_held(self, now: float) -> None:
-        """Send the goal that waits: one that is new afterwards must be told from those before it."""
+        """Send the waiting goal: a new one afterwards must be distinguished from those before."""
         if self._held is None:
             return
         request, goal = self._held
@@ -383,7 +381,7 @@ class ActionGoals:
     def _result_came(self, entry: Entry, came: ActionResult, tasks: Tasks, now: float) -> list[Effect]:
         ended = (GoalStatus.SUCCEEDED, GoalStatus.CANCELED, GoalStatus.ABORTED)
         if came.status not in ended or (isinstance(came.values, str) and not entry.was_shown):
-            # A text in place of a result: the goal was not taken on, or could not be sent.
+            # A text instead of a result: the goal was refused, or could not be sent.
             log.warning("robot %s: %s: %s", self._robot, entry.action.value, str(came.values)[:200])
             entry.is_over = True
             tasks.goal_answered(entry.action, False, now)
@@ -396,7 +394,7 @@ class ActionGoals:
         return self._stand_in(entry, GoalStatus(came.status), tasks, now)
 
     def _stand_in(self, entry: Entry, status: GoalStatus, tasks: Tasks, now: float) -> list[Effect]:
-        """Take a goal's status from what was told of it, while its status topic does not name it."""
+        """Take a goal's status from its result or feedback while its status topic does not list it."""
         if entry.was_shown:
             return []
         entry.is_over |= status not in ACTIVE

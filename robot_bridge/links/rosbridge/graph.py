@@ -1,4 +1,4 @@
-"""Who is there on the robots' network, as the services of rosapi tell it."""
+"""Topics, services and actions on the robots' network, read by the services of rosapi."""
 
 from __future__ import annotations
 
@@ -17,21 +17,21 @@ from .messages import ActionServersReply, PublishersReply, ServicesReply, Subscr
 log = logging.getLogger(__name__)
 
 EVERY = 1.0
-"""seconds between two looks at the network."""
+"""seconds between reads of the network."""
 ANSWER_WITHIN = 10.0
 """seconds for rosapi to answer."""
 SUBSCRIBERS_EVERY = 5
-"""looks at the network for one at who listens to the topics that are written."""
+"""reads of the network per read of the subscribers of written topics."""
 
 Reply = TypeVar("Reply")
 
 
 @dataclass
 class Graph:
-    """Topics with their types, services, actions; how many listen to a topic, how many publish one.
+    """Topics with their types, services, actions; numbers of subscribers and publishers of a topic.
 
-    ``session`` is the connection over which it was learnt. ``listeners`` and ``publishers`` know only what
-    was asked for.
+    ``session`` is the connection over which it was read. ``listeners`` and ``publishers`` contain only
+    requested topics.
     """
 
     session: int = 0
@@ -43,39 +43,39 @@ class Graph:
 
 
 class GraphInterest(Protocol):
-    """What somebody wants to know of the network; asked at each look."""
+    """Selects the topics to be counted; called at each read."""
 
     @property
     def written_topics(self) -> Collection[str]:
-        """The topics of which it matters who listens to them."""
+        """The topics whose subscribers are counted."""
 
     @property
     def watched_topics(self) -> Collection[str]:
-        """The topics of which it matters how many publish them."""
+        """The topics whose publishers are counted."""
 
 
 class GraphWatch:
-    """Asks rosapi again and again. ``fault`` says why nothing is known."""
+    """Polls rosapi. ``fault`` is why nothing is known."""
 
     def __init__(self, connection: RosbridgeConnection, interest: GraphInterest) -> None:
         self._connection = connection
         self._interest = interest
         self.graph = Graph()
         self.looks = 0
-        """How often the network has been looked at."""
+        """Number of reads of the network."""
         self.fault: str | None = None
         self._soon = asyncio.Event()
 
     def look_soon(self) -> None:
-        """Look again without waiting: something has to be asked that nobody knew of at the last look."""
+        """Read again at once: the topics of interest have changed since the last read."""
         self._soon.set()
 
     async def run(self) -> None:
-        """Look again and again, until cancelled."""
+        """Poll until cancelled."""
         while True:
             if self._connection.away is None:
                 try:
-                    await self._look()
+                    await self._poll()
                     self.fault = None
                 except FaultError as error:
                     if self.fault is None:
@@ -86,7 +86,7 @@ class GraphWatch:
                     await self._soon.wait()
             self._soon.clear()
 
-    async def _look(self) -> None:
+    async def _poll(self) -> None:
         session = self._connection.session
         topics = await self._ask("topics", {}, TopicsReply)
         services = await self._ask("services", {}, ServicesReply)
@@ -112,7 +112,7 @@ class GraphWatch:
         self.graph = graph
 
     async def _ask(self, service: str, args: dict[str, str], kind: type[Reply]) -> Reply:
-        """Return what a service of rosapi says; raises FaultError."""
+        """Return the reply of a service of rosapi; raises FaultError."""
         reply: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
 
         def answered(came: Answer) -> None:

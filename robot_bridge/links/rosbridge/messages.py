@@ -1,6 +1,6 @@
-"""ROS messages as rosbridge writes them, each with the fields that are read; NaN comes as null.
+"""ROS messages as encoded by rosbridge, each with the fields read here; NaN is sent as null.
 
-ROS has no null, so where a number is null it was NaN or infinite. Arrays of bytes are base64.
+ROS has no null, so a null number was NaN or infinite. Arrays of bytes are base64.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ class Time(msgspec.Struct):
 
 
 class HeaderMessage(_Message):
-    """When, and in which frame."""
+    """Time and frame."""
 
     stamp: Time = msgspec.field(default_factory=Time)
     frame_id: Text = ""
@@ -79,7 +79,7 @@ class Pose(msgspec.Struct):
 
 
 class PoseWithCovariance(_Message):
-    """A pose, and how sure it is."""
+    """A pose with its covariance."""
 
     pose: Pose
     covariance: Covariance6
@@ -92,7 +92,7 @@ class Twist(msgspec.Struct):
 
 
 class TwistWithCovariance(msgspec.Struct):
-    """A speed; how sure it is, is not read."""
+    """A speed; its covariance is not read."""
 
     twist: Twist
 
@@ -169,7 +169,7 @@ class DiagnosticArray(msgspec.Struct):
 
 
 class TransformMessage(msgspec.Struct):
-    """Where a frame is in its parent."""
+    """The pose of a frame in its parent."""
 
     translation: Vector
     rotation: Quaternion
@@ -233,7 +233,7 @@ class TriggerReply(_Message):
 
 
 class NavigationResult(_Message):
-    """The result of one of Nav2's actions; older ones say nothing."""
+    """The result of one of Nav2's actions; empty from older versions."""
 
     error_code: int = 0
     error_msg: Text = ""
@@ -248,7 +248,7 @@ class NavigationResult(_Message):
 
 
 class NavigationFeedback(msgspec.Struct):
-    """The feedback of one of Nav2's actions; None is what an action has no field for."""
+    """The feedback of one of Nav2's actions; None for fields that an action lacks."""
 
     distance_remaining: Number = None
     distance_to_goal: Number = None
@@ -329,11 +329,11 @@ READABLE: dict[str, type[msgspec.Struct]] = {
     messages.IMAGE: ImageMessage,
     messages.COMPRESSED_IMAGE: CompressedImage,
 }
-"""What a message of each type is read as."""
+"""The class that decodes each message type."""
 
 
 def _bytes_of(value: Any) -> bytes:
-    """Return an array of bytes, which comes as base64, as bytes or as numbers; raises ValueError."""
+    """Return an array of bytes from base64, bytes or numbers; raises ValueError."""
     if isinstance(value, str) and len(value) <= 64:
         try:
             return base64.b64decode(value, validate=True) or b"\0"
@@ -345,7 +345,7 @@ def _bytes_of(value: Any) -> bytes:
 
 
 def _waypoint_number(missed: Any) -> int:
-    """Return the number of a waypoint that was missed; raises ValueError."""
+    """Return the number of a missed waypoint; raises ValueError."""
     number = missed.get("waypoint_index", missed.get("index")) if isinstance(missed, dict) else missed
     if not isinstance(number, int):
         raise ValueError(f"{str(missed)[:40]!r} is no waypoint")

@@ -1,4 +1,4 @@
-"""Table ``[rosbridge]`` of a link's settings: the server, and how much is asked of it."""
+"""Table ``[rosbridge]`` of a link's settings: the server, and the load on it."""
 
 from __future__ import annotations
 
@@ -22,9 +22,9 @@ Compression = Literal["none", "cbor"]
 class RosbridgeSettings(RobotSettings, frozen=True, forbid_unknown_fields=True):
     """Table ``[rosbridge]``; files are beside the settings.
 
-    ``token_file`` is shown as a bearer token, ``user`` with ``password_file`` as basic authentication, to the
-    proxy before the server: rosbridge itself asks nobody. A topic is told every ``throttle_ms`` at most, and
-    ``queue_length`` messages wait for that.
+    ``token_file`` is sent as a bearer token, ``user`` with ``password_file`` as basic authentication, to the
+    proxy before the server: rosbridge itself has no authentication. A topic is sent every ``throttle_ms`` at
+    most, and ``queue_length`` messages wait for that.
     """
 
     url: str = "ws://127.0.0.1:9090"
@@ -39,7 +39,7 @@ class RosbridgeSettings(RobotSettings, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class Server:
-    """Where the server is, and what is shown to it; the files are read anew for each connection."""
+    """Address and credentials of the server; the files are read again for each connection."""
 
     url: str
     credentials: ClientCredentials
@@ -47,10 +47,10 @@ class Server:
     password_file: Path | None = None
 
     def options(self) -> dict[str, Any]:
-        """Return what ``websockets`` is to connect with; raises AccessError."""
+        """Return the connection options for ``websockets``; raises AccessError."""
         if self.user is None or self.password_file is None:
             return self.credentials.options(self.url)
-        # Credentials refuse a secret that would travel for everybody to read.
+        # Credentials refuse to send a secret unencrypted.
         secret = ClientCredentials(self.password_file, self.credentials.ca)
         options = secret.options(self.url)
         password = options["additional_headers"]["Authorization"].removeprefix("Bearer ")
@@ -59,7 +59,7 @@ class Server:
 
 
 def server_of(settings: LinkSettings, own: RosbridgeSettings) -> Server:
-    """Return the server that the settings name."""
+    """Return the server named in the settings."""
 
     def beside(name: str | None) -> Path | None:
         return None if name is None else settings.beside(name)
@@ -69,7 +69,7 @@ def server_of(settings: LinkSettings, own: RosbridgeSettings) -> Server:
 
 
 def check(settings: LinkSettings, own: RosbridgeSettings) -> None:
-    """Raise LinkError, naming file and key, for what the types alone do not refuse."""
+    """Raise LinkError, naming file and key, for errors that the types do not exclude."""
     file = settings.file
     check_robots(own, "rosbridge", settings)
     parts = urlsplit(own.url)

@@ -1,1 +1,1 @@
-"""Phones and GPS receivers: people, cars and tractors that are seen on the map and not commanded."""
+"""Phones and GPS receivers: people, cars and tractors shown on the map and not commanded."""

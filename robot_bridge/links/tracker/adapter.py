@@ -21,7 +21,7 @@ from ..base.settings import LinkSettings, read_settings
 from .nmea import BAUDS, LONGEST, Datagrams, NmeaSources
 from .osmand import LARGEST_HEAD, HttpReports, ReportError, TrackerReport
 
-# --- Table ``[tracker]`` of a link's settings: what is listened to, and who is who ---
+# --- Table ``[tracker]`` of a link's settings: listening addresses, and names of devices ---
 
 _PREFIX_ROOM = 32
 
@@ -29,10 +29,10 @@ _PREFIX_ROOM = 32
 class TrackerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """``http``, ``nmea_tcp`` and ``nmea_udp`` are addresses ``host:port`` to listen on.
 
-    ``names`` gives devices the names that they have on the map: by the id that a phone reports, the IP
-    address that NMEA comes from, or the path of a serial device. A device without a name counts for nothing,
-    unless ``others`` begins the names of those. A position that is older than ``oldest_s`` is taken and not
-    shown. With ``reports_every_s`` a device counts as there for so long after each report.
+    ``names`` maps devices to their names on the map: by the id that a phone reports, the IP address of an
+    NMEA sender, or the path of a serial device. A device without a name is ignored, unless ``others`` gives a
+    prefix for such names. A position older than ``oldest_s`` is accepted but not shown. With
+    ``reports_every_s`` a device counts as alive for so long after each report.
     """
 
     http: str | None = None
@@ -46,7 +46,7 @@ class TrackerSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     reports_every_s: float = 0.0
 
     def check(self, file: Path) -> None:
-        """Raise LinkError, naming file and key, for what cannot be."""
+        """Raise LinkError, naming file and key, for invalid values."""
         for key in ("http", "nmea_tcp", "nmea_udp"):
             address(getattr(self, key), f"{file}: tracker.{key}")
         if not (self.http or self.nmea_tcp or self.nmea_udp or self.nmea_serial):
@@ -87,22 +87,22 @@ def _check(name: str, where: str) -> None:
         raise LinkError(f"{where}: {error}") from None
 
 
-# --- The adapter of trackers: listens to phones and receivers, and tells where they are ---
+# --- The adapter of trackers: listens to phones and receivers, and reports their positions ---
 
 log = logging.getLogger(__name__)
 
 MOST_TRACKERS = 2000
 ALIVE_EVERY = 1.0
 REPORT_EVERY = 5.0
-"""seconds between two reports of what was counted."""
+"""seconds between reports of the counts."""
 MOST_REFUSALS_LOGGED = 5
-"""lines of the log about what one device does wrong."""
+"""log lines about errors of one device."""
 ONLY_SEEN = "a tracker is seen and not commanded"
 _UNUSABLE = re.compile(r"[^A-Za-z0-9_.-]")
 
 
 class TrackerAdapter(Adapter):
-    """Phones and receivers, each under the name that the settings give it."""
+    """Phones and receivers, each under its name in the settings."""
 
     kind: ClassVar[str] = "tracker"
 
@@ -111,9 +111,9 @@ class TrackerAdapter(Adapter):
         self._where = where
         self._link: Link | None = None
         self._last_seen: dict[str, float] = {}
-        """when each was heard last, by a clock that only goes forward."""
+        """when each was last heard, by a monotonic clock."""
         self._devices: dict[str, str] = {}
-        """the device that each name stands for."""
+        """the device of each name."""
         self._counts: Counter[str] = Counter()
         self._refusals: Counter[str] = Counter()
 
@@ -132,16 +132,16 @@ class TrackerAdapter(Adapter):
         raise CommandRefusedError(ONLY_SEEN)
 
     async def stop(self, robot: str, *, emergency: bool) -> None:
-        """Do nothing: who is only seen cannot be stopped."""
+        """Do nothing: trackers cannot be stopped."""
 
     def accept(self, report: TrackerReport) -> None:
-        """Show where a device is; raises ReportError where it is not shown."""
+        """Report a device's position; raises ReportError if it is rejected."""
         assert self._link is not None
         name = self._name(report.device)
         self._counts["reports"] += 1
         age = 0.0 if report.fix.fix_t is None else time.time() - report.fix.fix_t
         if age > self._settings.oldest_s:
-            # A phone that was out of reach tells all that it kept, and would keep it if this were refused.
+            # A phone that was out of reach sends all stored reports, and would keep them if refused.
             self._counts["too_old"] += 1
             return
         if name not in self._last_seen:
@@ -150,7 +150,7 @@ class TrackerAdapter(Adapter):
         self._link.position(name, report.fix)
 
     def refuse(self, source: str, error: Exception) -> None:
-        """Count what cannot be shown of a source, and say so in the log for the first few."""
+        """Count rejected reports of a source, and log the first few."""
         self._counts["refused"] += 1
         if len(self._refusals) < MOST_TRACKERS and self._refusals[source] < MOST_REFUSALS_LOGGED:
             self._refusals[source] += 1
@@ -211,7 +211,7 @@ class TrackerAdapter(Adapter):
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
+    """Return the settings in ``file`` and the adapter with them; raises LinkError."""
     settings, own = read_settings(file, "tracker", TrackerSettings)
     own.check(file)
     return settings, TrackerAdapter(own, f"{file}: tracker")

@@ -19,16 +19,16 @@ from ...core.messages.base import MessageError
 from ...core.messages.robots import SendGPS
 from .osmand import KNOT, MOVING, ReportError, TrackerReport
 
-# --- NMEA 0183 as GPS receivers speak it: sentences in, fixes out; no I/O ---
-# A fix is told with RMC; GGA, GST and VTG before it say more about it. Of receivers that speak no RMC it is
-# told with GGA.
+# --- NMEA 0183 of GPS receivers: sentences in, fixes out; no I/O ---
+# A fix is reported at RMC; GGA, GST and VTG before it add details. For receivers without RMC it is reported
+# at GGA.
 
 LONGEST = 120
-"""characters of a sentence; the standard has 82, and some receivers say more."""
+"""characters of a sentence; the standard has 82, and some receivers send more."""
 _SENTENCE = re.compile(r"[$!]([A-Z]{2})([A-Z]{3}),([\x20-\x7e]*)\*([0-9A-Fa-f]{2})")
 _UNCHECKED = re.compile(r"[$!][A-Z]{5},[^*]*")
 WITHOUT_RMC = 3
-"""GGA sentences in a row after which a receiver counts as one that says no RMC."""
+"""GGA sentences in a row after which a receiver counts as one without RMC."""
 
 
 class Receiver:
@@ -43,7 +43,7 @@ class Receiver:
         self._without_rmc = 0
 
     def feed(self, line: str) -> SendGPS | None:
-        """Return the fix that a sentence completes, None for most; raises ReportError for what is no NMEA."""
+        """Return the fix that a sentence completes, None for most; raises ReportError for invalid NMEA."""
         fields, kind = _fields(line)
         if kind == "RMC":
             return self._rmc(fields)
@@ -98,7 +98,7 @@ class Receiver:
             raise ReportError(str(error)) from None
 
     def _moment(self, clock: str) -> float | None:
-        """Return the time of a fix in seconds since 1970, None before the receiver has said the date."""
+        """Return the time of a fix in seconds since 1970, None before the receiver has sent the date."""
         if self._day is None or not re.fullmatch(r"\d{6}(\.\d{1,6})?", clock):
             return None
         seconds = int(clock[:2]) * 3600 + int(clock[2:4]) * 60 + float(clock[4:])
@@ -160,15 +160,15 @@ def _day(text: str) -> datetime | None:
         raise ReportError(f"{text!r} is no date") from None
 
 
-# --- Where NMEA sentences come from: TCP and UDP, each receiver told by its address, and serial devices
+# --- Sources of NMEA sentences: TCP and UDP, receivers identified by address, and serial devices
 
 log = logging.getLogger(__name__)
 
 MOST_RECEIVERS = 500
 SILENT_FOR = 300.0
-"""seconds after which a TCP connection that says nothing is closed."""
+"""seconds after which a silent TCP connection is closed."""
 OPEN_AGAIN = 2.0
-"""seconds after which a serial device that is not there is looked for again."""
+"""seconds between attempts to open a missing serial device."""
 BAUDS = {
     rate: getattr(termios, f"B{rate}")
     for rate in (4800, 9600, 19200, 38400, 57600, 115200, 230400, 460800)
@@ -180,7 +180,7 @@ Refuse = Callable[[str, Exception], None]
 
 
 class NmeaSources:
-    """Feeds receivers with what comes from each source; ``refuse`` is told what counts for nothing."""
+    """Feeds receivers with data of each source; ``refuse`` is called for rejected lines."""
 
     def __init__(self, accept: Accept, refuse: Refuse) -> None:
         self._accept = accept
@@ -189,7 +189,7 @@ class NmeaSources:
         self._open = 0
 
     def feed(self, source: str, line: bytes, receiver: Receiver) -> None:
-        """Deal with one line of a source."""
+        """Process one line of a source."""
         text = line.strip().decode("ascii", "replace")
         if not text:
             return
@@ -229,7 +229,7 @@ class NmeaSources:
             self.feed(source, line, receiver)
 
     def datagram(self, source: str, data: bytes) -> None:
-        """Deal with one datagram, which may hold several sentences."""
+        """Process one datagram, which may hold several sentences."""
         receiver = self._receivers.pop(source, None) or Receiver()
         self._receivers[source] = receiver
         while len(self._receivers) > MOST_RECEIVERS:
@@ -272,5 +272,5 @@ class Datagrams(asyncio.DatagramProtocol):
         self._sources = sources
 
     def datagram_received(self, data: bytes, addr: tuple[str, int]) -> None:
-        """Deal with a datagram."""
+        """Process a datagram."""
         self._sources.datagram(str(addr[0]), data)

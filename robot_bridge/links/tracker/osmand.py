@@ -1,4 +1,4 @@
-"""OsmAnd protocol over HTTP, which Traccar Client speaks: server, requests, fixes."""
+"""OsmAnd protocol over HTTP, as used by Traccar Client: server, requests, fixes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from ...core.json_decoder import DecodingError, JsonBounds, decode_json
 from ...core.messages.base import MessageError
 from ...core.messages.robots import SendGPS
 
-# --- The OsmAnd protocol, which Traccar Client and others speak over HTTP: texts in, fixes out; no I/O
+# --- The OsmAnd protocol of Traccar Client and others over HTTP: texts in, fixes out; no I/O
 # A report is the query of a GET or the form of a POST, or (newer clients) JSON. Speeds are knots in the
 # first
 # and m/s in the second, batteries per cent and a fraction.
@@ -24,7 +24,7 @@ from ...core.messages.robots import SendGPS
 KNOT = 0.514444
 """m/s."""
 MOVING = 0.5
-"""m/s above which a course over ground says which way somebody goes."""
+"""m/s above which a course over ground is used as the heading."""
 MOST_FIELDS = 100
 LONGEST_DEVICE = 64
 MILLISECONDS_FROM = 1e11
@@ -33,12 +33,12 @@ _JSON = JsonBounds(depth=12, length=256 << 10, values=5_000)
 
 
 class ReportError(ValueError):
-    """A report that cannot be understood; the text says what is wrong in it."""
+    """An invalid report; the text says what is wrong with it."""
 
 
 @dataclass(frozen=True)
 class TrackerReport:
-    """Where a ``device``, as it calls itself, was."""
+    """A position of a ``device``, under its own id."""
 
     device: str
     fix: SendGPS
@@ -116,7 +116,7 @@ def _report(
     battery: float | None,
     fix_t: float | None,
 ) -> TrackerReport:
-    # Whoever stands has no course, and some receivers say 0 then, which would be north.
+    # A standing device has no course, and some receivers send 0 then, which would be north.
     heading = course % 360 if course is not None and v is not None and v > MOVING else None
     try:
         fix = SendGPS(
@@ -152,7 +152,7 @@ def _needed(name: str, value: Any) -> float:
 
 
 def _known(fields: Mapping[str, Any], name: str) -> float | None:
-    """Return a number; phones say -1 for what they do not know."""
+    """Return a number; phones send -1 for unknown values."""
     number = _number(fields, name)
     return None if number is not None and number < 0 else number
 
@@ -191,7 +191,7 @@ def _moment(text: str) -> float:
         raise ReportError(f"timestamp is {text[:40]!r}; give seconds or a date") from None
 
 
-# --- The HTTP server that phones report to: small requests, answered at once, each bounded in size and time
+# --- The HTTP server for phones: small requests, answered at once, each bounded in size and time
 
 log = logging.getLogger(__name__)
 
@@ -202,11 +202,11 @@ LARGEST_HEAD = 16 << 10
 LARGEST_BODY = 256 << 10
 
 Accept = Callable[[TrackerReport], None]
-"""Takes a report; raises ReportError for one that counts for nothing."""
+"""Receives a report; raises ReportError for a rejected one."""
 
 
 class RequestError(Exception):
-    """A request that is not dealt with, and the connection is closed behind the answer."""
+    """An invalid request; the connection is closed after the answer."""
 
     def __init__(self, status: str, text: str) -> None:
         super().__init__(text)
@@ -214,7 +214,7 @@ class RequestError(Exception):
 
 
 class HttpReports:
-    """Answers phones: 200 for a report that is shown, 400 with the reason for one that is not."""
+    """Answers phones: 200 for an accepted report, 400 with the reason for a rejected one."""
 
     def __init__(self, accept: Accept) -> None:
         self._accept = accept
@@ -230,7 +230,7 @@ class HttpReports:
             while await self._request(reader, writer):
                 pass
         except (OSError, EOFError, TimeoutError, ValueError):
-            # It went away in the middle of a request, or never ended one.
+            # The client disconnected within a request, or never completed one.
             return
         finally:
             self._open -= 1
@@ -239,7 +239,7 @@ class HttpReports:
                 await writer.wait_closed()
 
     async def _request(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> bool:
-        """Deal with one request; return whether the client may send another."""
+        """Process one request; return whether the client may send another."""
         try:
             async with asyncio.timeout(REQUEST_WITHIN):
                 method, target, headers = _head(await _head_of(reader))
