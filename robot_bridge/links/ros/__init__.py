@@ -1,1 +1,1 @@
-"""What robots on ROS share however they are reached: their messages, their tasks, how they are stopped."""
+"""Shared parts of the ROS adapters, over any transport: messages, tasks, stops."""

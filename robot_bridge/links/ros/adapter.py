@@ -1,4 +1,4 @@
-"""Base of the adapters of ROS robots: robots found by their topics, and notes kept of each on the disk."""
+"""Base of the adapters of ROS robots: discovery of robots by topics, and stored notes on each."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from ..base.errors import CommandRefusedError, LinkError
 from .robot import RosRobot
 from .settings import RobotSettings
 
-# --- What a link of ROS robots keeps of each for its next process: one file, written whole ---
+# --- Notes on each robot, stored for the next process of the link: one file, written whole ---
 
 log = logging.getLogger(__name__)
 
@@ -25,9 +25,9 @@ Note = TypeVar("Note")
 
 
 class RobotNotes:
-    """A file of notes by robot. A full disk ends no link, which stops its robots there, too.
+    """A file of notes by robot. A full disk must not end a link, which must still stop its robots.
 
-    ``fault`` says why the newest notes are not in the file, None where they are.
+    ``fault`` is why the newest notes are not in the file, or None.
     """
 
     def __init__(self, file: Path) -> None:
@@ -35,9 +35,9 @@ class RobotNotes:
         self.fault: str | None = None
 
     def read(self, decode: Callable[[Any], Note]) -> dict[str, Note]:
-        """Return the notes of an earlier process; none where that cannot be read.
+        """Return the notes of an earlier process; none if unreadable.
 
-        ``decode`` raises ValueError, TypeError or KeyError for a note that is none.
+        ``decode`` raises ValueError, TypeError or KeyError for an invalid note.
         """
         try:
             known = decode_json(self._file.read_bytes())
@@ -49,7 +49,7 @@ class RobotNotes:
             return {}
 
     def write(self, notes: Mapping[str, Any]) -> None:
-        """Write notes in place of what was; what is wrong with that is logged once, and kept as ``fault``."""
+        """Replace the stored notes; an error is logged once, and kept as ``fault``."""
         try:
             write_state(self._file, json.dumps(notes).encode(), synced=False)
         except OSError as error:
@@ -61,7 +61,7 @@ class RobotNotes:
             self.fault = None
 
 
-# --- What adapters of ROS robots share: robots are found, each is led by itself, and told of together ---
+# --- Common base of ROS adapters: discovers robots, controls each separately, reports them together ---
 
 MOST_ROBOTS = 5000
 
@@ -71,7 +71,7 @@ UNKNOWN = "no robot of this name was found on the ROS network"
 
 
 class RosAdapter(Adapter, Generic[Network]):
-    """The robots of one network; with ``keeps_servers`` its notes are of who has their tasks."""
+    """The robots of one network; with ``keeps_servers`` its notes are the identities of their servers."""
 
     def __init__(self, settings: RobotSettings, notes: RobotNotes, *, keeps_servers: bool = True) -> None:
         self.holds_s = settings.hold_s
@@ -85,7 +85,7 @@ class RosAdapter(Adapter, Generic[Network]):
         self._failed: set[str] = set()
 
     async def command(self, command: Command) -> None:
-        """Have a robot take on a command."""
+        """Have a robot accept a command."""
         robot = self._robots.get(command.robot)
         if robot is None:
             raise CommandRefusedError(UNKNOWN)
@@ -99,12 +99,12 @@ class RosAdapter(Adapter, Generic[Network]):
         await known.stop()
 
     def admitted(self, robot: str) -> None:
-        """Tell where a robot is that was let in."""
+        """Report the position of an admitted robot."""
         if robot in self._robots:
             self._robots[robot].admitted()
 
     def _find(self, topics: list[str], network: Network, make: Make[Network]) -> None:
-        """Meet the robots whose position topic is one of ``topics``, and have all meet who is there."""
+        """Create robots whose position topic is one of ``topics``, and connect all to the present network."""
         if not self._named:
             for topic in topics:
                 name = self._patterns["position"].robot_of(topic)
@@ -115,7 +115,7 @@ class RosAdapter(Adapter, Generic[Network]):
         self._note_servers()
 
     def _lead(self, robot: RosRobot[Network], work: Callable[[], None]) -> None:
-        """Do some work for a robot; what nobody foresaw concerns that robot alone, and is logged once."""
+        """Do some work for a robot; an unforeseen error affects that robot alone, and is logged once."""
         try:
             work()
         except LinkError:
@@ -148,11 +148,11 @@ class RosAdapter(Adapter, Generic[Network]):
         link.report(ok=not faults, text=summary(faults), counts=counts, reached=not unreached)
 
     def _network_faults(self) -> list[str]:
-        """Return what is wrong with the way to all robots, in words."""
+        """Return the faults of the connection to all robots, as texts."""
         return []
 
     def _note_servers(self) -> None:
-        """Keep who has the robots' tasks, so that the next process of this link sees who has started anew."""
+        """Store who serves the robots' tasks, so that the next process of this link detects restarts."""
         if not self._keeps_servers:
             return
         servers = {name: robot.server.hex() for name, robot in self._robots.items() if robot.server}
@@ -163,5 +163,5 @@ class RosAdapter(Adapter, Generic[Network]):
 
 
 def _server(key: str) -> str:
-    """Return a participant's key as it is noted; raises ValueError or TypeError for what is none."""
+    """Return a participant's stored key; raises ValueError or TypeError if invalid."""
     return bytes.fromhex(key).hex()

@@ -1,4 +1,4 @@
-"""What is to be done for one robot, decided without I/O and carried out by :mod:`.robot`."""
+"""Effects for one robot, decided without I/O and carried out by :mod:`.robot`."""
 
 from __future__ import annotations
 
@@ -18,16 +18,16 @@ class RosAction(str, Enum):
 
 
 PATH_ACTIONS = (RosAction.FOLLOW_PATH, RosAction.THROUGH_POSES, RosAction.WAYPOINTS)
-"""Those that drive a path, the one that keeps to it best first."""
+"""Actions that drive a path, the one that follows it best first."""
 
 
 @dataclass(frozen=True)
 class Abilities:
-    """What somebody on the robot's side listens to at the moment, found by discovery."""
+    """Servers and subscribers present on the robot's side, found by discovery."""
 
     actions: frozenset[RosAction] = frozenset()
     foreign: frozenset[RosAction] = frozenset()
-    """Those of another distribution: goals sent to them could not be read, and theirs can be canceled."""
+    """Actions of another distribution: goals sent to them could not be read; theirs can be canceled."""
     goal_topic: bool = False
     path_topic: bool = False
     velocity: bool = False
@@ -42,7 +42,7 @@ class Abilities:
 
 @dataclass(frozen=True)
 class Answered:
-    """The robot took on the gateway's ``message``; with a ``refusal`` it did not, or gave it up since."""
+    """The robot accepted the gateway's ``message``; with a ``refusal`` it did not, or gave it up since."""
 
     message: int
     refusal: str | None = None
@@ -50,14 +50,14 @@ class Answered:
 
 @dataclass(frozen=True)
 class StopEnded:
-    """The robot's side has confirmed the stop; with a ``refusal`` nobody has in time."""
+    """The robot's side has confirmed the stop; with a ``refusal`` it has not in time."""
 
     refusal: str | None = None
 
 
 @dataclass(frozen=True)
 class Idle:
-    """The robot has nothing to do."""
+    """The robot is idle."""
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class SendGoal:
 
 @dataclass(frozen=True)
 class CancelGoals:
-    """Ask an action server to cancel one goal; without ``goal_id`` all, whoever sent them."""
+    """Ask an action server to cancel one goal; without ``goal_id`` all, from any client."""
 
     action: RosAction
     goal_id: bytes | None = None
@@ -94,7 +94,7 @@ class PublishTask:
 
 @dataclass(frozen=True)
 class PublishHere:
-    """Publish the place where the robot is as its target: who drives to targets on a topic stays there."""
+    """Publish the robot's own place as its target: robots that drive to targets on a topic stay there."""
 
 
 @dataclass(frozen=True)

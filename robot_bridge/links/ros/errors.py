@@ -1,8 +1,8 @@
-"""What can be wrong with a ROS network, its messages and the settings that name it."""
+"""Errors of a ROS network, its messages and settings."""
 
 
 class RosError(Exception):
-    """What an adapter of ROS robots refuses; the text names what was wrong, where, and what to do."""
+    """An error in an adapter of ROS robots; the text names the fault, its place, and advice."""
 
 
 class RosNameError(RosError):
@@ -10,4 +10,4 @@ class RosNameError(RosError):
 
 
 class FaultError(RosError):
-    """A message of one robot that cannot be used; the others go on."""
+    """A message of one robot that cannot be used; the others continue."""

@@ -1,7 +1,7 @@
-"""Goals of ROS 2 actions: their ids, what becomes of them, and the words for that; no I/O.
+"""Goals of ROS 2 actions: ids, outcomes, and texts for these; no I/O.
 
-Replies to ``send_goal`` and ``get_result`` do not say to whom they are or to which goal, and every client of
-a service hears them all. The status topic says each goal's id: it decides, and replies are details.
+Replies to ``send_goal`` and ``get_result`` name neither client nor goal, and every client of a service
+receives them all. The status topic has each goal's id: it decides, and replies are details.
 """
 
 from __future__ import annotations
@@ -11,11 +11,11 @@ from enum import IntEnum
 from typing import Any
 
 _MARK = b"FLSV"
-"""How the ids of our goals begin."""
+"""Prefix of the ids of our goals."""
 _FOR_CONE = 1 << 63
-"""The bit in the number of a message, never as large, of a goal at whose end a cone is handled."""
+"""The bit in the number of a message, never as large, of a goal with a cone handled at its end."""
 MOST_GOALS = 1000
-"""goals in one status message that are looked at."""
+"""goals read in one status message."""
 
 
 class GoalStatus(IntEnum):
@@ -40,21 +40,21 @@ Statuses = Mapping[bytes, GoalStatus]
 def goal_id(message: int, salt: int = 0, *, cone: bool = False) -> bytes:
     """Return the id, 16 bytes, of the goal for a gateway's message.
 
-    The same message gives the same goal: said twice it is done once, and whoever starts anew knows which
-    message a goal on the robot is for, and whether a cone is placed or collected behind it. ``salt`` makes
-    another one, below 2³².
+    The same message gives the same goal: sent twice it is done once, and a restarted process knows the
+    message of a goal on the robot, and whether a cone is placed or collected after it. ``salt``, below 2³²,
+    gives another id.
     """
     return _MARK + salt.to_bytes(4, "big") + (message | (_FOR_CONE if cone else 0)).to_bytes(8, "big")
 
 
 def message_of(goal: bytes) -> int | None:
-    """Return the gateway's message that a goal is for, None for a goal that is no gateway's."""
+    """Return the gateway's message of a goal, None for a foreign goal."""
     is_ours = goal.startswith(_MARK) and len(goal) == 16
     return int.from_bytes(goal[8:], "big") & ~_FOR_CONE if is_ours else None
 
 
 def is_for_cone(goal: bytes) -> bool:
-    """Tell whether a cone is placed or collected where a goal of ours ends."""
+    """Return whether a cone is placed or collected at the end of a goal of ours."""
     return message_of(goal) is not None and bool(int.from_bytes(goal[8:], "big") & _FOR_CONE)
 
 
@@ -102,7 +102,7 @@ def failure_of(status: GoalStatus, error_code: int | None, error_msg: str | None
 
 
 def missed_of(result: Any) -> list[int]:
-    """Return the numbers, from 0, of the waypoints that a result of FollowWaypoints says were missed."""
+    """Return the numbers, from 0, of the waypoints missed according to a result of FollowWaypoints."""
     found = []
     for one in getattr(result, "missed_waypoints", ()):
         found.append(int(getattr(one, "index", getattr(one, "waypoint_index", one))))
@@ -110,7 +110,7 @@ def missed_of(result: Any) -> list[int]:
 
 
 def missed_text(missed: Sequence[int]) -> str:
-    """Return why a goal that has ended well has not been driven, for operators; they count from 1."""
+    """Return the missed waypoints of a succeeded goal as text for operators, counted from 1."""
     named = ", ".join(str(number + 1) for number in missed[:_MOST_NAMED])
     more = f" and {len(missed) - _MOST_NAMED} more" if len(missed) > _MOST_NAMED else ""
     return f"the robot left out points of the path: {named}{more}"

@@ -19,7 +19,7 @@ from ..base.frames import LinkFrame
 from .effects import RosAction
 from .errors import FaultError
 
-# --- Names of the ROS types that are read and written, by the settings that name their topics ---
+# --- ROS types read and written, by the settings of their topics ---
 
 ODOMETRY = "nav_msgs/msg/Odometry"
 POSE = "geometry_msgs/msg/PoseStamped"
@@ -62,7 +62,7 @@ LATCHED = {
     "speed_mask": GRID,
     "speed_info": FILTER_INFO,
 }
-"""What is published once, for those too that listen later."""
+"""Topics published once, latched for later subscribers."""
 ACTIONS = {
     RosAction.TO_POSE: "navigate_to_pose",
     RosAction.THROUGH_POSES: "navigate_through_poses",
@@ -82,26 +82,26 @@ def action_type(action: RosAction) -> str:
 
 Pose = tuple[float, float, float]
 MOST_CELLS = 16_000_000
-"""cells of a grid that is published: 16 MB, which DDS carries in some hundred milliseconds."""
+"""cells of a published grid: 16 MB, which DDS carries in some hundred milliseconds."""
 _START_COVARIANCE = np.zeros(36)
 _START_COVARIANCE[[0, 7, 35]] = 0.25, 0.25, 0.07
-"""m², m², rad²: how sure a start is, as RViz says it."""
+"""m², m², rad²: covariance of an initial pose, as sent by RViz."""
 
 
 class Messages(Protocol):
-    """Makes messages as the way to the robot carries them."""
+    """Builds messages in the form of the robot's transport."""
 
     def knows(self, type_name: str) -> bool:
-        """Tell whether the robots' distribution has a type."""
+        """Return whether the robots' distribution has a type."""
 
     def make(self, type_name: str, **fields: Any) -> Any:
-        """Return a message; fields that are left out are zero, empty, or made of such."""
+        """Return a message; omitted fields are zero, empty, or built of such."""
 
 
 def end_pose(order: SetPosEnd | SetPath, here: Pose | None) -> Pose:
-    """Return where an order ends, in the site frame; Nav2 wants a heading, so one that is open is made up.
+    """Return the end pose of an order, in the site frame; Nav2 needs a heading, so an open one is chosen.
 
-    That is the direction in which the robot comes: from the point before, or from where it is.
+    It is the direction of approach: from the previous point, or from the robot's position.
     """
     if isinstance(order, SetPath):
         (x, y), (from_x, from_y) = order.points[-1], order.points[-2]
@@ -116,7 +116,7 @@ def end_pose(order: SetPosEnd | SetPath, here: Pose | None) -> Pose:
 
 
 def path_poses(order: SetPath) -> list[Pose]:
-    """Return the poses of a path, in the site frame: each looks to the next."""
+    """Return the poses of a path, in the site frame: each faces the next."""
     points = order.points
     ahead = [math.atan2(b[1] - a[1], b[0] - a[0]) for a, b in pairwise(points)]
     return [(*point, theta) for point, theta in zip(points[:-1], ahead, strict=True)] + [
@@ -125,7 +125,7 @@ def path_poses(order: SetPath) -> list[Pose]:
 
 
 class Outgoing:
-    """Makes messages in the map frame of a link's robots. Raises ValueError for what has no place there."""
+    """Builds messages in the map frame of a link's robots. Raises ValueError for unconvertible places."""
 
     def __init__(self, types: Messages, frame: LinkFrame, map_frame: str) -> None:
         self._types = types
@@ -142,7 +142,7 @@ class Outgoing:
         return self._types.make(PATH, header=self._header(), poses=poses)
 
     def goal(self, action: RosAction, order: SetPosEnd | SetPath, here: Pose | None) -> dict[str, Any]:
-        """Return the fields of a goal; ``here`` is where the robot is."""
+        """Return the fields of a goal; ``here`` is the robot's pose."""
         if action is RosAction.TO_POSE:
             return {"pose": self.pose_stamped(end_pose(order, here))}
         assert isinstance(order, SetPath), "a target has no path"
@@ -154,7 +154,7 @@ class Outgoing:
         return {"poses": poses}
 
     def start(self, order: SetPosIni, here: Pose | None) -> Any:
-        """Return a geometry_msgs/PoseWithCovarianceStamped: where the robot is to take itself to be."""
+        """Return a geometry_msgs/PoseWithCovarianceStamped: the robot's initial pose."""
         theta = order.theta if order.theta is not None else (here[2] if here is not None else 0.0)
         pose = self._types.make(
             "geometry_msgs/msg/PoseWithCovariance",
@@ -202,12 +202,12 @@ class Outgoing:
         return self._types.make("geometry_msgs/msg/Pose", position=position, orientation=turned)
 
 
-# --- Images out of ROS messages as the gateway takes them: JPEG, PNG or WebP of a bounded size; no I/O
+# --- Images from ROS messages for the gateway: JPEG, PNG or WebP of a bounded size; no I/O
 
 MOST_PIXELS = 640 * 480
-"""of an image that comes uncompressed: of a larger one every second, third ... pixel is taken."""
+"""pixels of an uncompressed image: of a larger one every second, third ... pixel is used."""
 COARSEST = 16
-"""pixels to a side of which one is taken at most."""
+"""largest step in pixels per side."""
 _ENCODINGS: dict[str, tuple[int, list[int]]] = {
     "rgb8": (3, [0, 1, 2]),
     "bgr8": (3, [2, 1, 0]),
@@ -218,13 +218,13 @@ _ENCODINGS: dict[str, tuple[int, list[int]]] = {
     "mono8": (1, [0]),
     "8UC1": (1, [0]),
 }
-"""How many bytes a pixel has, and which of them are red, green and blue, or grey."""
+"""Bytes per pixel, and the indices of red, green and blue, or grey."""
 
 
 def image_of(type_name: str, message: Any, largest: int) -> bytes:
     """Return the image in a sensor_msgs/Image or CompressedImage, at most ``largest`` bytes.
 
-    :raises FaultError: for what is no image, is encoded in another way, or does not become small enough.
+    :raises FaultError: for an invalid image, another encoding, or one that cannot be made small enough.
     """
     if type_name == COMPRESSED_IMAGE:
         return _compressed(message, largest)

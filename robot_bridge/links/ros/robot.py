@@ -1,4 +1,4 @@
-"""One ROS robot of a link, and its camera, between the gateway and the network that reaches it."""
+"""One ROS robot of a link, and its camera, between the gateway and the robots' network."""
 
 from __future__ import annotations
 
@@ -40,52 +40,52 @@ from .settings import RobotSettings
 from .site_maps import KEEPOUT, SPEED, Grids, Masks, SiteMasks
 from .tasks import Tasks
 
-# --- What the way to a robot does for it, however that is made: over DDS, or over rosbridge ---
+# --- Interface of the transport to a robot: DDS, or rosbridge ---
 
 Network = TypeVar("Network", contravariant=True)
-"""Who is there on the network, as that way to the robot knows it."""
+"""The nodes present on the network, as known to that transport."""
 
 
 class Hearing(Protocol[Network]):
-    """Hears a robot's topics."""
+    """Receives a robot's topics."""
 
     def connect(self, network: Network) -> None:
-        """Read what is offered under the robot's names now."""
+        """Subscribe to the topics present under the robot's names."""
 
     def poll(self) -> SendPos | SendGPS | None:
-        """Take in what has come; return the robot's newest position, None where none came."""
+        """Process received messages; return the robot's newest position, or None."""
 
 
 class RobotActions(Protocol[Network]):
-    """Speaks to a robot. ``server`` is who has its tasks, None where nobody does."""
+    """Commands a robot. ``server`` identifies the server with its tasks, None without one."""
 
     server: bytes | None
 
     @property
     def feedback(self) -> str | None:
-        """How far its goal is yet; None where that is not known."""
+        """The progress of its goal; None if unknown."""
 
     def forget_feedback(self) -> None:
-        """Forget how far its goal was."""
+        """Forget the progress of its goal."""
 
     @property
     def abilities(self) -> Abilities:
-        """Who of the robot's side hears this program at the moment."""
+        """The robot's abilities, by the servers and subscribers present now."""
 
     def connect(self, network: Network) -> None:
-        """Meet the servers and listeners that are there now."""
+        """Connect to the present servers and subscribers."""
 
     def hears(self, setting: str) -> bool:
-        """Tell whether somebody listens to the topic of a setting."""
+        """Return whether the topic of a setting has subscribers."""
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Effect]:
-        """Take in what servers have said; return the effects."""
+        """Process messages of servers; return the effects."""
 
     def send_goal(self, request: SendGoal, here: Pose | None) -> None:
-        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+        """Send a goal; ``here`` is the robot's pose. Raises ValueError if it cannot be converted."""
 
     def ask_result(self, request: SendGoal) -> None:
-        """Ask for the result of a goal that was taken on."""
+        """Request the result of an accepted goal."""
 
     def cancel(self, request: CancelGoals) -> None:
         """Cancel goals."""
@@ -94,29 +94,29 @@ class RobotActions(Protocol[Network]):
         """Call a service of type Trigger."""
 
     def publish_task(self, request: PublishTask, here: Pose | None) -> None:
-        """Publish a target or a path; raises ValueError where it has no place there."""
+        """Publish a target or a path; raises ValueError if it cannot be converted."""
 
     def publish_target(self, target: SetPosEnd, here: Pose | None) -> None:
         """Publish a target."""
 
     def publish_zero(self) -> None:
-        """Publish speed 0, with or without a time as its listeners want it."""
+        """Publish speed 0, with or without a time stamp as its subscribers expect."""
 
     def publish_start(self, start: SetPosIni, here: Pose | None) -> None:
-        """Publish where the robot is to take itself to be."""
+        """Publish the robot's initial pose."""
 
     def publish_latched(self, setting: str, message: bytes) -> None:
-        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+        """Publish an encoded message on a topic of LATCHED: later subscribers receive it, too."""
 
     def serve_map(self, grid: bytes) -> None:
-        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+        """Answer the service ``get_map`` with an encoded map."""
 
 
-# --- One robot's images on their way to the gateway: seldom, one at a time, with the place of the robot
+# --- One robot's images sent to the gateway: at intervals, one at a time, with the robot's place
 
 
 class Camera:
-    """Has the robot's sensing wait for an image when one is due, and sends it as an observation."""
+    """Requests an image from the robot's sensing when one is due, and sends it as an observation."""
 
     def __init__(self, robot: str, settings: RobotSettings, link: Link, sensing: Sensing) -> None:
         self._robot = robot
@@ -127,7 +127,7 @@ class Camera:
         self._sending: asyncio.Task[None] | None = None
 
     def step(self, now: float) -> None:
-        """Send the image that has come; ``now`` is a steady clock's."""
+        """Send a received image; ``now`` is a steady clock's."""
         sensing, image = self._sensing, self._sensing.image
         sensing.image = None
         place = self._place()
@@ -138,7 +138,7 @@ class Camera:
         sensing.wants_image = is_free and now >= self._due and place is not None
 
     def _place(self) -> tuple[float, float] | None:
-        """Return where the robot is in the site frame, None while that is not known."""
+        """Return the robot's place in the site frame, None while unknown."""
         pose, fix = self._sensing.pose, self._sensing.fix
         if pose is not None:
             return pose.x, pose.y
@@ -168,22 +168,22 @@ class Camera:
             self._sensing.faults.pop(topic, None)
 
 
-# --- One ROS robot of a link: what it says goes to the gateway, what the gateway says is done ---
+# --- One ROS robot of a link: reports to the gateway, and executes its commands ---
 
 log = logging.getLogger(__name__)
 
 ABLE_WITHIN = 2.0
-"""seconds from its first position until a robot is told of: its action servers are found by then."""
+"""seconds from its first position until a robot is announced: its action servers are found by then."""
 ABLE_EVERY = 1.0
-"""seconds between two looks at what a robot that was told of can do by now."""
+"""seconds between checks of an announced robot's abilities."""
 ALIVE_EVERY = 1.0
 """seconds."""
 IDLE_EVERY = 0.1
-"""seconds between two looks at the servers of a robot that has nothing to do."""
+"""seconds between polls of the servers of an idle robot."""
 
 
 class RosRobot(Generic[Network]):
-    """Led by :meth:`step`, again and again; asked by :meth:`command` and :meth:`stop`."""
+    """Driven by calls of :meth:`step`; commanded by :meth:`command` and :meth:`stop`."""
 
     def __init__(
         self,
@@ -221,48 +221,48 @@ class RosRobot(Generic[Network]):
         self._declared: tuple[Ability, ...] | None = None
         self._introduce_at = 0.0
         self._more_at: float | None = None
-        """Since when it can do more than was told."""
+        """Since when it has more abilities than reported."""
         self._alarm: str | None = None
         self._warned: set[str] = set()
         self._server: bytes | None = None
         self._is_anew = False
-        """Whether its action server has started anew while nobody led it."""
+        """Whether its action server has restarted while no link controlled it."""
         self._last: Any = None
 
     @property
     def faults(self) -> list[str]:
-        """What is wrong with it, in words."""
+        """Its faults as texts."""
         return [*self._sensing.faults.values(), *([self._alarm] if self._alarm else [])]
 
     @property
     def server(self) -> bytes | None:
-        """Who has its tasks: another one when that was started anew."""
+        """Identity of the server with its tasks: it changes on a restart."""
         return self._server
 
     def expect_server(self, server: bytes | None) -> None:
-        """Take it that an earlier process of this link knew ``server`` as the robot's."""
+        """Set the ``server`` of the robot as known to an earlier process of this link."""
         self._server = server
 
     def connect(self, network: Network) -> None:
-        """Meet who is there now."""
+        """Connect to the servers and topics present now."""
         self._hearing.connect(network)
         self._acting.connect(network)
         server = self._acting.server
         if server is None or server == self._server:
             return
-        anew, self._server = self._server is not None, server
-        if anew:
+        restarted, self._server = self._server is not None, server
+        if restarted:
             log.warning("robot %s: its action server has started anew", self.name)
             self._tasks.forget()
             self._acting.forget_feedback()
             if self._declared is None:
                 self._is_anew = True
             elif not self._tasks.is_only_held:
-                # What is held it has never had: that would only be refused, and sent once more.
+                # A held order never reached it: that would only be refused, and sent again.
                 self._link.restarted(self.name)
 
     def step(self, now: float) -> None:
-        """Take in what has come and go on; ``now`` is a steady clock's."""
+        """Process received messages and continue; ``now`` is a steady clock's."""
         position = self._hearing.poll()
         if position is not None:
             self._seen_at = now if self._seen_at is None else self._seen_at
@@ -274,19 +274,19 @@ class RosRobot(Generic[Network]):
             self._camera.step(now)
         if self._declared is not None and position is not None:
             self._link.position(self.name, replace(position, status=self._status()))
-        # Who is not told of has no commands yet, and what became of earlier ones could not be told.
+        # A robot not announced has no commands yet, and outcomes of earlier ones could not be reported.
         if self._declared is not None and (self._tasks.is_busy or now >= self._act_at):
             self._act_at = now + IDLE_EVERY
             self._run(self._acting.poll(self._tasks, now, self._fault))
             self._run(self._tasks.step(self._acting.abilities, now))
 
     def admitted(self) -> None:
-        """Tell where it is: the gateway has let it in."""
+        """Report its position: the gateway has admitted it."""
         if self._last is not None and time.monotonic() - self._received_at < ALIVE_EVERY:
             self._link.position(self.name, self._last)
 
     async def command(self, command: Command) -> None:
-        """Have it take on a command; raises CommandRefusedError."""
+        """Have it accept a command; raises CommandRefusedError."""
         message = command.message
         if isinstance(message, (SetPosEnd, SetPath)):
             await self._order(command.id, message, command.again)
@@ -328,7 +328,7 @@ class RosRobot(Generic[Network]):
         self._acting.publish_start(start, self._here)
 
     def _check_places(self, places: Sequence[tuple[float, float]]) -> None:
-        """Raise CommandRefusedError for what has no place in the robot's frame."""
+        """Raise CommandRefusedError for places that cannot be converted to the robot's frame."""
         try:
             for x, y in places:
                 self._link.frame.from_site(x, y)
@@ -354,7 +354,7 @@ class RosRobot(Generic[Network]):
             self._masking = asyncio.create_task(self._show_masks(message.map))
 
     async def _show_masks(self, robot_map: bytes) -> None:
-        """Publish keepouts and speeds; the map has been taken on whatever comes of that."""
+        """Publish keepouts and speeds; the map counts as accepted even if that fails."""
         try:
             self._publish_masks(await self._masks.of(robot_map))
         except (CommandRefusedError, FaultError) as error:
@@ -374,10 +374,9 @@ class RosRobot(Generic[Network]):
                 self._acting.publish_latched(info, self._masks.info(kind, topic, multiplier))
 
     def _introduce(self, now: float) -> None:
-        """Tell the gateway of the robot when it is known what it can do, and again when that is more.
+        """Announce the robot to the gateway once its abilities are known, and again when it gains some.
 
-        What it can do no more is kept: its commands are refused with the reason, and who has started anew is
-        soon able again.
+        Lost abilities are kept: commands are refused with the reason, and a restarted server is soon back.
         """
         if self._seen_at is None or now < self._introduce_at:
             return
@@ -392,7 +391,7 @@ class RosRobot(Generic[Network]):
         if both == self._declared:
             self._more_at = None
             return
-        # Servers are found one after the other, and are told together.
+        # Servers are found one after the other, and reported together.
         self._more_at = now if self._more_at is None else self._more_at
         if self._declared is not None and now - self._more_at < ABLE_WITHIN and not whole:
             return
@@ -422,7 +421,7 @@ class RosRobot(Generic[Network]):
         return self._alarm or self._sensing.diagnosis or self._acting.feedback
 
     def _fault(self, what: str, text: str) -> None:
-        """Log what a server said wrong: once, since it may say so again and again."""
+        """Log a server's fault once, since it may repeat."""
         if what not in self._warned:
             self._warned.add(what)
             log.warning("robot %s: %s", self.name, text)
@@ -445,12 +444,12 @@ class RosRobot(Generic[Network]):
                 self._alarm = None
             case _:
                 try:
-                    self._tell(effect)
+                    self._send(effect)
                 except ValueError as error:
                     log.error("robot %s was not told: %s", self.name, error)
 
-    def _tell(self, effect: Effect) -> None:
-        """Carry out what the robot is told; raises ValueError for what has no place in its frame."""
+    def _send(self, effect: Effect) -> None:
+        """Send an effect to the robot; raises ValueError for places that cannot be converted to its frame."""
         match effect:
             case SendGoal():
                 self._sent[effect.message] = effect

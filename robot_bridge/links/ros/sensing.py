@@ -1,4 +1,4 @@
-"""Sensing: poses, speeds, transforms and states of one robot out of ROS messages."""
+"""Sensing: poses, speeds, transforms and states of one robot from ROS messages."""
 
 from __future__ import annotations
 
@@ -15,18 +15,18 @@ from .errors import FaultError
 from .messages import FIX, ODOMETRY, POSE, POSE_WITH_COVARIANCE, READ, TF
 from .settings import RobotSettings, TopicPattern
 
-# --- Poses, speeds and states out of ROS messages, as plain values; no I/O ---
-# Messages are those of rosbags' type system: attributes by the names of the ROS fields. Whatever a node may
-# write is looked at: a fault names topic, field and value, and concerns that robot alone.
+# --- Poses, speeds and states from ROS messages, as plain values; no I/O ---
+# Messages are those of rosbags' type system: attributes by the names of the ROS fields. All values that a
+# node may write are checked: a fault names topic, field and value, and affects that robot alone.
 
 CLOCK_OFF = 5.0
-"""seconds that a robot's clock may be off before that is said."""
+"""seconds that a robot's clock may be off before that is reported."""
 _NO_FIX = -1
 """NavSatStatus.STATUS_NO_FIX."""
 _NO_ORIENTATION = -1.0
 """sensor_msgs/Imu: orientation_covariance[0] of a sensor that has none (REP 145)."""
 _UNIT = 0.1
-"""How far a rotation's quaternion may be from length 1."""
+"""Tolerance of a quaternion's length around 1."""
 _STANDS = 1e-3
 """m/s below which a speed is rounding."""
 
@@ -35,8 +35,8 @@ _STANDS = 1e-3
 class FramePose:
     """A pose in a frame of the robot: metres, radians counter-clockwise from x, ``t`` seconds of its clock.
 
-    ``v`` is m/s along its x axis (backwards is below 0), None where the message has no speed; ``accuracy`` is
-    the standard deviation of the place in metres, None where the message says none.
+    ``v`` is m/s along its x axis (backwards is below 0), None if the message has no speed; ``accuracy`` is
+    the standard deviation of the place in metres, None if the message has none.
     """
 
     frame: str
@@ -101,7 +101,7 @@ def gps_fix(message: Any, topic: str, heading: float | None) -> SendGPS:
 def imu_heading(message: Any, topic: str) -> float | None:
     """Return degrees clockwise from north of a sensor_msgs/Imu whose world is east-north-up (REP 103).
 
-    None where the sensor has no orientation. Raises FaultError.
+    None if the sensor has no orientation. Raises FaultError.
     """
     if float(message.orientation_covariance[0]) == _NO_ORIENTATION:
         return None
@@ -110,9 +110,9 @@ def imu_heading(message: Any, topic: str) -> float | None:
 
 
 def battery_share(message: Any) -> float | None:
-    """Return the charge of a sensor_msgs/BatteryState from 0 to 1, None where it does not say.
+    """Return the charge of a sensor_msgs/BatteryState from 0 to 1, None if unknown.
 
-    ``percentage`` is from 0 to 1; drivers that write 0 to 100 are taken at their word above 1.
+    ``percentage`` is from 0 to 1; values above 1 are read as per cent, as written by some drivers.
     """
     share = float(message.percentage)
     if not math.isfinite(share) or not 0.0 <= share <= 100.0:
@@ -121,7 +121,7 @@ def battery_share(message: Any) -> float | None:
 
 
 def diagnosis(message: Any) -> str | None:
-    """Return the worst of a diagnostic_msgs/DiagnosticArray as one text, None where all is well."""
+    """Return the worst status of a diagnostic_msgs/DiagnosticArray as one text, None if all is well."""
     words = {1: "warning", 2: "error", 3: "stale"}
     worst = max(message.status, key=_severity, default=None)
     if worst is None or _severity(worst) == 0:
@@ -131,7 +131,7 @@ def diagnosis(message: Any) -> str | None:
 
 
 def yaw(q: Any, where: str) -> float:
-    """Return the rotation of a quaternion about z, radians; raises FaultError for what is no rotation."""
+    """Return the rotation of a quaternion about z, radians; raises FaultError for an invalid rotation."""
     parts = [_number(getattr(q, name), f"orientation.{name}", where, (-2.0, 2.0)) for name in "xyzw"]
     if abs(math.hypot(*parts) - 1.0) > _UNIT:
         raise FaultError(f"{where}: orientation {tuple(parts)} is no rotation: its length is not 1")
@@ -140,13 +140,13 @@ def yaw(q: Any, where: str) -> float:
 
 
 def stamp(header: Any) -> float | None:
-    """Return a header's time in seconds, None where it was left 0."""
+    """Return a header's time in seconds, None if it is 0."""
     at: float = header.stamp.sec + header.stamp.nanosec * 1e-9
     return at if at != 0 else None
 
 
 def clock_remark(t: float | None, now: float) -> str | None:
-    """Return what is to be said of a robot's clock; ``t`` and ``now`` are seconds since 1970."""
+    """Return a remark on a robot's wrong clock, or None; ``t`` and ``now`` are seconds since 1970."""
     if t is None or abs(now - t) <= CLOCK_OFF:
         return None
     way = "behind" if t < now else "ahead"
@@ -178,7 +178,7 @@ def _number(value: Any, name: str, where: str, bounds: tuple[float, float]) -> f
 
 
 def _accuracy(covariance: Any) -> float | None:
-    """Return the standard deviation of the place of a 6x6 covariance; all 0 means that nobody knows."""
+    """Return the standard deviation of the place of a 6x6 covariance; all 0 means unknown."""
     return _deviation(float(covariance[0]), float(covariance[7]))
 
 
@@ -196,22 +196,22 @@ def _level(status: Any) -> int:
 
 
 def _severity(status: Any) -> int:
-    """Return how bad a status is: errors before what is stale, as rqt shows them."""
+    """Return how bad a status is: errors before stale ones, as in rqt."""
     return {0: 0, 1: 1, 3: 2, 2: 3}.get(_level(status), 1)
 
 
-# --- Where a robot's frames are in each other: the transforms of tf2, on the plane; no I/O ---
-# The newest transform counts: positions are told as they come, and none is looked up in the past.
+# --- Transforms between a robot's frames, of tf2, in the plane; no I/O ---
+# The newest transform counts: positions are reported as they come, and none is looked up in the past.
 
 MOST_FRAMES = 1000
 """frames of one robot that are remembered; a humanoid has a hundred."""
 DEEPEST = 50
-"""transforms between a frame and the one that is asked for."""
+"""transforms between a frame and the requested one."""
 
 
 @dataclass(frozen=True)
 class Transform:
-    """Where a frame is in its ``parent``: metres, radians; ``t`` is seconds of the robot's clock."""
+    """The pose of a frame in its ``parent``: metres, radians; ``t`` is seconds of the robot's clock."""
 
     parent: str
     x: float
@@ -227,7 +227,7 @@ class Transforms:
         self._of: dict[str, Transform] = {}
 
     def update(self, message: Any, topic: str) -> bool:
-        """Take in a tf2_msgs/TFMessage; tell whether anything was new. Raises FaultError."""
+        """Apply a tf2_msgs/TFMessage; return whether anything was new. Raises FaultError."""
         for one in message.transforms:
             child, parent = one.child_frame_id.lstrip("/"), one.header.frame_id.lstrip("/")
             where = f"{topic} (tf2_msgs/TFMessage), {parent[:60]!r} to {child[:60]!r}"
@@ -242,7 +242,7 @@ class Transforms:
         return bool(message.transforms)
 
     def pose_in(self, frame: str, pose: FramePose) -> FramePose:
-        """Return ``pose`` in ``frame``; raises FaultError where nothing connects the two."""
+        """Return ``pose`` in ``frame``; raises FaultError if they are not connected."""
         x, y, theta, at = pose.x, pose.y, pose.theta, pose.frame
         for _ in range(DEEPEST):
             if at == frame:
@@ -260,7 +260,7 @@ class Transforms:
         )
 
     def pose_of(self, child: str, frame: str) -> FramePose | None:
-        """Return where frame ``child`` is in ``frame``, None before that is known."""
+        """Return the pose of frame ``child`` in ``frame``, None while unknown."""
         step = self._of.get(child)
         if step is None:
             return None
@@ -270,7 +270,7 @@ class Transforms:
             return None
 
 
-# --- What one robot says, message by message, as its state and as what the gateway is told; no I/O ---
+# --- One robot's state from its messages, and its reports to the gateway; no I/O ---
 
 log = logging.getLogger(__name__)
 
@@ -280,11 +280,11 @@ _POSES = {
     POSE_WITH_COVARIANCE: pose_with_covariance,
 }
 _SPEED_OVER = 0.3
-"""seconds over which a speed is taken from positions that have none."""
+"""seconds over which a speed is computed from positions without one."""
 
 
 class Sensing:
-    """A robot's state. ``faults`` says what is wrong, by topic; what is right again is not in it."""
+    """A robot's state. ``faults`` are the present faults by topic."""
 
     def __init__(self, robot: str, settings: RobotSettings, frame: LinkFrame) -> None:
         self._robot = robot
@@ -294,21 +294,21 @@ class Sensing:
         self._heading: float | None = None
         self._battery: float | None = None
         self._from: tuple[float, float, float] | None = None
-        """x, y and time of the position that a speed is taken from."""
+        """x, y and time of the position from which a speed is computed."""
         self._speed = 0.0
         self.diagnosis: str | None = None
         self.faults: dict[str, str] = {}
         self.pose: SendPos | None = None
-        """Where it is in the site frame, None before that is known and where it tells by GPS."""
+        """Its pose in the site frame, None while unknown and for a robot with GPS."""
         self.fix: SendGPS | None = None
-        """Where it is on the earth, None where it does not tell by GPS."""
+        """Its GPS position, None for a robot without GPS."""
         self.image: tuple[str, str, Any] | None = None
-        """The image that came: topic, type, message."""
+        """The received image: topic, type, message."""
         self.wants_image = False
-        """Whether an image is waited for; others are passed over."""
+        """Whether an image is awaited; others are ignored."""
 
     def topics(self) -> dict[str, str]:
-        """Return the robot's topics that are read, by what they are."""
+        """Return the robot's subscribed topics, by kind."""
         patterns = self._settings.patterns
         found = {kind: patterns[kind] for kind in READ if kind in patterns}
         if "tf" in patterns:
@@ -316,9 +316,9 @@ class Sensing:
         return {kind: pattern.topic_of(self._robot) for kind, pattern in found.items()}
 
     def check_type(self, kind: str, topic: str, type_name: str | None, declared: str) -> str | None:
-        """Return a topic's type if it can be read as what it is; else None, and it is a fault.
+        """Return a topic's type if readable as its kind; else None, which is recorded as a fault.
 
-        ``declared`` is the type as the network has it.
+        ``declared`` is the type on the network.
         """
         if type_name in READ[kind]:
             return type_name
@@ -326,7 +326,7 @@ class Sensing:
         return None
 
     def receive(self, kind: str, topic: str, type_name: str, message: Any) -> SendPos | SendGPS | None:
-        """Take in a message; return the position that it told, None where it told none that can be used."""
+        """Process a message; return its position, None without a usable one."""
         if kind == "image":
             self.image = (topic, type_name, message) if self.wants_image else None
             return None
@@ -340,12 +340,12 @@ class Sensing:
         return reading
 
     def refuse(self, topic: str, error: Exception) -> None:
-        """Note that a message of a topic cannot be used."""
+        """Record that a message of a topic cannot be used."""
         text = str(error)
         self.fault(topic, text if topic in text else f"{topic}: {text}")
 
     def fault(self, what: str, text: str) -> None:
-        """Note what is wrong; it is logged once."""
+        """Record a fault; it is logged once."""
         if what not in self.faults:
             log.warning("robot %s: %s", self._robot, text)
         self.faults[what] = text
@@ -373,7 +373,7 @@ class Sensing:
         return None
 
     def _placed(self, pose: FramePose) -> SendPos:
-        """Return a pose in the robot's map frame as the gateway is told it."""
+        """Return a pose in the robot's map frame as reported to the gateway."""
         self._clock(pose.t)
         try:
             x, y, theta = self._frame.pose_to_site(pose.x, pose.y, pose.theta)
@@ -391,7 +391,7 @@ class Sensing:
         return self.pose
 
     def _speed_at(self, pose: FramePose) -> float:
-        """Return the speed over ground, m/s, of a robot whose positions tell none."""
+        """Return the speed over ground, m/s, of a robot whose positions have none."""
         now = time.monotonic()
         if self._from is None:
             self._from = (pose.x, pose.y, now)

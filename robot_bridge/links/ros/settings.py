@@ -12,7 +12,7 @@ from ..base.settings import LinkSettings
 from .effects import RosAction
 from .errors import RosError, RosNameError
 
-# --- Names of ROS 2 topics, services and actions, and patterns that find robots by their topics; no I/O
+# --- Names of ROS 2 topics, services and actions, and patterns to find robots by topics; no I/O
 
 LONGEST_NAME = 255
 """characters of a topic's name, as DDS has it."""
@@ -22,7 +22,7 @@ _ROBOT_IN_TOPIC = r"(?P<robot>[A-Za-z0-9][A-Za-z0-9_]{0,62})"
 
 
 def is_topic(name: str) -> bool:
-    """Tell whether ROS 2 allows ``name`` as a full name of a topic, service or action."""
+    """Return whether ROS 2 allows ``name`` as a full name of a topic, service or action."""
     return len(name) <= LONGEST_NAME and _TOPIC.fullmatch(name) is not None
 
 
@@ -37,9 +37,9 @@ def check_topic(name: str) -> str:
 
 
 class TopicPattern:
-    """A topic with ``{robot}`` where each robot has its own name, or one topic for all of them.
+    """A topic pattern with ``{robot}`` for the robot's name, or one topic for all robots.
 
-    :raises RosNameError: for a pattern that is no topic whatever the robot is called.
+    :raises RosNameError: for a pattern that is an invalid topic for any robot's name.
     """
 
     def __init__(self, pattern: str) -> None:
@@ -53,29 +53,29 @@ class TopicPattern:
         self._regex = re.compile(re.escape(pattern).replace(re.escape(_ROBOT), _ROBOT_IN_TOPIC))
 
     def robot_of(self, topic: str) -> str | None:
-        """Return the robot whose topic it is; None for another topic, and for one that all robots share."""
+        """Return the robot whose topic it is; None for another topic, and for one shared by all robots."""
         found = None if self.is_shared else self._regex.fullmatch(topic)
         return found["robot"] if found else None
 
     def topic_of(self, robot: str) -> str:
-        """Return the topic of ``robot``; raises RosNameError where its name cannot stand in a topic."""
+        """Return the topic of ``robot``; raises RosNameError if its name is invalid in a topic."""
         return check_topic(self.pattern.replace(_ROBOT, robot))
 
 
-# --- What the settings of ROS robots have in common: the robots, and what their topics are called ---
+# --- Common settings of ROS robots: the robots, and the names of their topics ---
 
 PathAction = Literal["FollowPath", "NavigateThroughPoses", "FollowWaypoints"]
 DISTRIBUTIONS = ("foxy", "humble", "jazzy", "kilted", "lyrical")
 
 LARGEST_IMAGE = 8_000_000
-"""bytes that a site may take at most."""
+"""bytes: the upper limit of a site's own limit."""
 
 
 class TopicSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Table ``topics``: names of topics, actions and services, each with ``{robot}`` or one for all.
 
     ``position`` may be Odometry, PoseStamped, PoseWithCovarianceStamped, NavSatFix or TFMessage: its type is
-    found out. What is left out, or is no topic of a robot, is not used.
+    detected. Omitted topics, and those that a robot lacks, are not used.
     """
 
     position: str = "/{robot}/odom"
@@ -103,7 +103,7 @@ class TopicSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """What is said of the robots. Without ``robots`` those are led whose position topic is found.
+    """Settings of the robots. Without ``robots``, all with a position topic are controlled.
 
     A path goes to the first of ``path_actions`` that the robot offers. An image is an observation every
     ``image_every_s`` seconds at most. A target or a path waits ``hold_s`` seconds for an action server or a
@@ -123,33 +123,33 @@ class RobotSettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
     @property
     def patterns(self) -> dict[str, TopicPattern]:
-        """The topics that are used, by the names of their settings."""
+        """The topics in use, by the names of their settings."""
         named = {field: getattr(self.topics, field) for field in self.topics.__struct_fields__}
         return {field: TopicPattern(pattern) for field, pattern in named.items() if pattern is not None}
 
     @property
     def actions_for_paths(self) -> tuple[RosAction, ...]:
-        """The actions that may drive a path, the first that is there does."""
+        """The actions that may drive a path; the first one present is used."""
         return tuple(map(RosAction, self.path_actions))
 
     @property
     def maps(self) -> bool:
-        """Whether anything is made of the site's map for the robots."""
+        """Whether the robots are sent anything built from the site's map."""
         topics = self.topics
         return any((topics.map, topics.get_map, topics.keepout_mask, topics.speed_mask))
 
     def base_frame_of(self, robot: str) -> str:
-        """Return the frame that is the robot itself."""
+        """Return the base frame of the robot."""
         return self.base_frame.replace("{robot}", robot)
 
 
 def distribution_names() -> str:
-    """Return the distributions whose types are known, for messages to people."""
+    """Return the distributions with known types, for messages to people."""
     return ", ".join(DISTRIBUTIONS)
 
 
 def check_robots(settings: RobotSettings, table: str, link: LinkSettings) -> None:
-    """Raise LinkError, naming file and key of ``table``, for what the types alone do not refuse."""
+    """Raise LinkError, naming file and key of ``table``, for errors that the types do not exclude."""
     file = link.file
     link.frame.check_metres(f"{file}: frame")
     where = f"{file}: {table}"

@@ -20,17 +20,17 @@ from ..base.adapter import Link
 from ..base.errors import CommandRefusedError
 from .messages import FILTER_INFO, GRID, MOST_CELLS, Outgoing
 
-# --- The site's map as OccupancyGrid, made once for all robots of a link ---
+# --- The site's map as OccupancyGrid, built once for all robots of a link ---
 
 Encode = Callable[[str, Any], bytes]
-"""Makes of a message of a type what is published."""
+"""Encodes a message of a type for publication."""
 
 MOST_GRIDS_KEPT = 4
-"""grids: those of large sites differ from robot to robot, those of others do not."""
+"""grids: those of large sites differ between robots, those of others do not."""
 
 
 class Grids:
-    """Makes grids of robot maps, one at a time and beside the loop: a map of 200 m takes a second."""
+    """Builds grids of robot maps, one at a time in another thread: a map of 200 m takes a second."""
 
     def __init__(self, encode: Encode, outgoing: Outgoing, resolution: float) -> None:
         self._encode = encode
@@ -40,7 +40,7 @@ class Grids:
         self._kept: OrderedDict[bytes, bytes] = OrderedDict()
 
     async def of(self, robot_map: bytes) -> bytes:
-        """Return the message of a robot map, encoded; raises CommandRefusedError where it cannot be made."""
+        """Return the message of a robot map, encoded; raises CommandRefusedError if that fails."""
         key = hashlib.sha256(robot_map).digest()
         async with self._making:
             if key not in self._kept:
@@ -57,12 +57,12 @@ class Grids:
         return self._encode(GRID, self._outgoing.grid(robot_map, self._resolution))
 
 
-# --- Keepout and speed masks for Nav2's costmap filters, made of the site's own keepouts and roads ---
+# --- Keepout and speed masks for Nav2's costmap filters, from the site's own keepouts and roads ---
 
 MOST_MASKS_KEPT = 2
 """pairs of masks, of 16 MB each at most."""
 _CORNERS = 16
-"""of the polygon round the end of a road's leg."""
+"""corners of the polygon around the end of a road's leg."""
 
 KEEPOUT, SPEED = 0, 2
 """CostmapFilterInfo: KeepoutFilter, and SpeedFilter with m/s."""
@@ -78,7 +78,7 @@ class SiteMasks:
 
 
 class Masks:
-    """Makes the masks on the grid of a robot's map, once for all robots that have that map."""
+    """Builds the masks on the grid of a robot's map, once for all robots with that map."""
 
     def __init__(self, encode: Encode, outgoing: Outgoing, resolution: float, link: Link) -> None:
         self._encode = encode
@@ -89,9 +89,9 @@ class Masks:
         self._kept: OrderedDict[bytes, SiteMasks] = OrderedDict()
 
     async def of(self, robot_map: bytes) -> SiteMasks:
-        """Return the masks for a robot map; waits for the gateway, which knows what they are made of.
+        """Return the masks for a robot map; waits for the site's areas from the gateway.
 
-        :raises CommandRefusedError: where they cannot be made.
+        :raises CommandRefusedError: when they cannot be built.
         """
         key = hashlib.sha256(robot_map).digest()
         async with self._making:
@@ -124,7 +124,7 @@ class Masks:
 
 
 def road_areas(roads: Sequence[SiteRoad]) -> list[MaskArea]:
-    """Return what roads cover: a rectangle for each leg, and round ends and corners."""
+    """Return the areas of roads: a rectangle for each leg, and round ends and corners."""
     turn = np.linspace(0.0, math.tau, _CORNERS, endpoint=False)
     circle = np.column_stack([np.cos(turn), np.sin(turn)])
     areas = []

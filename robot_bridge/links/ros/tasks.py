@@ -36,18 +36,18 @@ from .goals import (
     missed_text,
 )
 
-# --- How a robot on ROS 2 is stopped: what is said, how often, and when it counts as heard; no I/O ---
+# --- The stop of a ROS 2 robot: messages, repetition, and confirmation; no I/O ---
 # A stop is three things at once, repeated until they are answered: all goals of its action servers are
-# canceled, whoever sent them; speed 0 is published; its stop service is called where it has one.
+# canceled, from any client; speed 0 is published; its stop service is called if it has one.
 
 ASK_AGAIN = 0.5
-"""seconds after which goals are canceled, and the service called, once more."""
+"""seconds after which goals are canceled, and the service called, again."""
 TWIST_EVERY = 0.1
-"""seconds between two messages of speed 0."""
+"""seconds between messages of speed 0."""
 LONGEST = 5.0
-"""seconds after which a stop that nobody answered is refused, so that operators see it."""
+"""seconds after which an unanswered stop is refused, so that operators see it."""
 ASK_SELDOM = 2.0
-"""seconds between two attempts after that."""
+"""seconds between attempts after that."""
 STANDING = 0.05
 """m/s below which a robot stands."""
 
@@ -69,26 +69,26 @@ class Stop:
         self.is_refused = False
 
     def restart(self, now: float) -> None:
-        """Give a stop that nobody answered as much time again."""
+        """Give an unanswered stop as much time again."""
         self._began, self._ask_at, self.is_refused = now, now, False
 
     def cancel_answered(self, action: RosAction, code: int, statuses: Statuses) -> None:
-        """Take in what an action server said to canceling all goals; ``statuses`` are its goals'."""
+        """Process an action server's answer to canceling all goals; ``statuses`` are its goals'."""
         busy = any(status in ACTIVE and status != GoalStatus.CANCELING for status in statuses.values())
         if code != REJECTED or not busy:
             self._canceled.add(action)
 
     def stop_answered(self, success: bool, text: str) -> None:
-        """Take in what the stop service said."""
+        """Process the answer of the stop service."""
         self._stopped_by_service |= success
         self._service_reply = text
 
     def seen(self, speed: float | None) -> None:
-        """Take in a speed of the robot, m/s; None where its positions tell none."""
+        """Record the robot's speed, m/s; None if its positions have none."""
         self._stood = self._stood + 1 if speed is not None and abs(speed) <= STANDING else 0
 
     def step(self, abilities: Abilities, goals: Mapping[RosAction, Statuses], now: float) -> list[Effect]:
-        """Return what is to be done now; ``goals`` are those of each action server."""
+        """Return the effects due now; ``goals`` are those of each action server."""
         missing = self._missing(abilities, goals)
         if not missing:
             return self._end()
@@ -106,7 +106,7 @@ class Stop:
         return effects
 
     def _missing(self, abilities: Abilities, goals: Mapping[RosAction, Statuses]) -> list[str]:
-        """Return what has not been answered yet, in words."""
+        """Return the missing answers as texts."""
         missing = []
         for action in sorted(abilities.actions):
             active = any(status in ACTIVE for status in goals.get(action, {}).values())
@@ -132,23 +132,23 @@ class Stop:
         return [StopEnded(f"the stop was not confirmed within {LONGEST:g} s: {what}. Stop it on site")]
 
 
-# --- The tasks of one robot: from the gateway's message to a Nav2 goal, to its end, to a stop; no I/O ---
-# Time is given, in seconds of a steady clock. What is to be done is returned as effects.
+# --- The tasks of one robot: from the gateway's message to a Nav2 goal, its end, or a stop; no I/O ---
+# Times are passed in, in seconds of a steady clock. Actions are returned as effects.
 
 ACCEPTED_WITHIN = 5.0
-"""seconds for an action server to take a goal on or refuse it."""
+"""seconds for an action server to accept or refuse a goal."""
 REJECTED_FOR = 0.3
-"""seconds after which a goal that was said to be rejected, and is on no status topic, is."""
+"""seconds after which a goal reported as rejected, and on no status topic, counts as rejected."""
 ENDED_WITHIN = 2.0
-"""seconds for the goal before to end, when the next one goes to another action server."""
+"""seconds for the previous goal to end, when the next one goes to another action server."""
 FOUND_WITHIN = 2.0
-"""seconds for the other action servers of a robot to say which goals they have."""
+"""seconds for the other action servers of a robot to report their goals."""
 DETAILS_WITHIN = 2.0
-"""seconds for the result of a goal that has failed, which says why."""
+"""seconds for the result of a failed goal, which has the reason."""
 CONE_WITHIN = 60.0
 """seconds for a cone to be placed or picked up."""
 MOST_GIVEN_UP = 100
-"""goals whose servers may take them on after they were given up."""
+"""abandoned goals that servers may still accept."""
 
 _TOO_LATE = "the link stood still for longer than it holds a command."
 _CONE_UNKNOWN = (
@@ -166,7 +166,7 @@ _NO_TARGETS = (
 
 @dataclass(frozen=True)
 class RosTask:
-    """What the robot was asked by ``message``, as a goal or on a topic, and how far that is."""
+    """The task of ``message``, as a goal or on a topic, with its progress."""
 
     message: int
     order: SetPosEnd | SetPath | None
@@ -178,16 +178,16 @@ class RosTask:
     failed_at: float | None = None
     ended: GoalStatus = GoalStatus.UNKNOWN
     failure: str = ""
-    """Why it has failed, as its result says; empty before that has come."""
+    """Why it has failed, from its result; empty before that has arrived."""
     cone_at: float | None = None
     has_result: bool = False
     succeeded_at: float | None = None
-    """When its server said so, where only the result says whether all points were driven to."""
+    """When its server reported success, if only the result shows whether all points were reached."""
 
 
 @dataclass(frozen=True)
 class _Held:
-    """An order for which nobody was found yet on the robot's side, and the time at which it is refused."""
+    """An order without a server or subscriber yet, and the time at which it is refused."""
 
     message: int
     order: SetPosEnd | SetPath
@@ -197,7 +197,7 @@ class _Held:
 
 @dataclass(frozen=True)
 class _Former:
-    """The newest goal of an earlier process that has ended, reported at ``at`` unless something goes on."""
+    """The newest ended goal of an earlier process, reported at ``at`` unless another is active."""
 
     message: int
     status: GoalStatus
@@ -206,10 +206,10 @@ class _Former:
 
 
 class Tasks:
-    """Decides what one robot is told.
+    """Decides the messages to one robot.
 
-    ``cones`` tells whether the settings name a service for cones; a path goes to the first of
-    ``path_actions`` that is there. An order for which nobody is there is held for ``hold_s`` seconds.
+    ``cones`` is whether the settings name a service for cones; a path goes to the first of ``path_actions``
+    present. An order without a server or subscriber is held for ``hold_s`` seconds.
     """
 
     def __init__(
@@ -221,33 +221,33 @@ class Tasks:
         self._held: _Held | None = None
         self._task: RosTask | None = None
         self._waiting: RosTask | None = None
-        """The task that is sent when the one before, or a stop, has ended."""
+        """The task to be sent when the previous one, or a stop, has ended."""
         self._wait_until = 0.0
         self._stop: Stop | None = None
         self._goals: dict[RosAction, dict[bytes, GoalStatus]] = {}
         self._given_up: dict[bytes, bool] = {}
-        """Goals that were sent and are not to be driven any more, and whether a stop is what ended them: a
-        server may have the cancel before the goal."""
+        """Sent goals that must no longer be driven, and whether a stop ended them: a server may receive the
+        cancel before the goal."""
         self._cancel_late_at = 0.0
         self._former: _Former | None = None
         self._unanswered: Counter[RosAction] = Counter()
-        """Demands to cancel all goals: one that is answered late would cancel the next goal."""
+        """Unanswered requests to cancel all goals: a late one would cancel the next goal."""
         self._settled_at = 0.0
 
     @property
     def is_busy(self) -> bool:
-        """Whether the robot has something to do, or is being stopped."""
+        """Whether the robot has a task, or is being stopped."""
         waits = self._waiting is not None or self._held is not None
         return self._task is not None or waits or self._stop is not None
 
     @property
     def is_only_held(self) -> bool:
-        """Whether there is an order that waits for somebody to carry it out, and none that anybody has."""
+        """Whether an order waits for a server, and no server has one."""
         return self._held is not None and self._task is None and self._waiting is None
 
     @property
     def goal(self) -> bytes | None:
-        """The id of the goal that the robot has, None where it has none."""
+        """The id of the robot's goal, or None."""
         return self._task.goal if self._task is not None else None
 
     def order(
@@ -259,9 +259,9 @@ class Tasks:
         *,
         again: bool = False,
     ) -> list[Effect]:
-        """Begin a task; it takes the place of the one before.
+        """Begin a task; it replaces the previous one.
 
-        ``again``: a process before this one may have begun it, so a goal of this message is that one.
+        ``again``: an earlier process may have begun it, so an existing goal of this message is the same one.
         """
         if self._task is not None and self._task.message == message and again:
             return [Answered(message)] if self._task.taken else []
@@ -281,14 +281,14 @@ class Tasks:
             self._task = replace(task, sent_at=now)
             return [*effects, *self._judge(self._task, known, now)]
         if known is not None:
-            # Ids begin anew with another database: this goal was for another message.
+            # Ids restart with another database: this goal was for another message.
             task = replace(task, goal=goal_id(message, 1 + int(now * 1000) % (2**32 - 1), cone=cone))
         self._given_up.pop(task.goal, None)
         self._waiting, self._wait_until = task, now + ENDED_WITHIN
         return [*effects, *self._leave(task, now), *self.step(abilities, now)]
 
     def abort(self, abilities: Abilities, now: float) -> list[Effect]:
-        """Stop the robot, whatever it does and whoever asked for that."""
+        """Stop the robot, whatever its task and its client."""
         effects = self._end_held("it was aborted before it was begun")
         if self._waiting is not None:
             effects.append(_refused(self._waiting, "it was aborted before it was begun"))
@@ -301,7 +301,7 @@ class Tasks:
         return [*effects, *self.step(abilities, now)]
 
     def withdraw(self, message: int, now: float) -> list[Effect]:
-        """Give up an order that was not taken on yet: nobody waits for it any more, or believes in it."""
+        """Drop an order that was not accepted yet: nobody waits for it any more."""
         if self._held is not None and self._held.message == message:
             self._held = None
         if self._waiting is not None and self._waiting.message == message:
@@ -314,13 +314,13 @@ class Tasks:
         return [CancelGoals(task.action, task.goal)]
 
     def goal_answered(self, action: RosAction, accepted: bool, now: float) -> None:
-        """Take in a reply to ``send_goal``, maybe to another client: the status topic says more."""
+        """Process a reply to ``send_goal``, maybe to another client: the status topic decides."""
         task = self._task
         if task is not None and task.action == action and not task.taken and not accepted:
             self._task = replace(task, rejected_at=now)
 
     def statuses_came(self, action: RosAction, statuses: Statuses, now: float) -> list[Effect]:
-        """Take in what the status topic of an action server says of its goals."""
+        """Process the goals on the status topic of an action server."""
         is_first = action not in self._goals
         self._goals[action] = dict(statuses)
         if self._task is None and self._stop is None and self._waiting is None:
@@ -334,7 +334,7 @@ class Tasks:
         return self._judge(task, status, now)
 
     def _judge(self, task: RosTask, status: GoalStatus, now: float) -> list[Effect]:
-        effects = self._take_on(task) if not task.taken and status != GoalStatus.UNKNOWN else []
+        effects = self._accept(task) if not task.taken and status != GoalStatus.UNKNOWN else []
         task = self._task or task
         if status == GoalStatus.SUCCEEDED:
             effects += self._succeed(now)
@@ -350,7 +350,7 @@ class Tasks:
         text: str | None,
         missed: Sequence[int] = (),
     ) -> None:
-        """Take in a reply to ``get_result``: it says why a goal has failed, or which points it has missed."""
+        """Process a reply to ``get_result``: why a goal has failed, or which points it has missed."""
         task = self._task
         if task is None or task.action != action:
             return
@@ -360,7 +360,7 @@ class Tasks:
             self._task = replace(task, failure=missed_text(missed) if missed else "", has_result=True)
 
     def cone_answered(self, success: bool, text: str) -> list[Effect]:
-        """Take in what the service for cones said."""
+        """Process the answer of the service for cones."""
         task, self._task = self._task, None
         if task is None or task.cone_at is None:
             self._task = task
@@ -370,25 +370,25 @@ class Tasks:
         return [_refused(task, f"it stands there, and its cone service said {text[:120]!r}")]
 
     def cancel_answered(self, action: RosAction, code: int) -> None:
-        """Take in what an action server said to canceling all its goals."""
+        """Process an action server's answer to canceling all its goals."""
         self._unanswered[action] = max(0, self._unanswered[action] - 1)
         if self._stop is not None:
             self._stop.cancel_answered(action, code, self._goals.get(action, {}))
 
     def stop_answered(self, success: bool, text: str) -> None:
-        """Take in what the stop service said."""
+        """Process the answer of the stop service."""
         if self._stop is not None:
             self._stop.stop_answered(success, text)
 
     def seen(self, speed: float | None) -> None:
-        """Take in the robot's speed, m/s, None where it is not known."""
+        """Record the robot's speed, m/s, None if unknown."""
         if self._stop is not None:
             self._stop.seen(speed)
 
     def forget(self) -> None:
-        """Take it that the robot has started anew and knows of nothing; a stop goes on.
+        """Assume that the robot has restarted and forgotten everything; a stop continues.
 
-        What is held goes on, too: the robot never knew of it.
+        A held order continues, too: the robot never had it.
         """
         self._task = self._waiting = self._former = None
         self._goals.clear()
@@ -396,11 +396,11 @@ class Tasks:
         self._unanswered.clear()
 
     def step(self, abilities: Abilities, now: float) -> list[Effect]:
-        """Let time pass: repeat a stop, send what waits, give up what nobody answers."""
+        """Advance the time: repeat a stop, send the waiting task, drop unanswered ones."""
         held = self._held
         if held is not None:
             refusal = self._refusal(held.order, abilities)
-            # Not after its time either: this program may have stood still since.
+            # Never after its time: this program may have stood still since.
             if refusal is None and now < held.until:
                 self._held = None
                 return self.order(held.message, held.order, abilities, now, again=held.again)
@@ -411,7 +411,7 @@ class Tasks:
         late = self._cancel_late(now) if self._stop is None else []
         if self._stop is not None:
             effects = [*late, *self._stop.step(abilities, self._goals, now)]
-            self._note_cancels(effects, now)
+            self._record_cancels(effects, now)
             if self._stop.is_over:
                 self._stop = None
             elif self._stop.is_refused and self._waiting is not None:
@@ -425,7 +425,7 @@ class Tasks:
         return [*late, *(self._send(abilities, now) if self._waiting is not None else self._overdue(now))]
 
     def _give_up(self, task: RosTask | None, now: float, *, stopped: bool = False) -> None:
-        """Note that the goal of a task, if it was sent, is not to be driven whenever it is taken on."""
+        """Record that the goal of a task, if sent, must not be driven even if accepted later."""
         if task is None or task.action is None or task.sent_at is None:
             return
         self._given_up.pop(task.goal, None)
@@ -435,7 +435,7 @@ class Tasks:
             self._given_up.pop(next(iter(self._given_up)))
 
     def _cancel_late(self, now: float) -> list[Effect]:
-        """Cancel goals that were taken on after they were given up; behind a stop all is stopped again."""
+        """Cancel goals accepted after they were dropped; after a stop everything is stopped again."""
         late = [one for one in self._active() if one.goal_id in self._given_up]
         if not late:
             return []
@@ -448,19 +448,19 @@ class Tasks:
         self._cancel_late_at = now + ASK_AGAIN
         return [*late]
 
-    def _note_cancels(self, effects: Sequence[Effect], now: float) -> None:
+    def _record_cancels(self, effects: Sequence[Effect], now: float) -> None:
         everything = [one.action for one in effects if isinstance(one, CancelGoals) and one.goal_id is None]
         if everything:
             self._unanswered.update(everything)
             self._settled_at = now + ENDED_WITHIN
 
     def _end_held(self, reason: str) -> list[Effect]:
-        """Refuse what is held, if anything is."""
+        """Refuse a held order, if there is one."""
         held, self._held = self._held, None
         return [] if held is None else [Answered(held.message, reason)]
 
     def _action_for(self, order: SetPosEnd | SetPath, abilities: Abilities) -> RosAction | None:
-        """Return the action that carries out an order, None where the robot has none for it."""
+        """Return the action that carries out an order, None if the robot has none for it."""
         actions = self._path_actions if isinstance(order, SetPath) else (RosAction.TO_POSE,)
         return next((action for action in actions if action in abilities.driving), None)
 
@@ -474,7 +474,7 @@ class Tasks:
         return None if topic_read else (_NO_PATHS if isinstance(order, SetPath) else _NO_TARGETS)
 
     def _leave(self, following: RosTask, now: float) -> list[Effect]:
-        """Return what ends the task before, where the action server does not see to that by itself."""
+        """Return the effects that end the previous task, if the action server does not do so by itself."""
         task, self._task = self._task, None
         if task is None or task.action is None or task.action == following.action:
             self._wait_until = 0.0
@@ -499,12 +499,12 @@ class Tasks:
         self._task = replace(task, sent_at=now)
         return [SendGoal(task.action, task.goal, task.order, task.message)]
 
-    def _take_on(self, task: RosTask) -> list[Effect]:
+    def _accept(self, task: RosTask) -> list[Effect]:
         self._task = replace(task, taken=True)
         return [Answered(task.message), *[goal for goal in self._active() if goal.goal_id != task.goal]]
 
     def _active(self) -> list[CancelGoals]:
-        """Return how each goal of ours that is not over would be canceled."""
+        """Return the cancel requests of all our active goals."""
         return [
             CancelGoals(action, goal)
             for action, statuses in self._goals.items()
@@ -516,14 +516,14 @@ class Tasks:
         return self._goals.get(task.action, {}).get(task.goal) if task.action else None
 
     def _adopt(self, action: RosAction, statuses: Statuses, now: float) -> None:
-        """Take up a goal of ours that this program sent before it was started anew."""
+        """Adopt a goal that this program sent before its restart."""
         for goal, status in statuses.items():
             message = message_of(goal)
             if message is not None and status in ACTIVE and goal not in self._given_up:
                 self._task = RosTask(message, None, goal, action, sent_at=now, taken=True)
 
     def _find_former(self, statuses: Statuses, now: float) -> None:
-        """Note a goal of ours that ended before this program came; another server may have a newer one."""
+        """Record a goal of ours that ended before this program began; another server may have a newer."""
         ours = [
             (message, status, is_for_cone(goal))
             for goal, status in statuses.items()
@@ -582,7 +582,7 @@ class Tasks:
         self._task = None
         how = "rejected the goal" if rejected else f"did not answer within {ACCEPTED_WITHIN:g} s"
         reason = f"the robot's server of {task.action.value} {how}"
-        # It may have heard the goal all the same.
+        # It may have received the goal all the same.
         return [CancelGoals(task.action, task.goal), _refused(task, reason)]
 
 

@@ -1,4 +1,4 @@
-"""Adapter of ROS 2 robots over DDS: settings; topics of each robot read, its actions and services called."""
+"""Adapter of ROS 2 robots over DDS: settings; reads robots' topics, calls their actions and services."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Ros2Settings(RobotSettings, frozen=True, forbid_unknown_fields=True):
 
 
 def check(settings: LinkSettings, own: Ros2Settings) -> None:
-    """Raise LinkError, naming file and key, for what the types alone do not refuse."""
+    """Raise LinkError, naming file and key, for errors that the types do not exclude."""
     check_robots(own, "ros2", settings)
     try:
         own.dds(settings.folder)
@@ -76,7 +76,7 @@ Offers = Mapping[tuple[str, bool], list[Endpoint]]
 
 @dataclass
 class _Subscription:
-    """A topic that is read."""
+    """A subscribed topic."""
 
     topic: str
     type_name: str
@@ -86,7 +86,7 @@ class _Subscription:
 
 
 class DdsSubscriptions:
-    """Reads a robot's topics as they are offered, and hands their messages to its sensing."""
+    """Reads a robot's topics as they are offered, and passes their messages to its sensing."""
 
     def __init__(self, sensing: Sensing, participant: Participant, types: Interfaces) -> None:
         self._sensing = sensing
@@ -94,10 +94,10 @@ class DdsSubscriptions:
         self._types = types
         self._subscriptions: dict[str, _Subscription] = {}
         self._camera: tuple[str, list[Endpoint]] | None = None
-        """The topic of its images, and who offers it."""
+        """The topic of its images, and its writers."""
 
     def connect(self, offers: Offers) -> None:
-        """Read what is offered under the robot's names; what is offered otherwise now is read anew."""
+        """Subscribe to the topics offered under the robot's names; again for those offered otherwise now."""
         for kind, topic in self._sensing.topics().items():
             offered = offers.get((topic_to_dds(topic), False), [])
             if kind == "image":
@@ -108,7 +108,7 @@ class DdsSubscriptions:
                 self._sensing.faults.pop(topic, None)
 
     def poll(self) -> SendPos | SendGPS | None:
-        """Take in what has come; return the robot's newest position, None where none came."""
+        """Process received messages; return the robot's newest position, or None."""
         self._watch()
         newest: SendPos | SendGPS | None = None
         for kind, subscription in list(self._subscriptions.items()):
@@ -125,7 +125,7 @@ class DdsSubscriptions:
         return newest
 
     def _watch(self) -> None:
-        """Read images only while one is waited for: a camera sends more than a network should carry twice."""
+        """Subscribe to images only while one is awaited: a network should not carry a camera's data twice."""
         if self._camera is not None and self._sensing.wants_image:
             self._read("image", *self._camera)
         elif (subscription := self._subscriptions.pop("image", None)) is not None:
@@ -136,7 +136,7 @@ class DdsSubscriptions:
         subscription = self._subscriptions.get(kind)
         if subscription is not None and subscription.offers == keys:
             return
-        # Another node that publishes nonsense under the topic's name takes no robot's own away.
+        # Another node that publishes nonsense under the topic's name must not hide the robot's own.
         strange = [one for one in offered if type_from_dds(one.type_name) not in messages.READ[kind]]
         offered = [one for one in offered if one not in strange] or offered
         found = type_from_dds(offered[0].type_name)
@@ -163,7 +163,7 @@ class DdsSubscriptions:
             subscription.offers = keys
 
 
-# --- What one robot is told: clients of its actions and services, and writers of its topics ---
+# --- Commands to one robot: clients of its actions and services, and writers of its topics ---
 
 log = logging.getLogger(__name__)
 
@@ -175,7 +175,7 @@ NOT_SERVED = (
 
 
 class DdsActions:
-    """Speaks to one robot. ``server`` is the participant of its action server, None where it has none."""
+    """Commands one robot. ``server`` is the participant of its action server, or None."""
 
     def __init__(
         self,
@@ -197,14 +197,14 @@ class DdsActions:
         self._services: dict[str, ServiceClient] = {}
         self._writers: dict[str, tuple[str, RawWriter]] = {}
         self._other_goals: dict[RosAction, str] = {}
-        """The hash of goals that are laid out otherwise than those that are sent."""
+        """The hash of goals with another layout than those sent."""
         self._listened_to: set[str] = set()
         self._map_server: ServiceServer | None = None
         self.server: bytes | None = None
         self.feedback: str | None = None
 
     def connect(self, offers: Offers) -> None:
-        """Meet the servers and listeners that are there now."""
+        """Connect to the present servers and subscribers."""
         self.server = None
         for action, setting in messages.ACTIONS.items():
             with self._noting_permission(setting):
@@ -220,7 +220,7 @@ class DdsActions:
 
     @property
     def abilities(self) -> Abilities:
-        """Who of the robot's side hears this program at the moment."""
+        """The robot's abilities, by the servers and subscribers present now."""
         return Abilities(
             frozenset(action for action, client in self._actions.items() if client.is_matched),
             frozenset(self._other_goals),
@@ -232,15 +232,15 @@ class DdsActions:
         )
 
     def forget_feedback(self) -> None:
-        """Forget how far its goal was."""
+        """Forget the progress of its goal."""
         self.feedback = None
 
     def hears(self, setting: str) -> bool:
-        """Tell whether somebody listens to the topic of a setting."""
+        """Return whether the topic of a setting has subscribers."""
         return setting in self._listened_to
 
     def poll(self, tasks: Tasks, now: float, fault: Callable[[str, str], None]) -> list[Any]:
-        """Take in what servers have said; return the effects."""
+        """Process messages of servers; return the effects."""
         effects: list[Any] = []
         if self._map_server is not None and self._map_server.answer():
             fault("get_map", NOT_SERVED)
@@ -256,12 +256,12 @@ class DdsActions:
         return effects
 
     def send_goal(self, request: SendGoal, here: messages.Pose | None) -> None:
-        """Send a goal; ``here`` is where the robot is. Raises ValueError where it has no place there."""
+        """Send a goal; ``here`` is the robot's pose. Raises ValueError if it cannot be converted."""
         client = self._actions[request.action]
         client.send_goal(request.goal_id, **self._outgoing.goal(request.action, request.task, here))
 
     def ask_result(self, request: SendGoal) -> None:
-        """Ask for the result of a goal that was taken on."""
+        """Request the result of an accepted goal."""
         if request.action in self._actions:
             self._actions[request.action].ask_result(request.goal_id)
 
@@ -276,7 +276,7 @@ class DdsActions:
             self._services[setting].call(self._types.make(f"{messages.TRIGGER}_Request"))
 
     def publish_task(self, request: PublishTask, here: messages.Pose | None) -> None:
-        """Publish a target or a path; raises ValueError where it has no place there."""
+        """Publish a target or a path; raises ValueError if it cannot be converted."""
         if isinstance(request.task, SetPath):
             self._publish("path", self._outgoing.path(request.task))
         else:
@@ -288,22 +288,22 @@ class DdsActions:
         self._publish("goal_pose", fields["pose"])
 
     def publish_zero(self) -> None:
-        """Publish speed 0, with or without a time as its listeners want it."""
+        """Publish speed 0, with or without a time stamp as its subscribers expect."""
         type_name = self._writers["cmd_vel"][0] if "cmd_vel" in self._writers else messages.TWIST
         self._publish("cmd_vel", self._types.make(type_name))
 
     def publish_start(self, start: SetPosIni, here: messages.Pose | None) -> None:
-        """Publish where the robot is to take itself to be."""
+        """Publish the robot's initial pose."""
         self._publish("initial_pose", self._outgoing.start(start, here))
 
     def publish_latched(self, setting: str, message: bytes) -> None:
-        """Publish what is encoded on a topic of LATCHED: who comes later is told it, too."""
+        """Publish an encoded message on a topic of LATCHED: later subscribers receive it, too."""
         if setting not in self._writers:
             self._write_to(setting, messages.LATCHED[setting])
         self._writers[setting][1].write(message)
 
     def serve_map(self, grid: bytes) -> None:
-        """Answer with a map that is encoded who asks for it by the service ``get_map``."""
+        """Answer the service ``get_map`` with an encoded map."""
         if self._map_server is None:
             names = service_names(self._topic("get_map"), messages.GET_MAP)
             self._map_server = ServiceServer(self._participant, names)
@@ -315,7 +315,7 @@ class DdsActions:
 
     @contextmanager
     def _noting_permission(self, setting: str) -> Iterator[None]:
-        """Note what the permissions of this link do not allow; the robot's other topics are used."""
+        """Record a missing permission of this link as a fault; the robot's other topics are used."""
         try:
             yield
         except FaultError as error:
@@ -361,7 +361,7 @@ class DdsActions:
             self._sensing.faults.pop(topic, None)
 
     def _reads_goals(self, action: RosAction, topic: str, server: Endpoint) -> bool:
-        """Tell whether a server's goals are laid out as those that are sent; else it is a fault."""
+        """Return whether a server's goals have the layout of those sent; otherwise record a fault."""
         type_hash, types = server.type_hash, self._types
         if type_hash is None or type_hash == types.goal_hash(action.value):
             self._other_goals.pop(action, None)
@@ -427,12 +427,12 @@ def _refuse(fault: Callable[[str, str], None], what: str, who: str, error: Fault
     fault(what, f"{who}: {error}")
 
 
-# --- The adapter of ROS 2 robots: finds them on the network and leads each, in one loop ---
+# --- The adapter of ROS 2 robots: discovers and controls them in one loop ---
 
 EVERY = 0.02
-"""seconds between two looks at what has come."""
+"""seconds between polls of received messages."""
 MEET_EVERY = 0.2
-"""seconds between two looks at who is there."""
+"""seconds between polls of the discovered endpoints."""
 
 
 class Ros2Adapter(RosAdapter[Offers]):
@@ -445,7 +445,7 @@ class Ros2Adapter(RosAdapter[Offers]):
         self._settings = settings
 
     async def run(self, link: Link) -> None:
-        """Lead the robots of the network until cancelled."""
+        """Control the robots of the network until cancelled."""
         settings = self._settings
         try:
             types = Interfaces(settings.distribution)
@@ -481,7 +481,7 @@ class Ros2Adapter(RosAdapter[Offers]):
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
+    """Return the settings in ``file`` and the adapter with them; raises LinkError."""
     settings, table = read_settings(file, "ros2", Ros2Settings)
     check(settings, table)
     return settings, Ros2Adapter(table, settings.state_folder / f"{settings.name}.servers")

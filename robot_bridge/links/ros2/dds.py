@@ -1,8 +1,8 @@
-"""DDS by cyclonedds: what others offer and want, and readers and writers of bytes under any type's name.
+"""DDS by cyclonedds: discovery of endpoints, and readers and writers of bytes under any type's name.
 
 cyclonedds is native code and knows types at compile time. Here every topic has a type that is one octet and
-the name of the real one: cyclonedds compares names alone once it ignores the type information of the vendors
-that send some, and hands over and takes the bytes of a message as they are.
+the name of the real one: cyclonedds compares only names once it ignores the type information of vendors that
+send it, and passes the bytes of a message unchanged.
 """
 
 from __future__ import annotations
@@ -27,13 +27,13 @@ Range = Literal["localhost", "subnet", "off"]
 RANGES: tuple[Range, ...] = ("localhost", "subnet", "off")
 LARGEST_DOMAIN = 232
 MOST_ENDPOINTS = 50_000
-"""of others that are remembered; a robot with Nav2 has about 500."""
+"""remembered endpoints of others; a robot with Nav2 has about 500."""
 MOST_PARTICIPANTS = 120
-"""participants on one computer that are looked for without multicast."""
+"""participants on one computer discovered without multicast."""
 AT_ONCE = 64
-"""messages that are read from one topic at a time."""
+"""messages read from one topic at a time."""
 IGNORED_TYPES = "1.15,1.16"
-"""Fast DDS and Cyclone DDS: whose descriptions of types are not held against one octet."""
+"""Fast DDS and Cyclone DDS: their type descriptions are not compared with the one octet."""
 _TYPE_HASH = re.compile(rb"typehash=(RIHS01_[0-9a-f]{64})")
 _BLOCK = 100_000_000
 """nanoseconds that a write waits for room at most."""
@@ -41,11 +41,11 @@ _BLOCK = 100_000_000
 
 @dataclass(frozen=True)
 class DdsSettings:
-    """A DDS domain: its number, how far others are looked for, and where.
+    """A DDS domain: its number, and the range of discovery.
 
     ``interfaces`` are names or addresses of this computer's; none: loopback for ``localhost``, else the one
-    that cyclonedds takes. ``peers`` are addresses asked one by one, for networks without multicast. With
-    ``security`` only those are heard and answered who show that they belong here.
+    that cyclonedds chooses. ``peers`` are addresses contacted individually, for networks without multicast.
+    With ``security`` only authenticated participants are accepted.
     """
 
     domain: int = 0
@@ -61,7 +61,7 @@ class DdsSettings:
             raise RosError(f"range is {str(self.range)[:40]!r}; give one of {', '.join(RANGES)}")
 
     def xml(self, *, ignores_types: bool = True) -> str:
-        """Return cyclonedds's configuration of the domain; not every version ``ignores_types``."""
+        """Return cyclonedds's configuration of the domain; not every version supports ``ignores_types``."""
         peers = (["127.0.0.1"] if self.range == "localhost" else []) + list(self.peers)
         interfaces = self.interfaces or (("127.0.0.1",) if self.range == "localhost" else ())
         ignored = f"<IgnoreTypeInformation>{IGNORED_TYPES}</IgnoreTypeInformation>" if ignores_types else ""
@@ -79,7 +79,7 @@ class DdsSettings:
 
 @dataclass(frozen=True)
 class Endpoint:
-    """Somebody's reader (``wants``) or writer of a DDS topic; ``key`` and ``participant`` have 16 bytes."""
+    """A remote reader (``wants``) or writer of a DDS topic; ``key`` and ``participant`` have 16 bytes."""
 
     key: bytes
     participant: bytes
@@ -89,7 +89,7 @@ class Endpoint:
     reliable: bool
     latched: bool
     type_hash: str | None = None
-    """Of the type's definition (REP 2016), as nodes since iron tell it."""
+    """Hash of the type's definition (REP 2016), as sent by nodes since iron."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class Quality:
 
 
 def quality_for(offers: Iterable[Endpoint], depth: int = 10) -> Quality:
-    """Return the best that a reader can ask so that each of those who offer the topic is heard."""
+    """Return the best quality of a reader that still matches every writer of the topic."""
     known = list(offers)
     return Quality(
         all(one.reliable for one in known), bool(known) and all(one.latched for one in known), depth
@@ -116,16 +116,16 @@ class RawReader:
         self._entity = entity
 
     def read_samples(self) -> list[bytes]:
-        """Return the messages that have come, oldest first, without waiting."""
+        """Return the received messages, oldest first, without waiting."""
         return [sample.data for sample in self._entity.take(AT_ONCE) if sample.sample_info.valid_data]
 
     @property
     def matched(self) -> int:
-        """How many writers it hears."""
+        """Number of matched writers."""
         return _matched(self._entity, "publications")
 
     def close(self) -> None:
-        """Hear nobody any more."""
+        """Close the reader."""
         self._entity.__del__()
 
 
@@ -137,7 +137,7 @@ class RawWriter:
         self._sample_type = sample_type
 
     def write(self, data: bytes) -> bool:
-        """Write a message; false where there is no room for it: readers do not keep up."""
+        """Write a message; return false without room for it: readers do not keep up."""
         from cyclonedds.core import DDSException
 
         try:
@@ -149,14 +149,14 @@ class RawWriter:
 
     @property
     def matched(self) -> int:
-        """How many readers hear it."""
+        """Number of matched readers."""
         return _matched(self._entity, "subscriptions")
 
 
 class Participant:
-    """This program in a DDS domain. Not for several threads.
+    """This program's participant in a DDS domain. Not thread-safe.
 
-    :raises RosError: where cyclonedds is not installed or does not take the settings.
+    :raises RosError: if cyclonedds is not installed or refuses the settings.
     """
 
     def __init__(self, settings: DdsSettings) -> None:
@@ -192,21 +192,21 @@ class Participant:
 
     @property
     def endpoints(self) -> Iterator[Endpoint]:
-        """What others offer and want."""
+        """The endpoints of others."""
         return iter(list(self._endpoints.values()))
 
     def discover(self) -> bool:
-        """Take in who has come and gone; tell whether anything changed."""
+        """Update the endpoints of others; return whether anything changed."""
         changed = False
         for reader, wants in ((self._offers, False), (self._wants, True)):
             for sample in reader.take(1000):
-                changed |= self._note(sample, wants)
+                changed |= self._record(sample, wants)
         return changed
 
     def reader(self, topic: str, type_name: str, quality: Quality) -> RawReader:
         """Return a reader of a DDS topic; both names are those of DDS.
 
-        :raises FaultError: where the permissions of this link do not allow that.
+        :raises FaultError: if the permissions of this link do not allow that.
         """
         from cyclonedds.sub import DataReader
 
@@ -217,7 +217,7 @@ class Participant:
     def writer(self, topic: str, type_name: str, quality: Quality) -> RawWriter:
         """Return a writer of a DDS topic; both names are those of DDS.
 
-        :raises FaultError: where the permissions of this link do not allow that.
+        :raises FaultError: if the permissions of this link do not allow that.
         """
         from cyclonedds.pub import DataWriter
 
@@ -235,7 +235,7 @@ class Participant:
             self._topics[key] = Topic(self._participant, name, self._types[type_name])
         return self._topics[key]
 
-    def _note(self, sample: Any, wants: bool) -> bool:
+    def _record(self, sample: Any, wants: bool) -> bool:
         from cyclonedds.core import InstanceState
 
         key = sample.key.bytes
@@ -277,7 +277,7 @@ def _type_hash(declared: Any) -> str | None:
 
 
 def _policy(qos: Any, policy: Any) -> Any:
-    """Return one policy of cyclonedds's Qos, which has no get(); None where it is left out."""
+    """Return one policy of cyclonedds's Qos, which has no get(); None if it is absent."""
     return qos[policy] if policy in qos else None  # noqa: SIM401
 
 
@@ -292,14 +292,14 @@ def _qos(quality: Quality) -> Any:
 
 
 def library_has(word: bytes) -> bool:
-    """Tell whether Cyclone DDS's library was built with what ``word`` names."""
+    """Return whether Cyclone DDS's library was built with the feature that ``word`` names."""
     from cyclonedds import __library__
 
     return word in Path(__library__.library_path).read_bytes()
 
 
 def _shown(security: DdsSecurity | None) -> Any:
-    """Return the Qos of a participant that shows its certificate; None for one that has none."""
+    """Return the Qos of a participant that shows its certificate; None without one."""
     from cyclonedds.core import Policy, Qos
 
     if security is None:
@@ -325,7 +325,7 @@ def _permitted(topic: str, verb: str) -> Iterator[None]:
 
 
 def _matched(entity: Any, side: str) -> int:
-    """Return how many of the other side an endpoint has met; Cyclone DDS 0.10 says that in C alone."""
+    """Return the number of matched endpoints; Cyclone DDS 0.10 has that only in its C API."""
     if hasattr(entity, f"get_matched_{side}"):
         return len(getattr(entity, f"get_matched_{side}")())
     from cyclonedds.internal import DDS
@@ -336,7 +336,7 @@ def _matched(entity: Any, side: str) -> int:
 def _octet_type(type_name: str, *, described: bool) -> Any:
     """Return a type of cyclonedds that is one octet, under ``type_name``, whose samples are bytes.
 
-    One that is not ``described`` is compared by its name alone: others know it as another type.
+    One that is not ``described`` is compared only by name: others know it as another type.
     """
     from cyclonedds.idl import make_idl_struct, types
 

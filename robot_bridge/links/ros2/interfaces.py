@@ -9,7 +9,7 @@ from typing import Any
 from ..ros.errors import FaultError, RosError, RosNameError
 from ..ros.settings import DISTRIBUTIONS, check_topic, distribution_names, is_topic
 
-# --- Names of ROS 2 topics, services, actions and types as DDS carries them; no I/O ---
+# --- DDS names of ROS 2 topics, services, actions and types; no I/O ---
 # A topic ``/r1/odom`` is ``rt/r1/odom``; a service ``/r1/stop`` is the two topics ``rq/r1/stopRequest`` and
 # ``rr/r1/stopReply``; an action is three services and two topics below ``_action``. A type
 # ``nav_msgs/msg/Odometry`` is ``nav_msgs::msg::dds_::Odometry_`` (design.ros2.org, topic and service
@@ -51,7 +51,7 @@ def topic_to_dds(name: str) -> str:
 
 
 def topic_from_dds(name: str) -> str | None:
-    """Return the ROS topic of a DDS topic, None for what is none: services, parts of actions, other DDS."""
+    """Return the ROS topic of a DDS topic, None for others: services, parts of actions, other DDS."""
     ros = name[2:] if name.startswith("rt/") else ""
     return ros if is_topic(ros) else None
 
@@ -65,7 +65,7 @@ def type_to_dds(name: str) -> str:
 
 
 def type_from_dds(name: str) -> str | None:
-    """Return the ROS name of a DDS type, None for what is none of ROS 2."""
+    """Return the ROS name of a DDS type, None if it is not of ROS 2."""
     found = _DDS_TYPE.fullmatch(name)
     return "/".join(found.groups()) if found else None
 
@@ -95,13 +95,12 @@ def action_names(name: str, type_name: str) -> ActionNames:
     )
 
 
-# --- The types of ROS 2 by distribution, and the codec of their messages: what is decoded is bounded ---
-# rosbags knows the messages of each distribution. The services and actions that the adapter speaks are
-# written
-# here, as nav2_msgs, action_msgs, std_srvs and nav_msgs define them.
+# --- The types of ROS 2 by distribution, and the codec of their messages, with size limits ---
+# rosbags knows the messages of each distribution. The services and actions used by the adapter are defined
+# here, as in nav2_msgs, action_msgs, std_srvs and nav_msgs.
 
 LARGEST_MESSAGE = 16 << 20
-"""bytes of a message that is decoded: an image is the largest."""
+"""bytes of a decoded message: an image is the largest."""
 LONGEST_SEQUENCE = 16 << 20
 """elements of a sequence; a laser scan or an image has the most."""
 
@@ -124,9 +123,9 @@ _NAV2_MESSAGES = {
 
 
 class Interfaces:
-    """Makes, encodes and decodes messages of one distribution.
+    """Builds, encodes and decodes messages of one distribution.
 
-    :raises RosError: for a distribution whose types are not known, or where rosbags is not installed.
+    :raises RosError: for a distribution with unknown types, or if rosbags is not installed.
     """
 
     def __init__(self, distribution: str) -> None:
@@ -150,11 +149,11 @@ class Interfaces:
             self._store.register(get_types_from_msg(text, name))
 
     def knows(self, type_name: str) -> bool:
-        """Tell whether messages of a type can be decoded."""
+        """Return whether messages of a type can be decoded."""
         return _stored_name(type_name) in self._store.fielddefs
 
     def make(self, type_name: str, **fields: Any) -> Any:
-        """Return a message; fields that are left out are zero, empty, or made of such."""
+        """Return a message; omitted fields are zero, empty, or built of such."""
         name = _stored_name(type_name)
         return self._store.types[name](**(self._zeros(name) | fields))
 
@@ -163,7 +162,7 @@ class Interfaces:
         return bytes(self._store.serialize_cdr(message, _stored_name(type_name), little_endian=True))
 
     def decode(self, type_name: str, data: bytes) -> Any:
-        """Return the message in ``data``; raises FaultError for what is too large or no such message."""
+        """Return the message in ``data``; raises FaultError if it is too large or invalid."""
         from rosbags.serde import SerdeError
 
         if len(data) > LARGEST_MESSAGE:
@@ -176,13 +175,13 @@ class Interfaces:
             ) from None
 
     def goal_hash(self, action: str) -> str:
-        """Return the hash (REP 2016) of the goals of one of Nav2's actions, as its server tells it."""
+        """Return the hash (REP 2016) of the goals of one of Nav2's actions, as sent by its server."""
         from rosbags.interfaces import Nodetype
 
         if action not in self._goal_hashes:
             defined = self._store.fielddefs
             goal, request = f"nav2_msgs/action/{action}_Goal", f"nav2_msgs/action/{action}_SendGoal_Request"
-            # A request is laid out as here, and described as an id and a goal that is a type of its own.
+            # A request has this layout, but is described as an id and a goal of its own type.
             (goal_id, *fields) = defined[_stored_name(request)][1]
             defined[goal] = ([], fields)
             defined[request] = ([], [goal_id, ("goal", (Nodetype.NAME, goal))])
@@ -190,7 +189,7 @@ class Interfaces:
         return self._goal_hashes[action]
 
     def distributions_of(self, action: str, goal_hash: str) -> list[str]:
-        """Return the distributions in which an action's goals have a hash."""
+        """Return the distributions in which an action's goals have this hash."""
         if not self._others:
             # Some tenths of a second, once.
             self._others = {name: Interfaces(name) for name in DISTRIBUTIONS}
@@ -216,7 +215,7 @@ class Interfaces:
 
 
 def _stored_name(type_name: str) -> str:
-    """Return a type's name as rosbags keeps it, which knows messages alone."""
+    """Return a type's name in rosbags, which has only messages."""
     return type_name.replace("/srv/", "/msg/").replace("/action/", "/msg/")
 
 
@@ -244,7 +243,7 @@ def _definitions(distribution: str) -> dict[str, str]:
 
 
 def _actions(distribution: str) -> dict[str, tuple[str, str, str]]:
-    """Return goal, result and feedback of Nav2's actions; their fields stand behind the id as they are."""
+    """Return goal, result and feedback of Nav2's actions; their fields follow the id directly."""
     since = DISTRIBUTIONS.index(distribution)
     humble, jazzy, kilted, lyrical = (since >= DISTRIBUTIONS.index(one) for one in DISTRIBUTIONS[1:])
     empty = "std_msgs/Empty result\n"

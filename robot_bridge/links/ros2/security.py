@@ -1,4 +1,4 @@
-"""DDS Security (SROS 2) of a link: its files, and what cyclonedds is told of them."""
+"""DDS Security (SROS 2) of a link: its files, and their properties for cyclonedds."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _LIBRARIES = {
     "crypto": ("dds_security_crypto", "crypto"),
 }
 SECURED = b"dds.sec.auth.library.path"
-"""Is in libddsc where it was built with DDS Security, and in no other."""
+"""A string in libddsc only if it was built with DDS Security."""
 
 
 class SecuritySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
@@ -37,7 +37,7 @@ class SecuritySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     plugins: str | None = None
 
     def beside(self, folder: Path) -> DdsSecurity:
-        """Return the same with the files' paths; raises RosError, which begins with the key, for bad ones."""
+        """Return the same with the files' paths; raises RosError, beginning with the key, for bad ones."""
         named: Mapping[str, str | None] = msgspec.structs.asdict(self)
         found = {key: folder / name for key, name in named.items() if name is not None}
         return DdsSecurity(
@@ -53,9 +53,9 @@ class SecuritySettings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class DdsSecurity:
-    """What a participant shows to others, and by what it judges them.
+    """A participant's credentials, and those by which it verifies others.
 
-    :raises RosError: for a file that cannot be read or is none of its kind, beginning with its key.
+    :raises RosError: for a file that is unreadable or of the wrong kind, beginning with its key.
     """
 
     identity_ca: Path

@@ -1,7 +1,7 @@
 """Clients of services and actions of ROS 2, over DDS.
 
-With Fast DDS a request is the message, and what tells whose reply it is stands beside it, where this program
-cannot see it: every client hears every reply. Cyclone DDS (rmw_cyclonedds) puts 16 bytes before both, the
+With Fast DDS a request is the bare message, and the identity of its client is metadata that this program
+cannot see: every client receives every reply. Cyclone DDS (rmw_cyclonedds) puts 16 bytes before both, the
 client's number and the request's.
 """
 
@@ -23,11 +23,11 @@ _ENCAPSULATION = 4
 
 
 Refuse = Callable[[FaultError], None]
-"""Is called with what is wrong with a message that cannot be read; the others are returned."""
+"""Called with the fault of an unreadable message; the others are returned."""
 
 
 class ServiceClient:
-    """Calls one service; ``framed`` where its server is of Cyclone DDS. Replies come by :meth:`replies`."""
+    """Calls one service; ``framed`` if its server uses Cyclone DDS. Replies are read by :meth:`replies`."""
 
     def __init__(
         self, participant: Participant, types: Interfaces, names: ServiceNames, kind: str, *, framed: bool
@@ -42,7 +42,7 @@ class ServiceClient:
 
     @property
     def is_matched(self) -> bool:
-        """Whether a server hears requests, and its replies are heard."""
+        """Whether a server is matched for requests and replies."""
         return self._out.matched > 0 and self._back.matched > 0
 
     def call(self, request: Any) -> None:
@@ -55,13 +55,13 @@ class ServiceClient:
         self._out.write(data)
 
     def replies(self, refuse: Refuse) -> list[Any]:
-        """Return the replies that have come."""
+        """Return the received replies."""
         came = [self._unframed(data) for data in self._back.read_samples()]
         own = [data for data in came if data is not None]
         return _readable(self._types, f"{self._kind}_Response", own, refuse)
 
     def _unframed(self, data: bytes) -> bytes | None:
-        """Return a reply without its header, None where it is another client's."""
+        """Return a reply without its header, None if it is another client's."""
         if not self._framed:
             return data
         end = _ENCAPSULATION + _HEADER.size
@@ -73,7 +73,7 @@ class ServiceClient:
 class ServiceServer:
     """Answers each call of a service with one reply, for nodes on Cyclone DDS.
 
-    Calls from Fast DDS come without the header that a reply repeats, and cannot be answered.
+    Calls from Fast DDS lack the header that a reply repeats, and cannot be answered.
     """
 
     def __init__(self, participant: Participant, names: ServiceNames) -> None:
@@ -82,11 +82,11 @@ class ServiceServer:
         self._reply = b""
 
     def set_reply(self, reply: bytes) -> None:
-        """Have each call answered with ``reply`` from now on, the CDR of a response."""
+        """Answer each call with ``reply``, the CDR of a response, from now on."""
         self._reply = reply
 
     def answer(self) -> bool:
-        """Answer the calls that have come; return whether there was one that cannot be answered."""
+        """Answer the received calls; return whether one could not be answered."""
         unanswered = False
         end = _ENCAPSULATION + _HEADER.size
         for call in self._calls.read_samples():
@@ -120,7 +120,7 @@ class ActionClient:
 
     @property
     def is_matched(self) -> bool:
-        """Whether the server hears this client, and is heard."""
+        """Whether the server is matched in both directions."""
         return self.send.is_matched and self.cancel.is_matched and self.status.matched > 0
 
     def send_goal(self, goal: bytes, **fields: Any) -> None:
@@ -129,7 +129,7 @@ class ActionClient:
         self.send.call(self._types.make(named, goal_id=self._id(goal), **fields))
 
     def ask_result(self, goal: bytes) -> None:
-        """Ask for the result of a goal that was taken on: the answer comes at its end."""
+        """Request the result of an accepted goal: the answer comes at its end."""
         named = f"nav2_msgs/action/{self.kind}_GetResult_Request"
         self.result.call(self._types.make(named, goal_id=self._id(goal)))
 
@@ -141,17 +141,17 @@ class ActionClient:
         self.cancel.call(request)
 
     def statuses(self, refuse: Refuse) -> list[Any]:
-        """Return the action_msgs/GoalStatusArray that have come."""
+        """Return the received action_msgs/GoalStatusArray messages."""
         return _readable(self._types, "action_msgs/msg/GoalStatusArray", self.status.read_samples(), refuse)
 
     def newest_feedback(self, refuse: Refuse) -> tuple[bytes, Any] | None:
-        """Return the newest feedback with its goal's id, None where none has come."""
+        """Return the newest feedback with its goal's id, or None."""
         named = f"nav2_msgs/action/{self.kind}_FeedbackMessage"
         samples = _readable(self._types, named, self.feedback.read_samples()[-1:], refuse)
         return (bytes(samples[0].goal_id.uuid), samples[0]) if samples else None
 
     def results(self) -> list[Any]:
-        """Return the results that have come; one laid out as in another distribution is left out."""
+        """Return the received results; those with the layout of another distribution are skipped."""
         return self.result.replies(lambda _: None)
 
     def _id(self, goal: bytes) -> Any:
@@ -170,12 +170,12 @@ def _readable(types: Interfaces, type_name: str, samples: Iterable[bytes], refus
 
 
 def is_framed(server: Endpoint) -> bool:
-    """Tell whether a server's requests and replies have a header."""
+    """Return whether a server's requests and replies have a header."""
     return (server.participant[0], server.participant[1]) == CYCLONE
 
 
 def by_topic(endpoints: Iterable[Endpoint]) -> dict[tuple[str, bool], list[Endpoint]]:
-    """Return who wants (True) and who offers (False) each DDS topic."""
+    """Return the readers (True) and writers (False) of each DDS topic."""
     found: dict[tuple[str, bool], list[Endpoint]] = {}
     for one in endpoints:
         found.setdefault((one.topic, one.wants), []).append(one)

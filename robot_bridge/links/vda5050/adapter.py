@@ -42,15 +42,15 @@ from .vehicle import VehicleController
 log = logging.getLogger(__name__)
 
 TICK = 0.25
-"""seconds between two looks at what is due."""
+"""seconds between checks of due work."""
 REPORT_EVERY = 1.0
-"""seconds between two looks at what the matter is with vehicles."""
+"""seconds between reports on the vehicles' faults."""
 FACTSHEET_WITHIN = 2.0
-"""seconds for which a vehicle's factsheet is waited for before the gateway is told what it can do."""
+"""seconds to wait for a vehicle's factsheet before its abilities are reported to the gateway."""
 
 
 class Vehicle:
-    """One vehicle with what is open for it: commands that wait, and a stop that waits."""
+    """One vehicle with its waiting commands and stop."""
 
     def __init__(self, robot: str, controller: VehicleController, now: float) -> None:
         self.robot = robot
@@ -59,18 +59,19 @@ class Vehicle:
         self.received_at = now
         self.is_introduced = False
         self.untold: list[Settled] = []
-        """What came of commands before the gateway knew of it: an order that ended while nobody led it."""
+        """Outcomes of commands before the gateway knew the vehicle: orders that ended without a running
+        link."""
         self._commands: dict[int, asyncio.Future[str | None]] = {}
         self._halts: list[asyncio.Future[None]] = []
 
     def await_settled(self, command: int) -> asyncio.Future[str | None]:
-        """Return what comes of a command: None, or why it is refused."""
+        """Return a future of a command's outcome: None, or why it is refused."""
         future: asyncio.Future[str | None] = asyncio.get_running_loop().create_future()
         self._commands[command] = future
         return future
 
     def settle(self, settled: Settled) -> bool:
-        """Hand on what came of a command; return whether anybody waited for it."""
+        """Set the outcome of a command; return whether it was awaited."""
         future = self._commands.pop(settled.command_id, None)
         if future is None or future.done():
             return False
@@ -78,13 +79,13 @@ class Vehicle:
         return True
 
     def await_halt(self) -> asyncio.Future[None]:
-        """Return what is done once the vehicle shows that it stands."""
+        """Return a future that is done once the vehicle shows that it stands."""
         future: asyncio.Future[None] = asyncio.get_running_loop().create_future()
         self._halts.append(future)
         return future
 
     def halted(self) -> None:
-        """Note that the vehicle stands."""
+        """Record that the vehicle stands."""
         waiting, self._halts = self._halts, []
         for future in waiting:
             if not future.done():
@@ -92,7 +93,7 @@ class Vehicle:
 
 
 class RandomNames:
-    """Names of orders and actions, drawn from so many that none comes twice."""
+    """Names of orders and actions, random, so that none repeats."""
 
     def draw(self) -> str:
         """Return the next one."""
@@ -100,7 +101,7 @@ class RandomNames:
 
 
 class Vda5050Adapter(Adapter):
-    """Leads the vehicles of one interface."""
+    """Controls the vehicles of one interface."""
 
     kind: ClassVar[str] = "vda5050"
 
@@ -140,7 +141,7 @@ class Vda5050Adapter(Adapter):
             await asyncio.gather(ticking, carrying, return_exceptions=True)
 
     async def command(self, command: Command) -> None:
-        """Have the vehicle take on a command; return when it shows that."""
+        """Have the vehicle accept a command; return when it shows that."""
         vehicle, message = self._vehicle(command.robot), command.message
         if not isinstance(message, SetPosEnd | SetPath | SetPosIni):
             return  # maps are the vehicles' own
@@ -170,7 +171,7 @@ class Vda5050Adapter(Adapter):
             raise CommandRefusedError(status or "the vehicle does not show that it stands") from None
 
     def admitted(self, robot: str) -> None:
-        """Tell where the vehicle is."""
+        """Report the vehicle's position."""
         if (vehicle := self._robots.get(robot)) is not None:
             vehicle.controller.set_admitted(True, time.monotonic())
             self._carry_out(vehicle)
@@ -199,11 +200,11 @@ class Vda5050Adapter(Adapter):
 
     @property
     def vehicles(self) -> list[str]:
-        """The names of the vehicles that were heard."""
+        """The names of the heard vehicles."""
         return list(self._robots)
 
     def receive(self, topic: str, payload: bytes, *, retained: bool = False) -> None:
-        """Deal with one message of the broker; what is wrong with it concerns its vehicle alone."""
+        """Process one message of the broker; an error in it affects its vehicle alone."""
         parsed = self._topics.parse(topic)
         if parsed is None:
             return
@@ -224,7 +225,7 @@ class Vda5050Adapter(Adapter):
         except Vda5050Error as error:
             self._warn(identity, str(error))
         except Exception:
-            self._note_unforeseen(identity)
+            self._log_unforeseen(identity)
 
     def _known(self, identity: VehicleId) -> Vehicle | None:
         vehicle = self._vehicles.get(identity)
@@ -249,7 +250,7 @@ class Vda5050Adapter(Adapter):
         return vehicle
 
     def _recalled(self, identity: VehicleId, robot: str, now: float) -> Vehicle:
-        """Return a vehicle with what was kept of it; adrift where the settings have changed since."""
+        """Return a vehicle with its stored state; adrift if the settings have changed since."""
 
         def made(remembered: Remembered | None) -> Vehicle:
             names = RandomNames()
@@ -261,7 +262,8 @@ class Vda5050Adapter(Adapter):
             if kept is None or kept.basis in ("", self._basis(robot, kept)):
                 return made(kept)
             log.warning("vehicle %s: what it was to do is given up: its settings have changed", identity)
-            # Before anything is kept of it by the settings of now. What a former name was asked nobody does.
+            # Before anything is stored under the present settings. Commands to a former name are not
+            # executed.
             if self._link is not None:
                 for name in {kept.basis.partition(" ")[0], robot}:
                     self._link.adrift(name)
@@ -271,13 +273,13 @@ class Vda5050Adapter(Adapter):
             return made(None)
 
     def _basis(self, robot: str, kept: Remembered) -> str:
-        """Return what of the settings goes for a vehicle's task: its name, and where the map of it lies."""
+        """Return the settings on which a vehicle's task depends: its name, and the frame of its map."""
         plan = None if kept.task is None else kept.task.plan
         placed = None if plan is None else self._own.maps.get(plan.map_id)
         return robot if placed is None else f"{robot} {placed}"
 
     def broker_changed(self, reason: str | None) -> None:
-        """Note that the broker is there (None), or why it is not."""
+        """Record that the broker is connected (None), or why it is not."""
         if reason is not None:
             for vehicle in self._vehicles.values():
                 vehicle.controller.lose_broker()
@@ -295,17 +297,17 @@ class Vda5050Adapter(Adapter):
                     vehicle.controller.set_admitted(False, now)
                 try:
                     vehicle.controller.advance(now)
-                    self._tell(vehicle, now)
+                    self._announce(vehicle, now)
                     self._carry_out(vehicle)
                 except Exception:
-                    self._note_unforeseen(vehicle.controller.vehicle)
+                    self._log_unforeseen(vehicle.controller.vehicle)
             self._repeated.summarise()
             if now >= report_at:
                 report_at = now + REPORT_EVERY
                 self._report(now)
 
-    def _tell(self, vehicle: Vehicle, now: float) -> None:
-        """Have the gateway know a vehicle once it is known what it can do."""
+    def _announce(self, vehicle: Vehicle, now: float) -> None:
+        """Announce a vehicle to the gateway once its abilities are known."""
         controller, link = vehicle.controller, self._link
         if vehicle.is_introduced or link is None or not controller.is_known:
             return
@@ -317,13 +319,13 @@ class Vda5050Adapter(Adapter):
             abilities.append("start")
         link.add(vehicle.robot, abilities)
         for settled in vehicle.untold:
-            self._tell_effect(vehicle, settled)
+            self._report_effect(vehicle, settled)
         vehicle.untold.clear()
 
     # --- effects --------------------------------------------------------------------------------------
 
     def _carry_out(self, vehicle: Vehicle) -> None:
-        """Carry out what has come of a call; an order is not published that could not be kept."""
+        """Carry out the effects of a call; an order that could not be stored is not published."""
         is_kept = True
         for effect in vehicle.controller.drain():
             if isinstance(effect, Keep):
@@ -331,7 +333,7 @@ class Vda5050Adapter(Adapter):
             elif isinstance(effect, Publish):
                 self._publish(vehicle, effect, is_kept=is_kept)
             else:
-                self._tell_effect(vehicle, effect)
+                self._report_effect(vehicle, effect)
 
     def _keep(self, vehicle: Vehicle, effect: Keep) -> bool:
         kept = msgspec.structs.replace(effect.remembered, basis=self._basis(vehicle.robot, effect.remembered))
@@ -354,7 +356,7 @@ class Vda5050Adapter(Adapter):
         payload = vehicle.writer.encode(message, controller.version, time.time())
         self._broker.publish(topic, payload, urgent=not is_order)
 
-    def _tell_effect(self, vehicle: Vehicle, effect: Effect) -> None:
+    def _report_effect(self, vehicle: Vehicle, effect: Effect) -> None:
         link = self._link
         if isinstance(effect, Settled):
             if vehicle.settle(effect) or effect.reason is None or link is None:
@@ -377,13 +379,13 @@ class Vda5050Adapter(Adapter):
         self._faults += 1
         self._repeated.warn(log, ("vda5050:", str(identity)), f"vehicle {identity}: {text}")
 
-    def _note_unforeseen(self, identity: VehicleId) -> None:
-        """Log what nobody foresaw, in an except block; it concerns that vehicle alone."""
+    def _log_unforeseen(self, identity: VehicleId) -> None:
+        """Log an unforeseen error, in an except block; it affects that vehicle alone."""
         self._faults += 1
         self._repeated.note_unforeseen(log, ("vda5050:", str(identity)), f"vehicle {identity}")
 
     def _report(self, now: float) -> None:
-        """Say that the broker is away, else what the matter is with the vehicles."""
+        """Report that the broker is away, else the faults of the vehicles."""
         if self._link is None:
             return
         counts = {"vehicles": float(len(self._vehicles)), "faults": float(self._faults)}
@@ -396,6 +398,6 @@ class Vda5050Adapter(Adapter):
 
 
 def load(file: Path) -> tuple[LinkSettings, Adapter]:
-    """Return the settings in ``file`` and the adapter that goes by them; raises LinkError."""
+    """Return the settings in ``file`` and the adapter with them; raises LinkError."""
     settings, own = read_settings(file, "vda5050", Vda5050Settings)
     return settings, Vda5050Adapter(settings, own)

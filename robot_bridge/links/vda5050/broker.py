@@ -1,4 +1,4 @@
-"""The connection to the MQTT broker: it comes back, and carries nothing that has become old meanwhile."""
+"""The connection to the MQTT broker: it reconnects, and carries no outdated messages."""
 
 from __future__ import annotations
 
@@ -17,37 +17,36 @@ from .settings import BrokerAddress
 log = logging.getLogger(__name__)
 
 FIRST_WAIT, LONGEST_WAIT = 0.5, 10.0
-"""seconds between two attempts to connect."""
+"""seconds between attempts to connect."""
 STABLE_AFTER = 5.0
-"""seconds after which a connection counts as one that holds."""
+"""seconds after which a connection counts as stable."""
 CONNECT_WITHIN = 5.0
 KEEPALIVE = 10
 """seconds after which the broker is pinged; one that does not answer is gone after half as much again."""
 MOST_WAITING = 20_000
-"""messages of vehicles that wait to be read; the newest are thrown away beyond them."""
+"""messages of vehicles that wait to be read; beyond that the newest are discarded."""
 LARGEST = 1 << 20
-"""bytes of a message that is read."""
+"""bytes of a received message."""
 REFUSED = 0x80
-"""and above: what a broker answers to a subscription that it does not allow."""
+"""and above: a broker's answer to a refused subscription."""
 TOGETHER = 200
-"""messages that are read before others get a turn."""
+"""messages read before other tasks get a turn."""
 
 
 class BrokerListener(Protocol):
-    """Hears what the broker delivers, and how the connection to it is."""
+    """Receives messages of the broker, and the state of the connection."""
 
     def receive(self, topic: str, payload: bytes, *, retained: bool) -> None:
-        """Take a message in; ``retained``: the broker had kept it from earlier."""
+        """Process a message; ``retained``: the broker had kept it from earlier."""
 
     def broker_changed(self, reason: str | None) -> None:
-        """Note that the broker is there (None), or why it is not."""
+        """Record that the broker is connected (None), or why it is not."""
 
 
 class Broker:
-    """Publishes and receives at QoS 0, as VDA 5050 asks; connections are told at QoS 1.
+    """Publishes and receives at QoS 0, as VDA 5050 requires; connection messages use QoS 1.
 
-    What is published while there is no connection is thrown away: whoever published it does so again while
-    it is due.
+    Messages without a connection are discarded: the publisher repeats them while due.
     """
 
     def __init__(
@@ -63,7 +62,7 @@ class Broker:
 
     @property
     def is_connected(self) -> bool:
-        """Whether the broker takes messages."""
+        """Whether the broker accepts messages."""
         return self._is_connected
 
     def publish(self, topic: str, payload: bytes, *, urgent: bool) -> None:
@@ -73,7 +72,7 @@ class Broker:
             self._wake.set()
 
     def withdraw(self, topic: str) -> None:
-        """Publish nothing that still waits for a topic: an order that a stop has overtaken."""
+        """Drop the waiting messages of a topic: a stop has overtaken an order."""
         self._outgoing = deque(waiting for waiting in self._outgoing if waiting[0] != topic)
 
     async def run(self) -> None:
@@ -159,13 +158,13 @@ class Broker:
 
 
 def check_granted(topic: str, granted: Sequence[Any]) -> None:
-    """Raise MqttError for a subscription that the broker does not allow: nothing would ever come of it."""
+    """Raise MqttError for a subscription that the broker does not allow: nothing would ever be received."""
     if any(getattr(code, "value", code) >= REFUSED for code in granted):
         raise aiomqtt.MqttError(f"it does not allow to subscribe to {topic}; allow that to this client")
 
 
 def _reason(error: aiomqtt.MqttError) -> str:
-    """Return why there is no connection, in the broker's words where it gave some."""
+    """Return why there is no connection, in the broker's words if it gave any."""
     code = getattr(error, "rc", None)
     if error.args and isinstance(code, int):
         return str(error.args[0])

@@ -1,4 +1,4 @@
-"""Ledger of one vehicle: what is to be sent and reported, actions that are waited for, initial position."""
+"""Ledger of one vehicle: effects to send and report, awaited actions, initial position."""
 
 from __future__ import annotations
 
@@ -10,26 +10,26 @@ from .messages import Action, ActionParameter, FreshNames, InstantActions, Order
 from .presence import VehiclePresence
 from .tasks import Remembered, VehicleTask, recalled
 
-# --- What comes of a message or of time going by: what is to be published, told to the gateway, and kept
+# --- Effects of a message or of time: publications, reports to the gateway, and stored state
 
 
 @dataclass(frozen=True)
 class Publish:
-    """A message to the vehicle. One that finds no broker is lost; while it is due it comes again."""
+    """A message to the vehicle. Without a broker it is lost; while due it is repeated."""
 
     message: Order | InstantActions
 
 
 @dataclass(frozen=True)
 class VehicleReport:
-    """What the vehicle says to the gateway."""
+    """A request of the vehicle to the gateway."""
 
     request: Request
 
 
 @dataclass(frozen=True)
 class Settled:
-    """What came of command ``command_id``: taken on, or with a reason refused, or given up later."""
+    """Outcome of command ``command_id``: accepted, or with a reason refused or given up later."""
 
     command_id: int
     reason: str | None = None
@@ -37,12 +37,12 @@ class Settled:
 
 @dataclass(frozen=True)
 class Halted:
-    """The vehicle shows that it stands: what was asked to stop it is done."""
+    """The vehicle shows that it stands: the stop is done."""
 
 
 @dataclass(frozen=True)
 class Keep:
-    """What is to be kept before any effect that comes after it."""
+    """State to be stored before any later effect."""
 
     remembered: Remembered
 
@@ -50,14 +50,14 @@ class Keep:
 Effect = Publish | VehicleReport | Settled | Halted | Keep
 
 
-# --- What one vehicle is occupied with, kept, and the effects of all that happens to it ---
+# --- The stored state of one vehicle, and the effects of events ---
 
 MOST_REMEMBERED = 50
-"""Orders that are remembered as not to be carried out any more, and commands that are over."""
+"""Remembered orders that must no longer be executed, and ended commands."""
 
 
 class Ledger:
-    """The task and what is to be carried out; what is kept comes before what follows of it."""
+    """The task and the pending effects; stored state comes before its effects."""
 
     def __init__(self, kept: Remembered, now: float) -> None:
         self._revoked, self._ended = list(kept.revoked), list(kept.ended)
@@ -72,16 +72,16 @@ class Ledger:
 
     @property
     def is_paused(self) -> bool:
-        """Whether a startPause of ours is to be lifted before the next order."""
+        """Whether a startPause of ours must be lifted before the next order."""
         return self._paused
 
     def drain(self) -> list[Effect]:
-        """Return the effects since the last call, in the order in which they are to be carried out."""
+        """Return the effects since the last call, in the order of their execution."""
         effects, self._effects = self._effects, []
         return effects
 
     def report(self, request: Request) -> None:
-        """Say something to the gateway."""
+        """Send a request to the gateway."""
         self._effects.append(VehicleReport(request))
 
     def publish(self, message: Order | InstantActions) -> None:
@@ -105,27 +105,27 @@ class Ledger:
         self.publish(InstantActions(actions=[action]))
 
     def settle(self, command_id: int, reason: str | None = None) -> None:
-        """Say what came of a command: with a reason it is refused, or given up."""
+        """Report the outcome of a command: with a reason it is refused, or given up."""
         self._effects.append(Settled(command_id, reason))
 
     def halted(self) -> None:
-        """Say that the vehicle shows that it stands."""
+        """Report that the vehicle shows that it stands."""
         self._effects.append(Halted())
 
     def begin(self, task: VehicleTask) -> None:
-        """Take a task on."""
+        """Accept a task."""
         self._task = task
         self.keep()
 
     def end_task(self) -> None:
-        """Note that the task is done."""
+        """Record that the task is done."""
         if self._task is not None:
             self._ended = [*self._ended, self._task.command_id][-MOST_REMEMBERED:]
         self._task = None
         self.keep()
 
     def has_ended(self, command_id: int) -> bool:
-        """Tell whether a command was done, lately."""
+        """Return whether a command ended recently."""
         return command_id in self._ended
 
     def refuse_task(self, reason: str) -> None:
@@ -134,22 +134,22 @@ class Ledger:
             self.settle(task.command_id, reason)
 
     def drop_task(self, reason: str) -> None:
-        """End the task for something that came in its place; one that was taken on needs no word."""
+        """End the task for its replacement; an accepted one is not reported."""
         if (task := self._revoke_task()) is not None and not task.acknowledged:
             self.settle(task.command_id, reason)
 
     def is_revoked(self, order_id: str) -> bool:
-        """Tell whether an order of ours is not to be carried out any more."""
+        """Return whether an order of ours must no longer be executed."""
         return order_id in self._revoked
 
     def set_paused(self, paused: bool) -> None:
-        """Note that the vehicle was paused, or that it may drive again."""
+        """Record that the vehicle was paused, or may drive again."""
         if paused != self._paused:
             self._paused = paused
             self.keep()
 
     def keep(self) -> None:
-        """Have all this kept before what follows."""
+        """Have the state stored before later effects."""
         task = None if self._task is None else self._task.remembered()
         revoked, ended = list(self._revoked), list(self._ended)
         kept = Remembered(task=task, paused=self._paused, revoked=revoked, ended=ended)
@@ -164,7 +164,7 @@ class Ledger:
         return task
 
 
-# --- SetPosIni as the instant action initPosition: where a vehicle is to take itself to be ---
+# --- SetPosIni as the instant action initPosition: a vehicle's initial pose ---
 
 
 @dataclass(frozen=True)
@@ -177,7 +177,7 @@ class _Init:
 
 
 class PositionInit:
-    """Has the vehicle take a position, and settles that once the vehicle has done so."""
+    """Sets the vehicle's position, and settles the command once the vehicle has done so."""
 
     def __init__(
         self, ledger: Ledger, presence: VehiclePresence, names: FreshNames, finish_within: float
@@ -211,7 +211,7 @@ class PositionInit:
             self._ledger.publish_action("initPosition", self._init.action_id, "HARD", parameters)
 
     def note_state(self, state: State) -> None:
-        """Settle it where the vehicle shows what became of it."""
+        """Settle it if the vehicle shows its outcome."""
         init = self._init
         if init is None:
             return
@@ -225,7 +225,7 @@ class PositionInit:
         self._ledger.settle(init.command_id, None if done else reason)
 
     def advance(self, now: float) -> None:
-        """Refuse it where the vehicle does not answer."""
+        """Refuse it if the vehicle does not answer."""
         if self._init is not None and now - self._init.begun_at > self._finish_within:
             command_id, self._init = self._init.command_id, None
             self._ledger.settle(command_id, "the vehicle has not finished initPosition")

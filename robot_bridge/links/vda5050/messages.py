@@ -19,25 +19,24 @@ from ...core.json_decoder import DecodingError, JsonBounds, decode_json
 
 
 class Vda5050Error(BridgeError):
-    """Something the adapter cannot do; the text names the vehicle, topic or setting, and what to do."""
+    """The adapter cannot do something; the text names the vehicle, topic or setting, with advice."""
 
 
 class VehicleMessageError(Vda5050Error):
-    """A message of a vehicle that is not what VDA 5050 asks for; the text names the field."""
+    """A message of a vehicle that violates VDA 5050; the text names the field."""
 
 
 # --- What vehicles publish: state, visualization, connection and factsheet of VDA 5050 2.0, 2.1 and 3.0
 # Anybody who reaches the broker can write them: size, depth and count are bounded before anything is built,
-# numbers are finite, and fields that nothing here reads are passed over. The classes have the fields of
-# 2.1;
-# what 3.0 calls otherwise is renamed before it is read.
+# numbers are finite, and unused fields are ignored. The classes have the fields of 2.1; renamed fields of 3.0
+# are converted first.
 
 BOUNDS = JsonBounds(depth=16, length=1 << 20, values=60_000)
 """A state with a thousand nodes, each with its position, is half as large."""
 MOST_LISTED = 10_000
 LONGEST_TEXT = 4_096
 SUPPORTED = {"2": "versions 2.0 and 2.1", "3": "versions 3.x"}
-"""What is read by the major version that the link's settings name."""
+"""Supported versions by the major version in the link's settings."""
 LEVELS = ("FATAL", "CRITICAL", "URGENT", "WARNING")
 """Levels of errors, the worst first; 2.x has the first and the last."""
 _RENAMED = {
@@ -50,7 +49,7 @@ _RENAMED = {
     "maximumArrayLengths": "maxArrayLens",
     "mobileRobotActions": "agvActions",
 }
-"""Fields of 3.0, wherever they stand, and what 2.1 calls them."""
+"""Fields of 3.0, at any depth, and their names in 2.1."""
 RENAMED_ACTIONS = {"initializePosition": "initPosition"}
 _RENAMED_VALUES = {
     "connectionState": {"CONNECTION_BROKEN": "CONNECTIONBROKEN"},
@@ -74,12 +73,12 @@ class VdaHeader(Struct, frozen=True, rename="camel", kw_only=True):
 
     @property
     def sent_at(self) -> float | None:
-        """Seconds since 1970 when it was sent, by the vehicle's clock; None where that cannot be read."""
+        """Seconds since 1970 when it was sent, by the vehicle's clock; None if unreadable."""
         return seconds_of(self.timestamp)
 
 
 class Position(Struct, frozen=True, rename="camel", kw_only=True):
-    """Where the vehicle is on map ``map_id``: metres, and radians counter-clockwise from the map's x axis."""
+    """Position on map ``map_id``: metres, and radians counter-clockwise from the map's x axis."""
 
     x: Number
     y: Number
@@ -103,7 +102,7 @@ class Velocity(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class NodeState(Struct, frozen=True, rename="camel", kw_only=True):
-    """A node that is still to be passed; ``released`` where it belongs to the base."""
+    """A node not passed yet; ``released`` if it belongs to the base."""
 
     node_id: Identifier
     sequence_id: Count
@@ -111,7 +110,7 @@ class NodeState(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class EdgeState(Struct, frozen=True, rename="camel", kw_only=True):
-    """An edge that is still to be driven."""
+    """An edge not driven yet."""
 
     edge_id: Identifier
     sequence_id: Count
@@ -119,7 +118,7 @@ class EdgeState(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class ActionState(Struct, frozen=True, rename="camel", kw_only=True):
-    """How an action of an order, or an instant action, stands."""
+    """The state of an action of an order, or of an instant action."""
 
     action_id: Identifier
     action_status: Literal["WAITING", "INITIALIZING", "RUNNING", "PAUSED", "RETRIABLE", "FINISHED", "FAILED"]
@@ -128,12 +127,12 @@ class ActionState(Struct, frozen=True, rename="camel", kw_only=True):
 
     @property
     def has_ended(self) -> bool:
-        """Whether it has no step to come."""
+        """Whether it has finished or failed."""
         return self.action_status in ("FINISHED", "FAILED")
 
 
 class ErrorReference(Struct, frozen=True, rename="camel", kw_only=True):
-    """What an error is about: say ``orderId`` and its value."""
+    """The subject of an error: for example ``orderId`` and its value."""
 
     reference_key: Identifier
     reference_value: Text
@@ -150,11 +149,11 @@ class VehicleFault(Struct, frozen=True, rename="camel", kw_only=True):
 
     @property
     def rank(self) -> int:
-        """How bad it is, 0 for the worst."""
+        """Severity, 0 for the worst."""
         return LEVELS.index(self.error_level) if self.error_level in LEVELS else len(LEVELS)
 
     def refers(self, key: str, value: str) -> bool:
-        """Tell whether it is about ``value`` of ``key``."""
+        """Return whether it refers to ``value`` of ``key``."""
         return any(one.reference_key == key and one.reference_value == value for one in self.error_references)
 
     @property
@@ -172,16 +171,16 @@ class Battery(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class SafetyState(Struct, frozen=True, rename="camel", kw_only=True):
-    """``e_stop`` is NONE, or how the stop is to be reset; the protective field is violated or not."""
+    """``e_stop`` is NONE, or how the stop must be reset; the protective field is violated or not."""
 
     e_stop: Identifier
     field_violation: bool
 
 
 class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
-    """All that the vehicle says of itself: its order, what is left of it, its place, its faults.
+    """The full state of the vehicle: its order, the rest of it, its place, its faults.
 
-    In 3.0 instant actions stand by themselves, until they are cleared; in 2.x they are among the others.
+    In 3.0 instant actions are listed separately until cleared; in 2.x they are among the others.
     """
 
     order_id: Identifier
@@ -206,21 +205,21 @@ class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
 
     @property
     def has_active_order(self) -> bool:
-        """Whether anything of its order is left to be done; instant actions do not count."""
+        """Whether any part of its order is left; instant actions do not count."""
         return bool(self.node_states or self.edge_states)
 
     @property
     def is_held(self) -> bool:
-        """Whether the vehicle is paused, or a startPause that it has taken in is yet to take effect.
+        """Whether the vehicle is paused, or an accepted startPause has not taken effect yet.
 
-        A pause sent twice may wait, paused itself, for the end of the first, and then pause the vehicle anew.
+        A second startPause may wait for the end of the first, and then pause the vehicle again.
         """
         return self.paused or any(
             one.action_type == "startPause" and not one.has_ended for one in self._actions
         )
 
     def action(self, action_id: str) -> ActionState | None:
-        """Return how an action stands, None where the state does not name it."""
+        """Return the state of an action, None if it is not listed."""
         return next((one for one in self._actions if one.action_id == action_id), None)
 
     @property
@@ -229,7 +228,7 @@ class State(VdaHeader, frozen=True, rename="camel", kw_only=True):
 
 
 class Visualization(Struct, frozen=True, rename="camel", kw_only=True):
-    """Where the vehicle is, more often than its state; VDA 5050 asks for no header here."""
+    """The vehicle's position, sent more often than its state; VDA 5050 requires no header here."""
 
     header_id: Count | None = None
     timestamp: Identifier | None = None
@@ -243,46 +242,46 @@ class Visualization(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class Connection(VdaHeader, frozen=True, rename="camel", kw_only=True):
-    """Whether the vehicle is there; CONNECTIONBROKEN is its last will, told by the broker.
+    """Whether the vehicle is connected; CONNECTIONBROKEN is its last will, sent by the broker.
 
-    One that is HIBERNATING stands, has no order, and says nothing (3.0).
+    One that is HIBERNATING stands, has no order, and sends nothing (3.0).
     """
 
     connection_state: Literal["ONLINE", "OFFLINE", "HIBERNATING", "CONNECTIONBROKEN"]
 
 
 class ArrayLimits(Struct, frozen=True, kw_only=True):
-    """The most nodes that an order to this vehicle may hold; None or 0 where it does not say."""
+    """The most nodes that an order to this vehicle may hold; None or 0 if unknown."""
 
     order_nodes: Count | None = field(default=None, name="order.nodes")
 
 
 class ProtocolLimits(Struct, frozen=True, rename="camel", kw_only=True):
-    """What messages to this vehicle may be."""
+    """Limits of messages to this vehicle."""
 
     max_array_lens: ArrayLimits | None = None
 
 
 class SupportedAction(Struct, frozen=True, rename="camel", kw_only=True):
-    """An action that the vehicle can do."""
+    """An action supported by the vehicle."""
 
     action_type: Identifier
 
 
 class ProtocolFeatures(Struct, frozen=True, rename="camel", kw_only=True):
-    """What of the protocol the vehicle does."""
+    """Protocol features of the vehicle."""
 
     agv_actions: Annotated[list[SupportedAction], Meta(max_length=1_000)] = field(default_factory=list)
 
 
 class TypeSpecification(Struct, frozen=True, rename="camel", kw_only=True):
-    """What kind of vehicle it is."""
+    """Type of the vehicle."""
 
     series_name: Identifier = ""
 
 
 class Factsheet(Struct, frozen=True, rename="camel", kw_only=True):
-    """What the vehicle is and can do; all parts optional, as vehicles leave them out."""
+    """Type and abilities of the vehicle; all parts are optional, since vehicles omit them."""
 
     type_specification: TypeSpecification | None = None
     protocol_limits: ProtocolLimits | None = None
@@ -290,12 +289,12 @@ class Factsheet(Struct, frozen=True, rename="camel", kw_only=True):
 
     @property
     def most_nodes(self) -> int | None:
-        """The most nodes of an order, None where the vehicle sets no limit."""
+        """The most nodes of an order, None without a limit."""
         lengths = self.protocol_limits and self.protocol_limits.max_array_lens
         return (lengths.order_nodes or None) if lengths else None
 
     def supports(self, action_type: str) -> bool:
-        """Tell whether the vehicle can do an action; a factsheet that lists none does not speak of it."""
+        """Return whether the vehicle can do an action; true if the factsheet lists none."""
         listed = self.protocol_features.agv_actions if self.protocol_features else []
         return not listed or any(one.action_type == action_type for one in listed)
 
@@ -311,7 +310,7 @@ _KINDS: dict[str, type[Inbound]] = {
 
 
 def seconds_of(timestamp: str) -> float | None:
-    """Return ISO 8601 as seconds since 1970, UTC where it names no zone; None where it cannot be read."""
+    """Return ISO 8601 as seconds since 1970, UTC without a zone; None if unreadable."""
     try:
         moment = datetime.fromisoformat(timestamp)
         if moment.tzinfo is None:
@@ -324,7 +323,7 @@ def seconds_of(timestamp: str) -> float | None:
 def decode_message(topic: str, payload: bytes, major: str = "2") -> Inbound:
     """Return the message of the last level of ``topic``, of major version ``major``.
 
-    :raises VehicleMessageError: naming the field, or the version where it is another one.
+    :raises VehicleMessageError: naming the field, or the version if it is another one.
     """
     kind = _KINDS.get(topic)
     if kind is None:
@@ -372,12 +371,12 @@ class FreshNames(Protocol):
     """Names of orders and actions."""
 
     def draw(self) -> str:
-        """Return one that was never used."""
+        """Return a name that was never used."""
 
 
 @dataclass(frozen=True)
 class VehicleId:
-    """One vehicle: its manufacturer and the serial number that is its own there."""
+    """One vehicle: its manufacturer and its serial number there."""
 
     manufacturer: str
     serial_number: str
@@ -408,11 +407,11 @@ class Topics:
         return [f"{self.interface}/{self.major_version}/+/+/{topic}" for topic in INBOUND_TOPICS]
 
     def outbound(self, vehicle: VehicleId, topic: Literal["order", "instantActions"]) -> str:
-        """Return the topic on which a vehicle listens."""
+        """Return the topic that a vehicle subscribes to."""
         return f"{self.interface}/{self.major_version}/{vehicle.manufacturer}/{vehicle.serial_number}/{topic}"
 
     def parse(self, topic: str) -> tuple[VehicleId, str] | None:
-        """Return who published on ``topic`` and what; None for a topic of something else."""
+        """Return the vehicle and the last level of ``topic``; None for a foreign topic."""
         levels = topic.split("/")
         if len(levels) != 5 or levels[:2] != [self.interface, self.major_version]:
             return None
@@ -438,7 +437,7 @@ class Action(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class NodePosition(Struct, frozen=True, rename="camel", kw_only=True, omit_defaults=True):
-    """Where a node is on map ``map_id``; the deviations say how near the vehicle has to come to it."""
+    """Position of a node on map ``map_id``; the deviations are how near the vehicle must come to it."""
 
     x: float
     y: float
@@ -471,7 +470,7 @@ class Edge(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class Order(Struct, frozen=True, rename="camel", kw_only=True):
-    """An order, or with an ``order_update_id`` above 0 what is added to its base."""
+    """An order, or with an ``order_update_id`` above 0 an extension of its base."""
 
     order_id: str
     order_update_id: int
@@ -480,7 +479,7 @@ class Order(Struct, frozen=True, rename="camel", kw_only=True):
 
 
 class InstantActions(Struct, frozen=True, rename="camel", kw_only=True):
-    """Actions that are done as soon as they arrive."""
+    """Actions executed as soon as they arrive."""
 
     actions: list[Action]
 
@@ -504,7 +503,7 @@ class MessageWriter:
             **msgspec.to_builtins(message),
         }
         if topic == "instantActions" and version.startswith("2.0"):
-            # The schema of 2.0 has another name for it than its text; vehicles go by one or the other.
+            # The schema of 2.0 names it differently than the text; vehicles follow one or the other.
             body["instantActions"] = body["actions"]
         if version.startswith("3."):
             _rename_for_3_0(body)
@@ -515,7 +514,7 @@ class MessageWriter:
 def _rename_for_3_0(body: dict[str, Any]) -> None:
     """Change a message of 2.1 into one of 3.0."""
     for action in body.get("actions", []):
-        # 3.0 has instant actions wait for nothing.
+        # In 3.0 instant actions wait for nothing.
         action["blockingType"] = "NONE"
         action["actionType"] = _ACTIONS_OF_3_0.get(action["actionType"], action["actionType"])
     for node in body.get("nodes", []):
@@ -523,7 +522,7 @@ def _rename_for_3_0(body: dict[str, Any]) -> None:
         if (deviation := position.pop("allowedDeviationXY", None)) is not None:
             position["allowedDeviationXY"] = {"a": deviation, "b": deviation, "theta": 0.0}
     for edge in body.get("edges", []):
-        # Which nodes it joins is said by the sequence alone.
+        # The joined nodes follow from the sequence alone.
         del edge["startNodeId"], edge["endNodeId"]
         if "maxSpeed" in edge:
             edge["maximumSpeed"] = edge.pop("maxSpeed")

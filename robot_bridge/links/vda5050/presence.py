@@ -11,14 +11,14 @@ from ...core.messages.base import LONGEST_STATUS, one_line
 from ...core.messages.robots import SendPos
 from .messages import LEVELS, Connection, Factsheet, Position, State, VehicleFault, Velocity, Visualization
 
-# --- Two vehicles under one serial number, as they show in header numbers and in the broker's last wills
+# --- Detection of two vehicles under one serial number, by header numbers and last wills
 
 WINDOW = 30.0
-"""seconds over which jumps are counted, and for which two vehicles count as being there after the last."""
+"""seconds over which jumps are counted, and for which two vehicles count as present after the last."""
 MOST_JUMPS = 3
-"""A vehicle that starts anew begins its numbers anew: once, not again and again."""
+"""A restarted vehicle restarts its numbers: once, not repeatedly."""
 MOST_GREETINGS = 4
-"""Two clients of one id throw each other out of the broker, and each says ONLINE again."""
+"""Two clients of one id disconnect each other at the broker, and each sends ONLINE again."""
 
 
 class SerialWatch:
@@ -31,20 +31,20 @@ class SerialWatch:
         self._doubled_at: float | None = None
 
     def note_state(self, header_id: int, now: float) -> None:
-        """Note the header number of a state; those of one vehicle rise."""
+        """Record the header number of a state; those of one vehicle rise."""
         if self._last_number is not None and header_id <= self._last_number:
             self._jumps.append(now)
             self._judge(self._jumps, now)
         self._last_number = header_id
 
     def note_connection(self, connection: Connection, now: float) -> None:
-        """Note that the vehicle says to be there; what the broker retained does not count."""
+        """Record an ONLINE of the vehicle; retained messages do not count."""
         if connection.connection_state == "ONLINE":
             self._greetings.append(now)
             self._judge(self._greetings, now)
 
     def complaint(self, now: float) -> str | None:
-        """Return what is wrong, None where one vehicle is there for all that is known."""
+        """Return the fault, None if there seems to be one vehicle."""
         if self._doubled_at is None or now - self._doubled_at > WINDOW:
             return None
         return (
@@ -57,19 +57,19 @@ class SerialWatch:
             self._doubled_at = now
 
 
-# --- Whether a vehicle is there and where: its connection, its last state, its position in the site frame
+# --- Presence of a vehicle: its connection, its last state, its position in the site frame
 
 _OPERATED = ("AUTOMATIC", "SEMIAUTOMATIC")
 ANSWERS_WITHIN = 5.0
-"""seconds after which a vehicle that was asked for its state and says nothing counts as gone."""
+"""seconds after which a vehicle that does not answer a state request counts as gone."""
 ALARMING = LEVELS[:-1]
-"""Levels of errors for which a vehicle needs somebody: all but warnings."""
+"""Levels of errors for which a vehicle needs a person: all but warnings."""
 MOST_FAULTS = 5
-"""Faults that are named in a status."""
+"""Faults listed in a status."""
 
 
 class MapFrame(Protocol):
-    """How the coordinates of a vehicle's map lie in the site frame; metres and radians."""
+    """The transform between a vehicle's map and the site frame; metres and radians."""
 
     def to_site(self, x: float, y: float, theta: float) -> tuple[float, float, float]:
         """Return a pose of the map in the site frame."""
@@ -79,7 +79,7 @@ class MapFrame(Protocol):
 
 
 class VehiclePresence:
-    """What is known of one vehicle; times are seconds of a steady clock."""
+    """Known state of one vehicle; times are seconds of a steady clock."""
 
     def __init__(self, maps: Mapping[str, MapFrame], silent_after: float, version: str) -> None:
         self._maps = maps
@@ -88,7 +88,7 @@ class VehiclePresence:
         self._connection: str | None = None
         self._received_at = self._requested_at = -math.inf
         self.state: State | None = None
-        """the last one that was not retained by the broker."""
+        """the last state that was not retained by the broker."""
         self.state_at = -math.inf
         self.factsheet: Factsheet | None = None
         self.position: Position | None = None
@@ -98,7 +98,7 @@ class VehiclePresence:
         self._misplaced: str | None = None
 
     def note_connection(self, message: Connection, now: float, *, retained: bool) -> None:
-        """Note whether the vehicle is there; a retained ONLINE may be older than the broker."""
+        """Record whether the vehicle is connected; a retained ONLINE may be older than the broker."""
         self._connection, self.version = message.connection_state, message.version
         if not retained:
             self._serials.note_connection(message, now)
@@ -106,9 +106,10 @@ class VehiclePresence:
                 self._received_at = now
 
     def note_state(self, message: State, now: float) -> None:
-        """Note a state; it shows that the vehicle is there.
+        """Record a state; it shows that the vehicle is present.
 
-        Also after a CONNECTIONBROKEN: that is told late of a connection which the vehicle has replaced.
+        Also after a CONNECTIONBROKEN: that may be a late report on a connection that the vehicle has
+        replaced.
         """
         self._serials.note_state(message.header_id, now)
         self.state, self.state_at, self.version = message, now, message.version
@@ -116,40 +117,40 @@ class VehiclePresence:
         self._place(message.agv_position, message.velocity, message.sent_at, now)
 
     def note_visualization(self, message: Visualization, now: float) -> None:
-        """Note a position between two states."""
+        """Record a position between two states."""
         self._received_at = now
         self._place(message.agv_position, message.velocity, message.sent_at, now)
 
     def note_factsheet(self, message: Factsheet) -> None:
-        """Note what the vehicle says that it is; a retained one counts."""
+        """Record the vehicle's factsheet; a retained one counts."""
         self.factsheet = message
 
     def lose_broker(self) -> None:
-        """Note that nothing is known of the vehicle until the broker is back."""
+        """Record that nothing is known of the vehicle until the broker is back."""
         self._connection, self._received_at = None, -math.inf
 
     @property
     def connection(self) -> str | None:
-        """ONLINE, OFFLINE, HIBERNATING, CONNECTIONBROKEN; None where nothing is known."""
+        """ONLINE, OFFLINE, HIBERNATING, CONNECTIONBROKEN; None if unknown."""
         return self._connection
 
     def note_request(self, now: float) -> None:
-        """Note that the vehicle was asked for its state; the first question without an answer counts."""
+        """Record a state request to the vehicle; the first one without an answer counts."""
         if self._requested_at <= self._received_at:
             self._requested_at = now
 
     def is_there(self, now: float) -> bool:
-        """Tell whether the vehicle is connected, was heard lately, and answers what it was asked."""
+        """Return whether the vehicle is connected, was heard recently, and answers state requests."""
         unanswered = self._requested_at > self._received_at and now - self._requested_at > ANSWERS_WITHIN
         silent = now - self._received_at > self._silent_after
         return self._connection == "ONLINE" and not (unanswered or silent)
 
     def frame(self) -> MapFrame | None:
-        """Return the frame of the map that the vehicle is on; None where there is none."""
+        """Return the frame of the map that the vehicle is on, or None."""
         return None if self.position is None else self._maps.get(self.position.map_id)
 
     def default_map(self) -> str | None:
-        """Return the map that the vehicle is on, or the only one that is known."""
+        """Return the map that the vehicle is on, or the only known one."""
         if self.position is not None and self.position.map_id in self._maps:
             return self.position.map_id
         return next(iter(self._maps)) if len(self._maps) == 1 else None
@@ -159,11 +160,11 @@ class VehiclePresence:
         return self._maps[map_id]
 
     def serial_complaint(self, now: float) -> str | None:
-        """Return what speaks against its being one vehicle, None where nothing does."""
+        """Return the evidence for a second vehicle under this serial number, or None."""
         return self._serials.complaint(now)
 
     def obstacle(self, now: float) -> str | None:
-        """Return why the vehicle cannot be given an order, None where it can."""
+        """Return why the vehicle cannot be given an order, or None."""
         if (double := self.serial_complaint(now)) is not None:
             return double
         state = self.state
@@ -180,9 +181,9 @@ class VehiclePresence:
         return self._missing_place()
 
     def alarm(self, now: float) -> str | None:
-        """Return what operators are to be alarmed of, the worst first; None where nothing is.
+        """Return the alarms for operators, worst first, or None.
 
-        Its safety state, errors for which it needs somebody, and a serial number that two vehicles have.
+        These are its safety state, errors that need a person, and a serial number used by two vehicles.
         """
         state, parts = self.state, [self.serial_complaint(now)]
         if state is not None and self.is_there(now):
@@ -192,7 +193,7 @@ class VehiclePresence:
         return text or None
 
     def status(self, now: float, more: str | None) -> str | None:
-        """Return what operators are to know, worst first, as one line; None where all is well."""
+        """Return the status for operators, worst first, as one line; None if all is well."""
         parts = [more, self.serial_complaint(now), *self._safety(), self._missing_place(), *self._faults()]
         text = "; ".join(part for part in parts if part)
         return one_line(text, LONGEST_STATUS) if text else None
@@ -268,7 +269,7 @@ class VehiclePresence:
     def _speed(
         self, before: Position | None, position: Position, velocity: Velocity | None, now: float
     ) -> float:
-        """Return m/s: as the vehicle says, else by how far it came since its last position."""
+        """Return m/s: as reported by the vehicle, else by the distance from its last position."""
         if velocity is not None:
             return velocity.speed
         if self.state is not None and not self.state.driving:

@@ -1,4 +1,4 @@
-"""Table ``[vda5050]`` of a link's settings: the broker, the vehicles' names, and how they are led."""
+"""Table ``[vda5050]`` of a link's settings: the broker, the vehicles' names, and control of the vehicles."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _PORTS = {PLAIN: 1883, ENCRYPTED: 8883}
 
 
 class NamedVehicle(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
-    """One of ``[[vda5050.vehicles]]``: the name that a vehicle has as a robot."""
+    """One of ``[[vda5050.vehicles]]``: the robot's name of a vehicle."""
 
     manufacturer: str
     serial: str
@@ -39,8 +39,8 @@ class Vda5050Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     """Table ``[vda5050]``; files are beside the settings.
 
     ``names`` makes a robot's name of ``{manufacturer}`` and ``{serial}``; with ``vehicles`` only those listed
-    are led. ``major_version`` v3 is for vehicles of 3.0, all else for those of 2.x. Without ``maps`` every
-    map lies as ``[frame]`` says, else each as its own table. Lengths are metres, times seconds: see
+    are controlled. ``major_version`` v3 is for vehicles of 3.0, all else for those of 2.x. Without ``maps``
+    every map uses ``[frame]``, else each its own table. Lengths are metres, times seconds: see
     :class:`.tasks.RouteLimits` and :class:`.stopping.StopLimits`.
     """
 
@@ -71,7 +71,7 @@ class Vda5050Settings(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
 
 @dataclass(frozen=True)
 class BrokerAddress:
-    """Where the broker is, and what is shown to it; the password is read anew for each connection."""
+    """Address and credentials of the broker; the password is read again for each connection."""
 
     host: str
     port: int
@@ -104,9 +104,9 @@ class VehicleNames:
         self._named = {VehicleId(one.manufacturer, one.serial): one.robot for one in own.vehicles}
 
     def name(self, vehicle: VehicleId) -> str | None:
-        """Return the robot's name; None for a vehicle that is not to be led.
+        """Return the robot's name; None for a vehicle that must not be controlled.
 
-        :raises Vda5050Error: for a name that no robot can have.
+        :raises Vda5050Error: for an invalid name of a robot.
         """
         if self._named:
             return self._named.get(vehicle)
@@ -122,7 +122,7 @@ class VehicleNames:
 
 
 class _Placed:
-    """A map that lies as a frame of the link says."""
+    """A map placed by a frame of the link."""
 
     def __init__(self, frame: LinkFrame) -> None:
         self._frame = frame
@@ -135,7 +135,7 @@ class _Placed:
 
 
 class AnyMap(Mapping[str, MapFrame]):
-    """All maps in one frame, whatever they are called."""
+    """All maps in one frame, under any id."""
 
     def __init__(self, frame: LinkFrame) -> None:
         self._frame = _Placed(frame)
@@ -156,7 +156,7 @@ def placed_maps(frames: Mapping[str, LinkFrame]) -> dict[str, MapFrame]:
 
 
 def check(settings: LinkSettings, own: Vda5050Settings) -> None:
-    """Refuse settings that cannot be used; raises LinkError naming file and key."""
+    """Check the settings; raises LinkError naming file and key."""
     where = f"{settings.file}: vda5050."
     lengths = ("base_length_m", "simplify_m", "start_deviation_m", "passing_deviation_m", "end_deviation_m")
     times = ("pause_after_s", "unanswered_after_s", "silent_after_s", "heading_deviation_deg")
@@ -193,7 +193,7 @@ def topics(own: Vda5050Settings) -> Topics:
 
 
 def vehicle_settings(settings: LinkSettings, own: Vda5050Settings) -> VehicleSettings:
-    """Return how vehicles are led; a command is refused before the gateway gives it up."""
+    """Return the settings of vehicles; a command is refused before the gateway gives it up."""
     route = RouteLimits(
         base_length=own.base_length_m,
         tolerance=own.simplify_m,
@@ -210,7 +210,7 @@ def vehicle_settings(settings: LinkSettings, own: Vda5050Settings) -> VehicleSet
 
 
 def broker_address(settings: LinkSettings, own: Vda5050Settings) -> BrokerAddress:
-    """Return where the broker is; raises LinkError naming the key."""
+    """Return the broker's address; raises LinkError naming the key."""
     where = f"{settings.file}: vda5050."
     parts = urlsplit(own.broker)
     try:

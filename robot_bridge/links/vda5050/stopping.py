@@ -1,4 +1,4 @@
-"""How a vehicle is stopped: cancelOrder, startPause where that is not enough, until the vehicle shows it."""
+"""The stop of a vehicle: cancelOrder, startPause if that is not enough, until the vehicle shows it."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from .messages import Action, FreshNames, InstantActions, State
 
 @dataclass(frozen=True)
 class StopLimits:
-    """Seconds: until startPause, between repetitions, and until operators are told that it does not stop."""
+    """Seconds: until startPause, between repetitions, and until operators learn that it does not stop."""
 
     pause_after: float = 2.0
     repeat_after: float = 2.0
@@ -19,8 +19,8 @@ class StopLimits:
 class StopProcedure:
     """One stop of a vehicle, from the Abort (or from the order that replaces another) until it stands.
 
-    Only states that came after it began say anything. ``names`` are for actions; a vehicle that cannot pause
-    is sent no startPause.
+    Only states received after its beginning count. ``names`` are for actions; a vehicle that cannot pause is
+    sent no startPause.
     """
 
     def __init__(
@@ -48,7 +48,7 @@ class StopProcedure:
         self._emergency = True
 
     def due(self, now: float) -> list[InstantActions]:
-        """Return what is to be sent now. Each action is a message of its own: none waits behind another."""
+        """Return the messages due now. Each action is a separate message: none waits behind another."""
         actions = []
         if self._is_cancel_due(now):
             repeated = self._cancelled_at is not None
@@ -63,7 +63,7 @@ class StopProcedure:
         return [InstantActions(actions=[action]) for action in actions]
 
     def note_state(self, state: State, now: float) -> None:
-        """Note what the vehicle shows since the stop began."""
+        """Record a state received since the stop began."""
         self._state, self._received_at = state, now
         for action_id in self._cancels:
             if state.action(action_id) is not None:
@@ -75,7 +75,7 @@ class StopProcedure:
     def has_ended(self) -> bool:
         """Whether the vehicle stands and has no order left.
 
-        A state from before cancelOrder came to it does not show that: an order may have been on its way.
+        A state from before the arrival of cancelOrder does not show that: an order may have been on its way.
         """
         if self._state is None or self._state.driving or self._state.has_active_order:
             return False
@@ -88,7 +88,7 @@ class StopProcedure:
         return self.has_ended or (state is not None and state.paused and not state.driving)
 
     def complaint(self, now: float) -> str | None:
-        """Return what is to be told of a vehicle that does not show in time that it has stopped."""
+        """Return a complaint on a vehicle that does not show in time that it has stopped, or None."""
         if now - self._begun_at < self._limits.unanswered_after or self.has_ended:
             return None
         if self.stands:

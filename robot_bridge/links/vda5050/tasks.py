@@ -1,4 +1,4 @@
-"""Tasks of a vehicle: routes as nodes and edges, orders, progress, what is remembered of them."""
+"""Tasks of a vehicle: routes as nodes and edges, orders, progress, stored state."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from ...core.messages.robots import SetPath, SetPosEnd
 from ...protocol.codec import decode_answer, parse_params
 from .messages import Edge, Node, NodePosition, Order, State, Vda5050Error, VehicleFault
 
-# --- Routes as orders: nodes and edges, what of them is released (the base), and how the base goes on ---
+# --- Routes as orders: nodes and edges, the released part (the base), and its extension ---
 # Everything here is in metres and radians of the vehicle's map.
 
 Point = tuple[float, float]
@@ -35,10 +35,10 @@ NEAR = 0.01
 class RouteLimits:
     """How routes become orders.
 
-    ``base_length`` is how many metres are released ahead of the vehicle: it drives no farther when the
-    adapter or the broker dies. Points within ``tolerance`` metres of the straight line between others are
-    left out, nodes on the way are passed within ``passing_deviation`` metres, and the last one is reached
-    within ``end_deviation`` (``heading_deviation`` radians). An order holds at most ``most_nodes``.
+    ``base_length`` is how many metres are released ahead of the vehicle: it drives no farther if the adapter
+    or the broker dies. Points within ``tolerance`` metres of the straight line between others are left out,
+    nodes on the way are passed within ``passing_deviation`` metres, and the last one is reached within
+    ``end_deviation`` (``heading_deviation`` radians). An order holds at most ``most_nodes``.
     """
 
     base_length: float = 30.0
@@ -53,9 +53,9 @@ class RouteLimits:
 
 @dataclass(frozen=True)
 class OrderPlan:
-    """A whole route, of which the nodes up to ``base_end`` are released by update ``update_id``.
+    """A whole route, with the nodes up to ``base_end`` released by update ``update_id``.
 
-    That update begins at node ``stitch``, the last one of the base before it.
+    That update begins at node ``stitch``, the last one of the previous base.
     """
 
     order_id: str
@@ -81,16 +81,16 @@ class OrderPlan:
         return f"{self.order_id}-{number}"
 
     def order(self, limits: RouteLimits) -> Order:
-        """Return the newest update as the order that is published: its base, and what follows as horizon."""
+        """Return the newest update as the order to publish: its base, and the rest as horizon."""
         stop = min(self.last, self.stitch + max(limits.most_nodes, 2) - 1)
         nodes = [self._node(number, limits) for number in range(self.stitch, stop + 1)]
         edges = [self._edge(number, limits) for number in range(self.stitch, stop)]
         return Order(order_id=self.order_id, order_update_id=self.update_id, nodes=nodes, edges=edges)
 
     def extended(self, passed: int, limits: RouteLimits) -> OrderPlan | None:
-        """Return the plan with a longer base once half of it is driven; None while there is no need.
+        """Return the plan with a longer base once half of it is driven; None if not needed yet.
 
-        ``passed`` is the last node that the vehicle was seen at.
+        ``passed`` is the last node passed by the vehicle.
         """
         if self.base_end >= self.last or self._length(passed, self.base_end) > limits.base_length / 2:
             return None
@@ -144,17 +144,17 @@ def begin_plan(
     theta: float | None,
     limits: RouteLimits,
 ) -> OrderPlan:
-    """Return the plan of a route from where the vehicle is along ``points``, with its first base released."""
+    """Return the plan of a route from the vehicle along ``points``, with its first base released."""
     line = [position, *points]
     if len(points) > 1 and math.dist(position, points[0]) <= limits.passing_deviation:
-        # It stands at the beginning of its path, and need not go back to it.
+        # It stands near the beginning of its path, and need not go back to it.
         line = [position, *points[1:]]
     corners = _split(_simplified(_distinct(line), limits.tolerance), limits.base_length)
     return OrderPlan(order_id, map_id, tuple(corners), theta, _base_end(corners, 0, 0, limits))
 
 
 def _distinct(points: Sequence[Point]) -> list[Point]:
-    """Return the points that are apart from the one before; two of them at least, the last one kept."""
+    """Return the points distinct from the previous one; at least two, always with the last one."""
     kept = [points[0]]
     for point in points[1:]:
         if math.dist(point, kept[-1]) > NEAR:
@@ -172,7 +172,7 @@ def _simplified(points: list[Point], tolerance: float) -> list[Point]:
 
 
 def _split(points: list[Point], longest: float) -> list[Point]:
-    """Return the points with others between those that are more than ``longest`` metres apart."""
+    """Return the points with others inserted between those more than ``longest`` metres apart."""
     split = [points[0]]
     for begin, end in itertools.pairwise(points):
         pieces = max(1, math.ceil(math.dist(begin, end) / longest - 1e-9))
@@ -184,7 +184,7 @@ def _split(points: list[Point], longest: float) -> list[Point]:
 
 
 def _base_end(points: Sequence[Point], passed: int, base_end: int, limits: RouteLimits) -> int:
-    """Return the last node within the base's length of node ``passed``, one behind ``base_end`` at least."""
+    """Return the last node within the base's length of node ``passed``, at least one behind ``base_end``."""
     last = len(points) - 1
     end, length = passed, 0.0
     farthest = base_end + max(limits.most_nodes, 2) - 1
@@ -196,13 +196,13 @@ def _base_end(points: Sequence[Point], passed: int, base_end: int, limits: Route
     return end
 
 
-# --- What the adapter keeps of each vehicle on its disk, so that one that is started anew goes on ---
+# --- State of each vehicle on the adapter's disk, so that a restarted adapter continues ---
 
 _BOUNDS = JsonBounds(depth=8, length=8 << 20, values=200_000)
 
 
 class RememberedTask(Struct, frozen=True, kw_only=True):
-    """The task under way: its command, its route, and how far that is known to be driven.
+    """The present task: its command, its route, and the part known to be driven.
 
     ``accepted`` is true once the vehicle has shown the order.
     """
@@ -218,10 +218,10 @@ class RememberedTask(Struct, frozen=True, kw_only=True):
 
 
 class Remembered(Struct, frozen=True, kw_only=True):
-    """What a vehicle is occupied with; ``ended`` are the newest commands that were taken on and are over.
+    """The stored state of a vehicle; ``ended`` are the newest accepted commands that are over.
 
-    ``paused`` is true while a startPause of ours is to be lifted before the next order; ``revoked`` are
-    orders that the vehicle must not carry out. ``basis`` is what of the settings the task goes by.
+    ``paused`` is true while a startPause of ours must be lifted before the next order; ``revoked`` are
+    orders that the vehicle must not carry out. ``basis`` are the settings on which the task depends.
     """
 
     task: RememberedTask | None = None
@@ -231,14 +231,14 @@ class Remembered(Struct, frozen=True, kw_only=True):
     basis: str = ""
 
     def without_task(self) -> Remembered:
-        """Return what still counts where the settings say otherwise by now: its order must not be driven."""
+        """Return the state that is still valid after changed settings: its order must not be driven."""
         plan = None if self.task is None else self.task.plan
         revoked = self.revoked if plan is None else [*self.revoked, plan.order_id]
         return msgspec.structs.replace(self, task=None, revoked=revoked, ended=[])
 
 
 class Memory:
-    """A folder with a file for each vehicle, which outlives the process; never half of it.
+    """A folder with a file for each vehicle, which outlives the process; each is written atomically.
 
     A power failure may bring an older one back: nothing waits for the disk, so that no stop does.
     """
@@ -247,7 +247,7 @@ class Memory:
         self._folder = folder
 
     def recall(self, vehicle: str) -> Remembered | None:
-        """Return what was kept of a vehicle, None where nothing was; raises Vda5050Error."""
+        """Return the stored state of a vehicle, or None; raises Vda5050Error."""
         file = self._file(vehicle)
         try:
             return msgspec.convert(decode_json(file.read_bytes(), _BOUNDS), Remembered, strict=True)
@@ -262,7 +262,7 @@ class Memory:
             ) from None
 
     def keep(self, vehicle: str, remembered: Remembered) -> None:
-        """Write what is to be remembered of a vehicle in place of what was; raises Vda5050Error."""
+        """Replace the stored state of a vehicle; raises Vda5050Error."""
         file = self._file(vehicle)
         try:
             self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
@@ -273,11 +273,11 @@ class Memory:
             ) from error
 
     def _file(self, vehicle: str) -> Path:
-        # A serial number may hold what no file name does, and two may differ in case alone.
+        # A serial number may contain characters invalid in file names, and two may differ only in case.
         return self._folder / f"{hashlib.sha256(vehicle.encode()).hexdigest()[:24]}.json"
 
 
-# --- A target or path that a vehicle is to drive, as an order, and what the vehicle's state says of it
+# --- A vehicle's task: a target or path as an order, and its progress by the vehicle's state
 
 _ORDER_FAULTS = (
     *("order", "validation", "noroute"),
@@ -290,13 +290,13 @@ _ORDER_FAULTS = (
         "insufficientmemory",
     ),
 )
-"""How the error types begin by which VDA 5050 has orders refused, in lower case; the second row is of 3.0."""
+"""Prefixes of the error types for refused orders in VDA 5050, in lower case; the second row is of 3.0."""
 _UNREACHABLE = "nodeunreachable"
-"""How 3.0 says that a vehicle has an order, and will not drive it to its end."""
+"""Error type of 3.0 for an order that a vehicle has and will not drive to its end."""
 
 
 class Progress(Enum):
-    """What a state says of a task."""
+    """Progress of a task by a state."""
 
     UNSEEN = "the vehicle has not shown the order"
     UNDER_WAY = "the vehicle has the order"
@@ -311,7 +311,7 @@ class Progress(Enum):
 class VehicleTask:
     """One motion command from its message to its end.
 
-    ``path`` is in the site frame, ``plan`` in the vehicle's map; ``passed`` is the last node it was seen at.
+    ``path`` is in the site frame, ``plan`` in the vehicle's map; ``passed`` is the last node that it passed.
     """
 
     command_id: int
@@ -326,7 +326,7 @@ class VehicleTask:
     passed: int = 0
     resumed: int = 0
     is_confirmed: bool = True
-    """false while nobody knows whether a task from before the adapter was started is still to be driven."""
+    """false while it is unknown whether a task from before the adapter's start must still be driven."""
     _known_faults: frozenset[str] = frozenset()
 
     def __post_init__(self) -> None:
@@ -335,23 +335,23 @@ class VehicleTask:
             self.path = target.points if isinstance(target, SetPath) else [(target.x, target.y)]
 
     def confirm(self, now: float) -> None:
-        """Note that the gateway still has it waiting."""
+        """Record that the gateway still waits for it."""
         if not self.is_confirmed:
             self.is_confirmed, self.received_at = True, now
 
     def begin(self, plan: OrderPlan) -> None:
-        """Drive by ``plan`` from now on; it was not sent yet."""
+        """Use ``plan`` from now on; it was not sent yet."""
         self.plan, self.accepted, self.passed = plan, False, 0
         self.sent_at = self.first_sent_at = None
 
     def forget_plan(self, now: float) -> None:
-        """Have the way planned anew, from where the vehicle is then."""
+        """Have the way planned again, from the vehicle's position then."""
         self.plan, self.accepted = None, False
         self.resumed += 1
         self.received_at = now
 
     def sent(self, state: State | None, limits: RouteLimits, now: float) -> Order:
-        """Return the newest update to be published, and note when that is."""
+        """Return the newest update to publish, and record the time."""
         assert self.plan is not None
         if self.first_sent_at is None:
             self.first_sent_at = now
@@ -360,18 +360,18 @@ class VehicleTask:
         return self.plan.order(limits)
 
     def extend(self, plan: OrderPlan) -> None:
-        """Go on with the next update."""
+        """Continue with the next update."""
         self.plan, self.sent_at = plan, None
 
     def is_shown(self, state: State) -> bool:
-        """Tell whether a state shows the newest update of the order."""
+        """Return whether a state shows the newest update of the order."""
         plan = self.plan
         if plan is None:
             return False
         return state.order_id == plan.order_id and state.order_update_id >= plan.update_id
 
     def evaluate(self, state: State) -> tuple[Progress, str]:
-        """Return what a state says of the task, with the vehicle's reason where it is none of its ends."""
+        """Return the progress of the task by a state, with the vehicle's reason for a failure."""
         plan = self.plan
         if plan is None:
             return Progress.UNSEEN, ""
@@ -391,7 +391,7 @@ class VehicleTask:
         return Progress.ENDED, _reasons(state, f"the vehicle ended its order at node {self.passed}")
 
     def remembered(self) -> RememberedTask:
-        """Return what is kept of it."""
+        """Return the state to store."""
         return RememberedTask(
             command=self.command_id,
             op=type(self.message).__name__,
@@ -420,7 +420,7 @@ class VehicleTask:
             if fault.refers("orderId", plan.order_id):
                 return fault
         for fault in state.errors:
-            # Some vehicles do not say which order they refuse.
+            # Some vehicles do not name the order that they refuse.
             unnamed = not any(one.reference_key == "orderId" for one in fault.error_references)
             kind = _kind(fault).startswith(_ORDER_FAULTS)
             if unnamed and kind and fault.summary not in self._known_faults:
@@ -440,14 +440,14 @@ def _kind(fault: VehicleFault) -> str:
 
 
 def _unreachable(state: State) -> VehicleFault | None:
-    """Return the error by which a vehicle says that it will not come to a node that is left."""
+    """Return the error by which a vehicle reports a remaining node as unreachable."""
     nodes = {node.node_id for node in state.node_states}
     faults = (fault for fault in state.errors if _kind(fault) == _UNREACHABLE)
     return next((f for f in faults if any(f.refers("nodeId", node) for node in nodes)), None)
 
 
 def recalled(kept: RememberedTask, now: float) -> VehicleTask:
-    """Return the task that was kept; raises Vda5050Error where it cannot be read."""
+    """Return the stored task; raises Vda5050Error if unreadable."""
     try:
         message = decode_answer(kept.op, parse_params(kept.op, kept.params))
     except ValueError as error:
@@ -461,7 +461,7 @@ def recalled(kept: RememberedTask, now: float) -> VehicleTask:
 
 
 def _passed(state: State) -> int:
-    """Return the last node that was passed; a new order may still show the number of the one before it."""
+    """Return the last passed node; a new order may still show the number of the previous one."""
     if state.node_states:
         return max(0, min(node.sequence_id for node in state.node_states) // 2 - 1)
     return state.last_node_sequence_id // 2

@@ -1,6 +1,6 @@
-"""One vehicle between the gateway and its broker: commands become orders, states become what robots say.
+"""One vehicle between the gateway and its broker: commands become orders, states become robots' requests.
 
-No I/O and no clock: messages and times come in, and what comes of them is collected as effects, in order.
+No I/O and no clock: messages and times are passed in, and effects are collected in order.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from .tasks import Progress, Remembered, RouteLimits, VehicleTask, begin_plan
 
 ALIVE_EVERY = 1.0
 REPEAT_EVERY = 2.0
-"""seconds after which an order that the vehicle does not show is published again; it counts once."""
+"""seconds after which an order missing in the vehicle's state is published again; it counts once."""
 MOST_RESUMED = 5
-"""times that an order which the vehicle forgot is given to it again."""
+"""times that an order forgotten by the vehicle is sent again."""
 
 
 MOST_SHOWN, CLEAR_EVERY = 20, 30.0
-"""instant actions that a vehicle of 3.0 may show as ended, and seconds between two demands to forget them."""
+"""ended instant actions that a vehicle of 3.0 may show, and seconds between requests to clear them."""
 
 
 @dataclass(frozen=True)
 class VehicleSettings:
-    """How vehicles are led; times in seconds.
+    """Settings for controlling vehicles; times in seconds.
 
-    A command that the vehicle has not accepted within ``accept_within`` is refused. A vehicle that says
-    nothing for ``silent_after`` is gone; one with a task is asked for its state every ``poll_every``. It is
-    taken to speak ``version`` until it has said which.
+    A command that the vehicle has not accepted within ``accept_within`` is refused. A vehicle silent for
+    ``silent_after`` is gone; one with a task is asked for its state every ``poll_every``. It is assumed to
+    use ``version`` until it has reported its own.
     """
 
     route: RouteLimits = field(default_factory=RouteLimits)
@@ -46,7 +46,7 @@ class VehicleSettings:
 
 
 class VehicleController:
-    """Leads one vehicle. Call :meth:`advance` several times a second, and :meth:`drain` after every call.
+    """Controls one vehicle. Call :meth:`advance` several times a second, and :meth:`drain` after every call.
 
     Times are seconds of a steady clock; ``names`` are for orders and actions.
     """
@@ -71,37 +71,37 @@ class VehicleController:
         self._next_alive = self._next_poll = self._next_unpause = self._next_clear = -math.inf
         self._last_status: str | None = None
         self._last_pose: SendPos | None = None
-        """The pose that was reported last, as the vehicle's message had it."""
+        """The last reported pose, as in the vehicle's message."""
 
     @property
     def is_known(self) -> bool:
-        """Whether the vehicle was heard since the adapter began, and so can be told to the gateway."""
+        """Whether the vehicle was heard since the adapter began, and so can be announced to the gateway."""
         return self._presence.state is not None
 
     def is_there(self, now: float) -> bool:
-        """Tell whether the vehicle is connected and was heard lately."""
+        """Return whether the vehicle is connected and was heard recently."""
         return self._presence.is_there(now)
 
     @property
     def version(self) -> str:
-        """The version of VDA 5050 that the vehicle speaks."""
+        """The version of VDA 5050 used by the vehicle."""
         return self._presence.version
 
     @property
     def factsheet(self) -> Factsheet | None:
-        """What the vehicle says that it is."""
+        """The vehicle's factsheet, if received."""
         return self._presence.factsheet
 
     def drain(self) -> list[Effect]:
-        """Return the effects since the last call, in the order in which they are to be carried out."""
+        """Return the effects since the last call, in the order of their execution."""
         return self._ledger.drain()
 
     # --- the gateway ----------------------------------------------------------------------------------
 
     def set_admitted(self, admitted: bool, now: float) -> None:
-        """Note whether the gateway has let the vehicle in.
+        """Record whether the gateway has admitted the vehicle.
 
-        Without it nothing is released: the vehicle drives to the end of its base and waits there.
+        Otherwise nothing is released: the vehicle drives to the end of its base and waits there.
         """
         self._admitted = admitted
         if admitted:
@@ -110,7 +110,7 @@ class VehicleController:
     def command(
         self, message: SetPosEnd | SetPath | SetPosIni, command_id: int, now: float, *, again: bool = False
     ) -> None:
-        """Take a command on; ``again`` where an earlier process may have begun it."""
+        """Accept a command; ``again`` if an earlier process may have begun it."""
         if isinstance(message, SetPosIni):
             self._init.begin(message, command_id, now)
             return
@@ -128,22 +128,22 @@ class VehicleController:
             return
         if task is not None:
             if task.first_sent_at is not None or task.accepted:
-                # It may be on its way still, and the vehicle would refuse the next one behind it.
+                # It may still be on its way, and the vehicle would refuse the next one behind it.
                 self._begin_stop(now)
             ledger.drop_task("another task came in its place")
         ledger.begin(VehicleTask(command_id, message, now))
         self._advance_task(now)
 
     def withdraw(self, command_id: int) -> None:
-        """Have a command not done that nobody waits for any more, if the vehicle has not taken it on."""
+        """Withdraw a command that nobody waits for any more, if the vehicle has not accepted it."""
         task = self._ledger.task
         if task is not None and task.command_id == command_id and not task.acknowledged:
             self._ledger.refuse_task("it was withdrawn")
 
     def halt(self, now: float, *, emergency: bool) -> None:
-        """Have the vehicle give up what it does and stand; Halted follows once it shows that.
+        """Have the vehicle drop its task and stand; Halted follows once its state shows that.
 
-        Asked again, also of a vehicle that stands, it is done again.
+        Called again, also for a standing vehicle, it is done again.
         """
         self._awaits_halt = True
         self._begin_stop(now, emergency=emergency)
@@ -152,7 +152,7 @@ class VehicleController:
     # --- the vehicle ----------------------------------------------------------------------------------
 
     def receive_message(self, message: Inbound, now: float, *, retained: bool = False) -> None:
-        """Deal with a message of the vehicle; ``retained`` where the broker kept it from earlier."""
+        """Process a message of the vehicle; ``retained`` if the broker kept it from earlier."""
         presence = self._presence
         if isinstance(message, Factsheet):
             presence.note_factsheet(message)
@@ -162,7 +162,7 @@ class VehicleController:
             if message.connection_state in ("OFFLINE", "HIBERNATING") and not retained:
                 self._report(Stopped())
         elif retained:
-            return  # where it was once says nothing of where it is
+            return  # a retained position may be outdated
         elif isinstance(message, State):
             presence.note_state(message, now)
             self._report_pose(now)
@@ -173,11 +173,11 @@ class VehicleController:
         self.advance(now)
 
     def lose_broker(self) -> None:
-        """Note that the broker is gone: nothing is known of the vehicle until it is back."""
+        """Record that the broker is gone: nothing is known of the vehicle until it is back."""
         self._presence.lose_broker()
 
     def advance(self, now: float) -> None:
-        """Let time pass: repeat what is not shown, lengthen the base, say that the vehicle is alive."""
+        """Advance the time: repeat messages not shown, extend the base, report the vehicle as alive."""
         if self._stop is not None:
             self._advance_stop(self._stop, now)
         self._advance_task(now)
@@ -190,12 +190,12 @@ class VehicleController:
             self._report(Alive())
 
     def alarm(self, now: float) -> str | None:
-        """Return what operators are to be alarmed of, one line; None where nothing is."""
+        """Return the alarm for operators in one line, or None."""
         unstopped = None if self._stop is None else self._stop.complaint(now)
         return "; ".join(filter(None, (unstopped, self._presence.alarm(now)))) or None
 
     def status(self, now: float) -> str | None:
-        """Return what operators are to know of the vehicle, one line; None where all is well."""
+        """Return the status for operators in one line; None if all is well."""
         if self._stop is not None:
             return self._presence.status(now, self._stop.complaint(now))
         state, task = self._presence.state, self._ledger.task
@@ -215,7 +215,7 @@ class VehicleController:
         self._clear_actions(state, now)
 
     def _clear_actions(self, state: State, now: float) -> None:
-        """Have a vehicle of 3.0 show instant actions no more that have ended, unless one is waited for."""
+        """Have a vehicle of 3.0 clear ended instant actions, unless one is awaited."""
         if self._stop is not None or self._init.is_waiting or now < self._next_clear:
             return
         if sum(one.has_ended for one in state.instant_action_states) > MOST_SHOWN:
@@ -223,7 +223,7 @@ class VehicleController:
             self._ledger.publish_action("clearInstantActions", self._names.draw())
 
     def _poll(self, now: float) -> None:
-        """Ask for the state of a vehicle that says too little for what is expected of it."""
+        """Request the state of a vehicle that sends too few for its task."""
         presence = self._presence
         unknown = presence.state is None
         stopping = self._stop is not None
@@ -259,7 +259,7 @@ class VehicleController:
             self._resume(task, now)
 
     def _resume(self, task: VehicleTask, now: float) -> None:
-        """Give the vehicle once more what it forgot: what is left of its way, as a new order."""
+        """Send the rest of the way again, as a new order, to a vehicle that forgot its order."""
         plan, passed = task.plan, task.passed
         task.forget_plan(now)
         if plan is not None:
@@ -275,7 +275,7 @@ class VehicleController:
             if now - task.received_at > self._settings.accept_within:
                 self._ledger.refuse_task("the vehicle has not shown yet that it stopped")
         elif not (self._admitted and task.is_confirmed):
-            return  # what is released now could not be stopped from a desk
+            return  # a release now could not be stopped from a desk
         elif task.plan is None:
             self._plan(task, now)
         elif not task.accepted and now - (task.first_sent_at or now) > self._settings.accept_within:
@@ -286,7 +286,7 @@ class VehicleController:
             self._advance_order(task, now)
 
     def _advance_order(self, task: VehicleTask, now: float) -> None:
-        """Publish what the vehicle does not show yet, and the next update when half of its base is driven."""
+        """Publish an order until the vehicle shows it, and updates when half of the base is driven."""
         state, limits = self._presence.state, self._limits()
         if task.accepted and state is not None and task.is_shown(state):
             longer = None if task.plan is None else task.plan.extended(task.passed, limits)
@@ -298,7 +298,7 @@ class VehicleController:
             self._ledger.publish(task.sent(state, limits, now))
 
     def _plan(self, task: VehicleTask, now: float) -> None:
-        """Make the order of a task as soon as the vehicle can be given one."""
+        """Create the order of a task as soon as the vehicle can be given one."""
         state = self._presence.state
         obstacle = self._presence.obstacle(now)
         if obstacle is None and state is not None and state.has_active_order:
@@ -313,7 +313,7 @@ class VehicleController:
             self._ledger.refuse_task(obstacle)
 
     def _unpause(self, state: State, now: float) -> str | None:
-        """Lift a pause of ours, also where the vehicle does not show it; return what is against driving."""
+        """Lift a pause of ours, even if the vehicle does not show it; return the obstacle to driving."""
         unpause_sent = self._next_unpause > -math.inf
         if now >= self._next_unpause and (state.is_held or not unpause_sent):
             self._next_unpause = now + REPEAT_EVERY
@@ -340,7 +340,7 @@ class VehicleController:
     # --- stops ----------------------------------------------------------------------------------------
 
     def _begin_stop(self, now: float, *, emergency: bool = False) -> None:
-        """Stop the vehicle. Published before anything is kept or said: a full disk stops no stop."""
+        """Stop the vehicle. Published before anything is stored: a full disk must not prevent a stop."""
         if self._stop is None:
             sheet = self._presence.factsheet
             can_pause = sheet is None or sheet.supports("startPause")
@@ -352,7 +352,7 @@ class VehicleController:
         self._publish_stop(self._stop, now)
 
     def _is_surely_paused(self) -> bool:
-        """Tell whether a pause of ours holds, which the vehicle shows and nothing was sent to lift."""
+        """Return whether a pause of ours is in force: shown by the vehicle, and no lifting was sent."""
         state = self._presence.state
         unpause_sent = self._next_unpause > -math.inf
         return self._ledger.is_paused and not unpause_sent and state is not None and state.paused
@@ -376,14 +376,14 @@ class VehicleController:
                 self._report(Stopped())
 
     def _report_pose(self, now: float) -> None:
-        """Say where the vehicle is, and what is the matter with it."""
+        """Report the vehicle's position and its faults."""
         pose, state = self._presence.pose, self._presence.state
         if pose is None or not self._admitted or not self._presence.is_there(now):
-            return  # what is said of a vehicle that is gone would have it seem to be there
+            return  # reports on a missing vehicle would make it seem present
         self._last_status = self.status(now)
         standing = state is not None and not state.driving
         if standing and pose is self._last_pose:
-            # One that stands says so seldom, and at once when it sets off: it is still there.
+            # A standing vehicle reports seldom, and at once when it sets off: it is still there.
             pose = replace(pose, t=None, fix_t=None)
         else:
             self._last_pose = pose

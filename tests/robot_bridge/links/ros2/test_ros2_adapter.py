@@ -123,8 +123,8 @@ def test_topics_without_end_are_not_remembered(monkeypatch, caplog):
             sample_info=SimpleNamespace(valid_data=True, instance_state=core.InstanceState.Alive),
         )
 
-    assert not here._note(offered(9, "r" * (LONGEST_NAME + 1)), False)
-    assert [here._note(offered(number), False) for number in range(4)] == [True, True, False, False]
+    assert not here._record(offered(9, "r" * (LONGEST_NAME + 1)), False)
+    assert [here._record(offered(number), False) for number in range(4)] == [True, True, False, False]
     assert caplog.text.count("more than 2 topics are offered and wanted") == 1
 
 
