@@ -1,1 +1,1 @@
-"""What Alembic runs to make the tables and to bring older ones up to date."""
+"""Alembic migrations that create and upgrade the tables."""

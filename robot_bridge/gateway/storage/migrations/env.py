@@ -1,8 +1,8 @@
-"""Runs the migrations on the connection, and in the transaction, that the program has opened.
+"""Run the migrations on the program's open connection and transaction.
 
-MariaDB commits each change of a table by itself: where a migration was cut short, what it had done stays and
-its revision is not written down. So it has to be possible to do each again from its beginning. PostgreSQL and
-SQLite undo a migration that was cut short themselves.
+MariaDB commits each change of a table by itself: the changes of an interrupted migration stay, and its
+revision is not stored. So each must be repeatable from its beginning. PostgreSQL and SQLite roll back an
+interrupted migration themselves.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ from sqlalchemy.schema import CreateIndex, CreateTable, DropIndex
 
 
 class RepeatableMariaDB(MariaDBImpl):
-    """What Alembic does on MariaDB, each statement in its form for what may be there, or gone, already.
+    """Alembic on MariaDB with repeatable statements (``if exists``, ``if not exists``).
 
-    Alembic takes the class that was defined last for a dialect.
+    Alembic uses the class defined last for a dialect.
     """
 
     __dialect__ = "mariadb"

@@ -29,9 +29,9 @@ class ClosureRow(NamedTuple):
 
 
 class HoldRow(NamedTuple):
-    """A robot that waits at the end of ``command``; ``rest`` holds the parameters of what it is sent then.
+    """A robot that waits at the end of ``command``; ``rest`` are the parameters of the next message.
 
-    ``task`` is the task of its queue that goes on then, None where it was sent there beside its queue.
+    ``task`` is the task of its queue that continues then, None if it was sent there beside its queue.
     """
 
     robot: str
@@ -62,7 +62,7 @@ def in_force(connection: Connection) -> list[ClosureRow]:
 
 
 def end(connection: Connection, id: str, at: float, by: str) -> None:
-    """Note that a road is open again."""
+    """Record that a road is open again."""
     values = {"opened_at": at, "opened_by": by}
     connection.execute(update(closures).where(closures.c.id == id).values(values))
 
@@ -73,18 +73,18 @@ def forget(connection: Connection, before: float, limit: int) -> int:
 
 
 def hold(connection: Connection, row: HoldRow) -> None:
-    """Note that a robot waits, in place of what was noted for it before."""
+    """Record that a robot waits, replacing its earlier record."""
     release(connection, row.robot)
     connection.execute(insert(holds), {**row._asdict(), "rest": json.dumps(row.rest)})
 
 
 def release(connection: Connection, robot: str) -> None:
-    """Note that a robot waits no longer."""
+    """Record that a robot no longer waits."""
     connection.execute(delete(holds).where(holds.c.robot == robot))
 
 
 def held(connection: Connection) -> list[HoldRow]:
-    """Return who waits."""
+    """Return the waiting robots."""
     query = select(*(holds.c[name] for name in HoldRow._fields)).order_by(holds.c.robot)
     return list(readable(connection.execute(query), _hold, lambda row: f"how robot {row.robot} waits"))
 
@@ -92,7 +92,7 @@ def held(connection: Connection) -> list[HoldRow]:
 def _hold(found: Any) -> HoldRow:
     row = HoldRow(*found)
     rest = decode_json(found.rest)
-    # Understood now, since it is sent when nobody is there to be told that it is none.
+    # Decoded now: when it is sent later, an error could not be reported to anybody.
     return row._replace(
         rest=to_json(SetPath([(float(x), float(y)) for x, y in rest["points"]], rest.get("theta")))
     )

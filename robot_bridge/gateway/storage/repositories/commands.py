@@ -1,4 +1,4 @@
-"""Commands with every step of their lives, and the tracks that robots were given."""
+"""Commands with all their steps, and the tracks given to robots."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from ..rows import (
 )
 from ..schema import command_steps, commands
 
-# --- Commands and every step of their lives ---
+# --- Commands and their steps ---
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _NEW = "id", "robot", "op", "params", "operator", "state", "driven", "sa_id", "created_at", "expires_at"
@@ -52,8 +52,8 @@ _STEPS = (
 )
 
 
-# On PostgreSQL each is looked up by an index, whatever the server knows of the tables by now: it may take a
-# list for most rows, and of two lists it looks for every pair.
+# On PostgreSQL each is found by an index, whatever the server's statistics: it may assume that a list matches
+# most rows, and of two lists it searches every pair.
 _IDS = func.unnest(cast(bindparam("ids"), ARRAY(Text))).table_valued("id").render_derived()
 _WANTED = (
     func.unnest(cast(bindparam("robots"), ARRAY(Text)), cast(bindparam("messages"), ARRAY(BigInteger)))
@@ -69,10 +69,10 @@ _EACH_OF_STEPS = select(_OF_ONE).select_from(_IDS.join(_OF_ONE, true())).order_b
 
 
 class StoredCommand(NamedTuple):
-    """A command with what only the gateway needs of it.
+    """A command with data used only by the gateway.
 
-    ``sa_id`` is the row of SA that holds its message, ``driven`` the metres of its path that were driven,
-    ``expires_at`` when it is given up if nobody has fetched it (None: by the site's settings).
+    ``sa_id`` is the row of SA that holds its message, ``driven`` the driven metres of its path,
+    ``expires_at`` when it is given up if not fetched (None: by the site's settings).
     """
 
     report: CommandReport
@@ -88,7 +88,7 @@ def add_all(connection: Connection, new: Sequence[StoredCommand]) -> None:
 
 
 def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
-    """Write the newest step of each of some commands that are stored already."""
+    """Write the newest step of each of some stored commands."""
     rows = [
         (
             *(c.report.command, c.report.state.value, c.report.deviation),
@@ -102,7 +102,7 @@ def save_all(connection: Connection, changed: Sequence[StoredCommand]) -> None:
 
 
 def save_driven(connection: Connection, driven: Mapping[str, float]) -> None:
-    """Write how many metres of its path each of some commands has been driven."""
+    """Write the driven metres of the paths of some commands."""
     change_rows(connection, commands, ("id", "driven"), list(driven.items()))
 
 
@@ -132,7 +132,7 @@ def find_messages(
     at_once = connection.dialect.name == "postgresql"
     for some in [messages] if at_once else padded_pieces(messages):
         robots, ids = ([one[n] for one in some] for n in range(2))
-        # By the index of both, which also finds a robot's command that has another one's number.
+        # By the index of both, which also finds a command of a robot with another one's id.
         query = _EACH_OF_MESSAGES if at_once else _BY_MESSAGES
         for command in _load(connection, query, {"robots": robots, "messages": ids}):
             if (key := (command.report.robot, command.sa_id)) in wanted:
@@ -149,7 +149,7 @@ def newest(connection: Connection, robot: str | None, limit: int) -> list[Comman
 
 
 def still_open(connection: Connection, robots: Sequence[str] | None = None) -> list[StoredCommand]:
-    """Return the commands that have a step to come, oldest first, of some robots or of all."""
+    """Return the open commands, oldest first, of some robots or of all."""
     states = [state.value for state in CommandState if state.is_open]
     query = select(commands).where(commands.c.state.in_(states)).order_by(commands.c.sa_id)
     if robots is not None:
@@ -240,11 +240,11 @@ def _add_steps(connection: Connection, steps: Sequence[tuple[str, CommandStep]])
     add_rows(connection, command_steps, ("command", "state", "at", "by", "reason"), rows)
 
 
-# --- Where the track of a robot begins and ends, from the commands that it was given ---
+# --- Begin and end of a robot's track, from its commands ---
 
 
 class GivenTrack(NamedTuple):
-    """What a robot was given, and what became of it."""
+    """A track given to a robot, with its outcome."""
 
     op: str
     params: dict[str, Any]
@@ -265,10 +265,10 @@ def last_given_track(connection: Connection, robot: str, ops: Sequence[str]) -> 
     return None if row is None else GivenTrack(row[0], decode_json(row[1]), CommandState(row[2]))
 
 
-# --- Steps in the order in which they were written, for gateways that follow those of others ---
+# --- Steps in the order of writing, for gateways that follow those of others ---
 
 STEP_MARGIN = 500
-"""ids that may still be missing below the newest: who took a number first may commit last."""
+"""ids that may still be missing below the newest: the transaction that took an id first may commit last."""
 STEPS_AT_ONCE = 2000
 
 
@@ -278,7 +278,7 @@ def newest_step(connection: Connection) -> int:
 
 
 def steps_after(connection: Connection, id: int) -> list[tuple[int, str]]:
-    """Return the oldest steps after one: their ids, and the commands that they are of."""
+    """Return the oldest steps after one: their ids, and their commands."""
     query = select(command_steps.c.id, command_steps.c.command).where(command_steps.c.id > id)
     return [
         (int(row[0]), str(row[1])) for row in connection.execute(query.order_by("id").limit(STEPS_AT_ONCE))

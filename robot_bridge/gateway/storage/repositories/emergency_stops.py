@@ -1,4 +1,4 @@
-"""Emergency stops: who stopped the fleet, when and why, and who let it go again."""
+"""Emergency stops: who stopped the fleet, when and why, and who cleared the stop."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class StopRow(NamedTuple):
 
 
 def add(connection: Connection, stop: StopRow) -> bool:
-    """Write a new emergency stop, and return true; one that is stored already stays as it is.
+    """Write a new emergency stop, and return true; a stored one stays as it is.
 
     Several gateways may write the same one at the same time.
     """
@@ -45,7 +45,7 @@ def find(connection: Connection, id: str) -> StopRow | None:
 
 
 def newest(connection: Connection) -> StopRow | None:
-    """Return the newest stop that is in force; if none is, the one that was cleared last."""
+    """Return the newest stop that is in force; if none is, the last cleared one."""
     c = emergency_stops.c
     in_force = select(*_COLUMNS).where(c.cleared_at.is_(None)).order_by(c.at.desc()).limit(1)
     cleared = select(*_COLUMNS).order_by(c.cleared_at.desc(), c.at.desc()).limit(1)
@@ -76,7 +76,7 @@ def ids(connection: Connection, most: int = 1000) -> set[str]:
 def clear(
     connection: Connection, at: float, by: str, reason: str | None, known: Collection[str]
 ) -> StopRow | None:
-    """End every stop that is in force; none where one is not ``known`` to who asks, which is returned.
+    """End every stop in force; none if one of them is not ``known`` to the caller, which is returned.
 
     One that another gateway stores at the same time stays in force.
     """

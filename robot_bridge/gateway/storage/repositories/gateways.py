@@ -1,7 +1,7 @@
-"""Gateways of a fleet that several serve: their leases, which has which robot, and what one asks another.
+"""Gateways of a fleet that several serve: their leases, the owners of robots, and relayed requests.
 
-PostgreSQL alone. Times are seconds by the database's own clock, the one that all gateways share; ``now``
-takes its place where a test turns the clock.
+PostgreSQL only. Times are seconds by the database's own clock, shared by all gateways; ``now`` replaces it in
+tests.
 """
 
 from __future__ import annotations
@@ -21,10 +21,10 @@ _ALIVE = f"g.lease_until > {_NOW}"
 
 
 class Member(NamedTuple):
-    """A gateway of the fleet; ``since`` is when it joined, ``left`` the seconds that its lease has left.
+    """A gateway of the fleet; ``since`` is when it joined, ``left`` the remaining seconds of its lease.
 
-    Who joins later has a later ``since``, also where the database's clock was set back. ``address`` is where
-    robots reach it: empty where that is not known, None where it is not known yet and the one before holds.
+    A later member has a later ``since``, even if the database's clock was set back. ``address`` is where
+    robots reach it: empty if unknown, None if not known yet, so that the previous one holds.
     """
 
     gw: str
@@ -43,9 +43,9 @@ class Member(NamedTuple):
 
 
 class Owner(NamedTuple):
-    """Which run of which gateway has a robot; ``fence`` counts the owners that it has had.
+    """The run of the gateway that owns a robot; ``fence`` counts its owners so far.
 
-    ``stored`` is false for a robot of which no more is known: it is new, or was removed.
+    ``stored`` is false for a robot without a stored row: it is new, or was removed.
     """
 
     gw: str
@@ -57,7 +57,7 @@ class Owner(NamedTuple):
 class OwnersRead(NamedTuple):
     """Owners of robots, those that changed ``since`` the mark of an earlier read, or all without one.
 
-    Those of robots that are not stored are always among them; ``total`` is how many there are in all.
+    Those of robots that are not stored are always included; ``total`` is the number of all owners.
     """
 
     mark: str
@@ -66,14 +66,14 @@ class OwnersRead(NamedTuple):
 
 
 class Claimed(NamedTuple):
-    """A robot that was claimed: the fence of its new owner, and the owner before, if there was one."""
+    """A claimed robot: the fence of its new owner, and the previous owner, if any."""
 
     fence: int
     before: Owner | None
 
 
 class NoMemberError(StoreError):
-    """A gateway whose lease has run out, or whose name another process took, asks for robots."""
+    """A gateway with an expired lease, or whose name another process took, claims robots."""
 
 
 # --- Leases ---
@@ -107,28 +107,28 @@ _STRIKE_GONE = text(f"delete from gateways g where g.lease_until < {_NOW} - :age
 
 
 def join(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
-    """Enter a gateway for ``lease_s`` seconds; false where another one of its name lives."""
-    # One after the other: who sees no older one is to be the oldest.
+    """Enter a gateway for ``lease_s`` seconds; return false if another one of its name lives."""
+    # Serialised: a gateway that sees no older one must be the oldest.
     connection.execute(_ONE_JOINS)
     values = {**me._asdict(), "lease": lease_s, "now": now}
     return connection.execute(_JOIN, values).first() is not None
 
 
 def renew(connection: Connection, me: Member, lease_s: float, now: float | None = None) -> bool:
-    """Let a gateway live ``lease_s`` seconds from now, at its address; false where its lease has run out."""
+    """Renew a gateway's lease for ``lease_s`` seconds, with its address; return false if it has expired."""
     values = {"gw": me.gw, "run": me.run, "address": me.address, "lease": lease_s, "now": now}
     return connection.execute(_RENEW, values).first() is not None
 
 
 def members(connection: Connection, now: float | None = None) -> list[Member]:
-    """Return all gateways that are entered, the one that joined first before all others."""
+    """Return all entered gateways, the first joined one first."""
     return [Member(*row[:-1]) for row in connection.execute(_MEMBERS, {"now": now})]
 
 
 class MembersRead(NamedTuple):
     """All gateways, the database's time and this computer's clock, both of the same moment.
 
-    Where there are none the times say nothing: they are the same.
+    Without gateways the times are equal and have no meaning.
     """
 
     members: list[Member]
@@ -137,12 +137,12 @@ class MembersRead(NamedTuple):
 
 
 def renew_and_read(connection: Connection, me: Member, lease_s: float, clock: Clock) -> MembersRead | None:
-    """Let a gateway live on as :func:`renew` does; return all of them, None where its lease has run out."""
+    """Renew a lease as :func:`renew` does; return all gateways, None if the lease has expired."""
     return read_members(connection, clock) if renew(connection, me, lease_s) else None
 
 
 def read_members(connection: Connection, clock: Clock) -> MembersRead:
-    """Return all gateways that are entered, with the time of two clocks."""
+    """Return all entered gateways, with the times of both clocks."""
     began = clock.time()
     rows = connection.execute(_MEMBERS, {"now": None}).all()
     here = (began + clock.time()) / 2
@@ -150,16 +150,16 @@ def read_members(connection: Connection, clock: Clock) -> MembersRead:
 
 
 def leave(connection: Connection, me: Member) -> None:
-    """Strike a gateway off: its robots are nobody's at once."""
+    """Remove a gateway: its robots have no owner at once."""
     connection.execute(_LEAVE, {"gw": me.gw, "run": me.run})
 
 
 def strike_gone(connection: Connection, age_s: float, now: float | None = None) -> list[str]:
-    """Strike off the gateways whose lease ran out more than ``age_s`` seconds ago; return their names."""
+    """Remove the gateways whose lease expired more than ``age_s`` seconds ago; return their names."""
     return sorted(connection.scalars(_STRIKE_GONE, {"age": age_s, "now": now}))
 
 
-# --- Who has which robot ---
+# --- Owners of robots ---
 
 _IS_ALIVE = text(f"select 1 from gateways g where g.gw = :gw and g.run = :run and {_ALIVE}")  # nosec B608 # names of ours
 _LOCKED = text(
@@ -195,7 +195,7 @@ _HELD = text(
     "order by robot for share"
 )
 FEW = 100
-"""robots whose fences are compared here: what compares them in the database takes that 0.7 ms more."""
+"""robots whose fences are compared here: a comparison in the database takes 0.7 ms more for so few."""
 _LOST = text(
     """
     with fences as (
@@ -208,11 +208,11 @@ _LOST = text(
     select robot from fences except select robot from held
     """
 )
-# A row of what is there beside those of owners, which say null in its place.
+# A row with the total and the mark, beside those of owners, which have null there.
 _ABOUT = "select null, null, null, count(*), null, cast(pg_snapshot_xmin(pg_current_snapshot()) as text)"
 _OWNERS = "select o.robot, o.gw, o.run, o.fence, r.name is not null, null from robot_owners o"
 _KNOWN = "left join robots r on r.name = o.robot"
-# Transactions that were not over when the mark was read, and all later ones, are at most as old as that.
+# Transactions unfinished when the mark was read, and all later ones, are at most as old as the mark.
 _SINCE = "where r.name is null or age(o.xmin) <= age(xid(cast(:since as xid8)))"
 _ALL = text(f"{_ABOUT} from robot_owners union all {_OWNERS} {_KNOWN}")  # nosec B608 # names of ours
 _CHANGED = text(f"{_ABOUT} from robot_owners union all {_OWNERS} {_KNOWN} {_SINCE}")  # nosec B608 # names of ours
@@ -224,11 +224,11 @@ _PRESENT = text(
 def claim(
     connection: Connection, me: Member, robots: Sequence[str], now: float | None = None
 ) -> dict[str, Claimed]:
-    """Let a gateway have some robots, whoever had them: their newest connection counts.
+    """Make a gateway the owner of some robots, from any owner: their newest connection counts.
 
-    Of those that it has already nothing changes, the fence included.
+    Robots that it owns already stay unchanged, including the fence.
 
-    :raises NoMemberError: when its lease has run out.
+    :raises NoMemberError: when its lease has expired.
     """
     _check_alive(connection, me, now)
     names = sorted(set(robots))
@@ -243,11 +243,11 @@ def claim(
 def claim_left(
     connection: Connection, me: Member, spared: Sequence[str] = (), now: float | None = None
 ) -> dict[str, int]:
-    """Let a gateway have all robots whose gateway lives no more, or that have none; return their fences.
+    """Make a gateway the owner of all robots without a living owner; return their fences.
 
     Robots of the runs ``spared`` stay where they are.
 
-    :raises NoMemberError: when its own lease has run out.
+    :raises NoMemberError: when its own lease has expired.
     """
     _check_alive(connection, me, now)
     values = {"gw": me.gw, "run": me.run}
@@ -257,7 +257,7 @@ def claim_left(
 
 
 def lost(connection: Connection, me: Member, fences: Mapping[str, int]) -> set[str]:
-    """Return the robots that a gateway has not under ``fences``; the others stay its own until the commit."""
+    """Return the robots not owned by a gateway under ``fences``; the others stay its own until the commit."""
     values: dict[str, Any] = {"gw": me.gw, "run": me.run}
     if len(fences) <= FEW:
         held: dict[str, int] = dict(connection.execute(_HELD, {**values, "robots": list(fences)}).all())
@@ -267,8 +267,8 @@ def lost(connection: Connection, me: Member, fences: Mapping[str, int]) -> set[s
 
 
 def owners_since(connection: Connection, since: str | None) -> OwnersRead:
-    """Return the owners that have changed since the mark of an earlier read, whenever that was committed."""
-    # One statement sees one state: what ends meanwhile is read once more next time.
+    """Return the owners changed since the mark of an earlier read, whenever that was committed."""
+    # One statement sees one state: transactions that end meanwhile are read again next time.
     rows = connection.execute(_ALL) if since is None else connection.execute(_CHANGED, {"since": since})
     mark, total, found = "", 0, {}
     for robot, *owner, about in rows:
@@ -280,7 +280,7 @@ def owners_since(connection: Connection, since: str | None) -> OwnersRead:
 
 
 def present(connection: Connection, me: Member) -> int:
-    """Return how many of the robots that a gateway has are stored."""
+    """Return how many of a gateway's robots are stored."""
     return int(connection.execute(_PRESENT, {"gw": me.gw, "run": me.run}).scalar_one())
 
 
@@ -293,7 +293,7 @@ def _check_alive(connection: Connection, me: Member, now: float | None) -> None:
         )
 
 
-# --- Requests of robots that another gateway has: asked, begun by the one that has them, answered ---
+# --- Requests about robots of other gateways: asked, begun by the owner, answered ---
 
 _CLOCK = "extract(epoch from clock_timestamp())::double precision"
 _ADD = text(
@@ -327,7 +327,7 @@ _FORGET = text(f"delete from relayed_requests where asked_at < {_CLOCK} - :age")
 
 
 class NewRequest(NamedTuple):
-    """A request of a robot, by the name of its method, with its parameters as JSON."""
+    """A request about a robot, by the name of its method, with its parameters as JSON."""
 
     robot: str
     method: str
@@ -340,9 +340,9 @@ class NewRequest(NamedTuple):
 
 
 class TakenRequest(NamedTuple):
-    """A request that a gateway began to deal with ``age`` seconds after it was asked.
+    """A request that a gateway began to process ``age`` seconds after it was made.
 
-    ``begun_by`` is an earlier run that began to do so and did not answer.
+    ``begun_by`` is an earlier run that began it and did not answer.
     """
 
     id: int
@@ -380,12 +380,12 @@ def answer_request(connection: Connection, id: int, answer: str) -> None:
 
 
 def collect_answers(connection: Connection, ids: Sequence[int]) -> dict[int, str]:
-    """Return the answers that there are to some requests, which are done with then."""
+    """Return the present answers to some requests, and remove these requests."""
     return dict(connection.execute(_COLLECT, {"ids": list(ids)}).all())
 
 
 def withdraw_requests(connection: Connection, ids: Sequence[int]) -> set[int]:
-    """Take back those of some requests that nobody has begun to deal with; return them."""
+    """Withdraw those of some requests that nobody has begun; return them."""
     return set(connection.scalars(_WITHDRAW, {"ids": list(ids)}))
 
 

@@ -14,35 +14,35 @@ from ..schema import audit, bridge, closures, commands, observations, plans, rob
 # --- Facts about the database itself ---
 
 ID = "id"
-"""The name of the fact that tells the database from every other."""
+"""The name of the fact that distinguishes the database from every other."""
 FLEET = "fleet"
-"""The name of the fact that tells the fleet on this database from others on the same NATS servers."""
+"""The name of the fact that distinguishes the fleet from others on the same NATS servers."""
 _SITE, _FRAME = "site", "frame"
 
 
 def database_id(connection: Connection) -> str:
-    """Return what tells this database from every other; one that has none yet is given it."""
+    """Return the unique id of this database; create it if missing."""
     return fact(connection, ID, str(uuid.uuid4()))
 
 
 def fleet_id(connection: Connection) -> str:
     """Return the id of the fleet on this database: the first id of that.
 
-    It stays when the database counts as another one to robots, since accounts on NATS servers are given it.
+    It stays when the database gets a new id for robots, since accounts on NATS servers contain it.
     """
     return fact(connection, FLEET, database_id(connection))
 
 
 def known_fleet(connection: Connection) -> str | None:
-    """Return the id of the fleet on this database, None where no gateway has served it yet."""
+    """Return the id of the fleet on this database, None if no gateway has served it yet."""
     return _known(connection, FLEET) or _known(connection, ID)
 
 
 def renew_id(connection: Connection, before: str) -> bool:
-    """Have the database count as another one than ``before``; false where somebody was faster.
+    """Give the database another id than ``before``; return false if it was changed already.
 
-    Robots forget the ids of messages, which come again: those on SQL, who do not connect, are sent Start.
-    What waited in RR was said to the one before.
+    Robots forget the ids of messages, which are reused: those on SQL, which do not connect, are sent Start.
+    Requests waiting in RR belonged to the old id.
     """
     if not replace_fact(connection, ID, before, after := str(uuid.uuid4())):
         return False
@@ -55,7 +55,7 @@ GREETING = (
     "insert into {schema}sa (robot, op, params) "
     "select name, 'Start', :params from {schema}robots where link = 'sql'"
 )
-"""SQL that tells robots on SQL the id of the database, with ``params`` of a Start."""
+"""SQL that sends robots on SQL the id of the database, with ``params`` of a Start."""
 
 _NEWEST = {
     "sqlite": "select coalesce(max(seq), 0) from sqlite_sequence where name = 'sa'",
@@ -73,9 +73,9 @@ _NEWEST = {
 
 
 def message_count(connection: Connection) -> tuple[str, int] | None:
-    """Return the id of the database and that of the newest message it gave out, 0 before the first.
+    """Return the id of the database and of its newest message, 0 before the first.
 
-    None where one of them is not known, as while somebody restores it.
+    None if one of them is unknown, as during a restore.
     """
     id = _known(connection, ID)
     newest = connection.scalar(text(_NEWEST[connection.dialect.name]))
@@ -83,9 +83,9 @@ def message_count(connection: Connection) -> tuple[str, int] | None:
 
 
 def fact(connection: Connection, name: str, value: str) -> str:
-    """Return what is known under ``name``; ``value``, which is noted then, where nothing is.
+    """Return the fact ``name``; if missing, store ``value`` and return it.
 
-    Several gateways may ask at once, and are told the same.
+    Several gateways may call at once, and get the same.
     """
     if (found := _known(connection, name)) is None:
         kind = postgresql.insert if connection.dialect.name == "postgresql" else insert
@@ -96,24 +96,24 @@ def fact(connection: Connection, name: str, value: str) -> str:
 
 
 def replace_fact(connection: Connection, name: str, before: str, value: str) -> bool:
-    """Note ``value`` under ``name`` where ``before`` is known; false where another one came before."""
+    """Replace ``before`` by ``value`` under ``name``; return false if the fact is another one."""
     ours = (bridge.c.name == name) & (bridge.c.value == before)
     return connection.execute(update(bridge).where(ours).values(value=value)).rowcount == 1
 
 
 def forget_facts(connection: Connection, names: Sequence[str]) -> None:
-    """Know nothing under ``names`` any more."""
+    """Delete the facts ``names``."""
     connection.execute(delete(bridge).where(bridge.c.name.in_(names)))
 
 
 _WITH_PLACES = robots, commands, plans, closures
-"""Tables of which one has a row wherever there is a place at all."""
+"""Tables of which at least one has a row if the database has any place."""
 
 
 def frame_of_places(connection: Connection, frame: str, *, is_alone: bool) -> str:
-    """Return the frame that all places in the database are in; ``frame`` from now on where there are none.
+    """Return the frame of all places in the database; if there are none, set and return ``frame``.
 
-    ``is_alone`` tells that no other gateway serves the database, which may have its own ones in mind.
+    ``is_alone`` means that no other gateway serves the database, which might be about to store places.
     """
     if is_alone and not any(connection.execute(select(one).limit(1)).first() for one in _WITH_PLACES):
         forget_facts(connection, [_FRAME])
@@ -126,15 +126,15 @@ def chosen_site(connection: Connection) -> str | None:
 
 
 def choose_site(connection: Connection, folder: str) -> None:
-    """Note which site a supervisor chose."""
-    # Of several gateways that choose at once each has its turn.
+    """Store the site chosen by a supervisor."""
+    # Concurrent choices of several gateways are serialised.
     if connection.execute(update(bridge).where(bridge.c.name == _SITE).values(value=folder)).rowcount == 0:
         forget_site(connection)
         connection.execute(insert(bridge).values(name=_SITE, value=folder))
 
 
 def forget_site(connection: Connection) -> None:
-    """Forget which site a supervisor chose."""
+    """Delete the site chosen by a supervisor."""
     connection.execute(delete(bridge).where(bridge.c.name == _SITE))
 
 
@@ -143,7 +143,7 @@ def _known(connection: Connection, name: str) -> str | None:
     return found
 
 
-# --- When something was stored last ---
+# --- Time of the last stored row ---
 
 # Each but the few robots has an index.
 _TIMES = (
@@ -158,7 +158,7 @@ _TIMES = (
 def newest_time(connection: Connection) -> float | None:
     """Return the newest time of a position, command, observation, robot or entry of the audit log.
 
-    Seconds since 1970 by the gateway's clock of then; None where nothing is stored.
+    Seconds since 1970 by the gateway's clock of then; None if nothing is stored.
     """
     found = [connection.scalar(select(func.max(column))) for column in _TIMES]
     return max((float(at) for at in found if at is not None), default=None)

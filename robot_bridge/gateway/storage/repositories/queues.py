@@ -1,4 +1,4 @@
-"""Queues of tasks: each change is written only if the queue still is as whoever changes it saw it."""
+"""Queues of tasks: a change is written only if the queue is unchanged since the writer read it."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _OPEN = [state.value for state in TaskState if state not in ENDS]
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _OF_ROBOT = queues.c.robot == bindparam("of")
 _IS_STORED = select(queues.c.robot).where(_OF_ROBOT)
-# Locked: what one gateway changes in a queue and what another one does comes one after the other.
+# Locked: changes of a queue by several gateways are serialised.
 _REVISION = select(queues.c.revision, queues.c.state).where(_OF_ROBOT).with_for_update()
 _QUEUE_COLUMNS = ("revision", "state", "reason", "by", "at")
 _SAVE_QUEUE = (
@@ -45,7 +45,7 @@ _SAVE_QUEUE = (
 )
 
 
-# Whatever changes a row gives it another xmin.
+# Every change of a row gives it another xmin.
 _VERSION = (
     "concat_ws(' ', max(cast(q.xmin as text)), count(t.id), "
     "sum(cast(cast(t.xmin as text) as numeric) * (t.place + 1)))"
@@ -62,22 +62,22 @@ _VERSIONS = text(
 _REVISIONS_OF = text(
     "select q.robot, q.revision from queues q join robot_owners o on o.robot = q.robot and o.gw = :gw"
 )
-# Each robot's own rows by the index, newest first: whoever has driven for years has thousands that ended.
+# Each robot's own rows by the index, newest first: a robot in use for years has thousands of ended ones.
 _NEWEST_ENDED = text(
     "select t.* from unnest(cast(:robots as text[])) of (robot) cross join lateral "
     "(select * from queue_tasks where robot = of.robot and state || '' = any(:ended) "
     "order by ended_at desc, place desc limit :most) t order by t.robot, t.ended_at desc, t.place desc"
 )
 IDLE_S = 2
-"""seconds that a transaction may stand still that changes queues whose robots other gateways have."""
+"""seconds that a transaction may be idle that changes queues of other gateways' robots."""
 
 
 class ChangedError(RefusedError):
-    """The queue is not as it was taken for: somebody else changed it in between."""
+    """The queue was changed by somebody else since it was read."""
 
 
 class QueueHold(NamedTuple):
-    """Why a robot's queue has to be paused, by whom and when."""
+    """A pause of a robot's queue: why, by whom and when."""
 
     robot: str
     reason: str
@@ -111,26 +111,26 @@ def load_with_ended(
 
 
 def versions_elsewhere(connection: Connection, gateway: str) -> dict[str, str]:
-    """Return of each queue whose robot another gateway has what changes with it; PostgreSQL alone."""
+    """Return a version of each queue of other gateways' robots; PostgreSQL only."""
     values = {"gw": gateway, "open": _OPEN}
     return dict(connection.execute(_VERSIONS_ELSEWHERE, values).all())
 
 
 def versions(connection: Connection, robots: Sequence[str]) -> dict[str, str]:
-    """Return of the queues of some robots what changes with them; PostgreSQL alone."""
+    """Return versions of the queues of some robots; PostgreSQL only."""
     return dict(connection.execute(_VERSIONS, {"robots": list(robots), "open": _OPEN}).all())
 
 
 def revisions_of(connection: Connection, gateway: str) -> dict[str, int]:
-    """Return the revisions of the queues whose robots a gateway has; PostgreSQL alone."""
+    """Return the revisions of the queues of a gateway's robots; PostgreSQL only."""
     return dict(connection.execute(_REVISIONS_OF, {"gw": gateway}).all())
 
 
 def check_unchanged(connection: Connection, taken_for: Sequence[Queue]) -> None:
-    """Raise ChangedError unless queues are stored as they are taken for, task by task.
+    """Raise ChangedError unless the stored queues equal ``taken_for``, task by task.
 
-    They stay so until the transaction ends. Nobody is waited for, and whoever does this and stands still
-    keeps others waiting for :data:`IDLE_S` at most. PostgreSQL alone.
+    They stay so until the transaction ends. It does not wait for locks, and an idle caller blocks others for
+    :data:`IDLE_S` at most. PostgreSQL only.
     """
     if not taken_for:
         return
@@ -170,7 +170,7 @@ def newest_ended(connection: Connection, robot: str, limit: int) -> list[QueuedT
 def newest_ended_of(connection: Connection, robots: Sequence[str], limit: int) -> dict[str, list[QueuedTask]]:
     """Return the tasks of each of some robots that ended, newest first, ``limit`` at most."""
     if connection.dialect.name != "postgresql":
-        # SQLite and MariaDB take as long for one statement of many robots as for many of one.
+        # SQLite and MariaDB take as long for one statement on many robots as for many on one.
         return {robot: newest_ended(connection, robot, limit) for robot in robots}
     found: dict[str, list[QueuedTask]] = {robot: [] for robot in robots}
     rows = connection.execute(_NEWEST_ENDED, {"robots": list(robots), "ended": _ENDED, "most": limit})
@@ -180,7 +180,7 @@ def newest_ended_of(connection: Connection, robots: Sequence[str], limit: int) -
 
 
 def find_all(connection: Connection, tasks: Sequence[str]) -> dict[str, tuple[str, QueuedTask]]:
-    """Return some tasks, each with the robot whose queue it is or was in; those that are not stored lack."""
+    """Return some tasks, each with the robot whose queue it is or was in; those not stored are missing."""
     found: dict[str, tuple[str, QueuedTask]] = {}
     for begin in range(0, len(tasks), 500):
         query = select(queue_tasks).where(queue_tasks.c.id.in_(tasks[begin : begin + 500]))
@@ -190,7 +190,7 @@ def find_all(connection: Connection, tasks: Sequence[str]) -> dict[str, tuple[st
 
 
 def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Whereabouts]:
-    """Return where those of some tasks are that were given before."""
+    """Return where those of some tasks are that were given earlier."""
     c = queue_tasks.c
     found: dict[str, Whereabouts] = {}
     for begin in range(0, len(tasks), 500):
@@ -202,9 +202,9 @@ def whereabouts(connection: Connection, tasks: Sequence[str]) -> dict[str, Where
 
 
 def save(connection: Connection, before: Queue, after: Queue, ended: Iterable[QueuedTask] = ()) -> None:
-    """Write what ``after`` and the tasks that ``ended`` have other than ``before``.
+    """Write the differences of ``after`` and the ``ended`` tasks from ``before``.
 
-    :raises ChangedError: when the stored queue is not ``before`` any more; nothing may be written then.
+    :raises ChangedError: when the stored queue is no longer ``before``; nothing may be written then.
     """
     _save_queue(connection, before, after)
     old = {task.id: task for task in before.tasks}
@@ -232,10 +232,10 @@ def save_many(connection: Connection, changes: Sequence[tuple[Queue, Queue]]) ->
 
 
 def hold(connection: Connection, holds: Sequence[QueueHold]) -> None:
-    """Pause the queues of robots that are ordered about beside them; those with nothing to do stay."""
+    """Pause the queues of robots commanded beside them; idle ones stay as they are."""
     if not holds:
         return
-    # No IN: it cannot be used where a statement is done for many rows.
+    # No IN: it cannot be used in a statement executed for many rows.
     is_open = or_(*(queue_tasks.c.state == state for state in _OPEN))
     waiting = exists().where(queue_tasks.c.robot == queues.c.robot, is_open)
     statement = (
@@ -274,12 +274,12 @@ def _save_queue(connection: Connection, before: Queue, after: Queue) -> None:
     if before.revision == 0 and connection.execute(_IS_STORED, of).first() is None:
         adding = insert(queues)
         if connection.dialect.name == "postgresql":
-            # Two gateways may begin it at once.
+            # Two gateways may insert it at once.
             adding = postgresql.insert(queues).on_conflict_do_nothing()
         if connection.execute(adding, {"robot": after.robot, **row}).rowcount == 0:
             raise _changed(after.robot)
         return
-    # Asked for, since MariaDB does not count a row that it was told nothing new about.
+    # Queried, since MariaDB does not count a row updated without a change.
     found = connection.execute(_REVISION, of).first()
     if found is None or (found.revision, found.state) != (before.revision, before.state.value):
         raise _changed(after.robot)
@@ -296,7 +296,7 @@ def _save_tasks(
         rows = [{"robot": robot, "id": task.id, **_content(task), **_row(task)} for task in new]
         connection.execute(insert(queue_tasks), rows)
     known = [task for task in changed if task.id in old]
-    # What the operator gave holds a path, and is written only if it is another one.
+    # The operator's input contains a path, and is written only if changed.
     _update(connection, [(task.id, _row(task)) for task in known if task.task == old[task.id].task])
     other = [task for task in known if task.task != old[task.id].task]
     _update(connection, [(task.id, {**_row(task), **_content(task)}) for task in other])

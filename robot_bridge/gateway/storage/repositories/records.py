@@ -1,4 +1,4 @@
-"""Rows of what robots observed and placed."""
+"""Rows of observations and placed cones."""
 
 from __future__ import annotations
 
@@ -22,13 +22,13 @@ from ..rows import beside_the_time, delete_oldest, readable
 from ..schema import observations as table
 from ..schema import placements
 
-# --- What robots saw, and what operators made of it ---
+# --- Observations of robots, and operators' reviews ---
 
 _REPORTED = [
     *(column for column in table.c if column.name != "image"),
     func.length(table.c.image).label("image_bytes"),
 ]
-# Whatever changes a row gives it another xmin, in whichever order transactions are committed.
+# Every change of a row gives it another xmin, in whichever order transactions are committed.
 _ON_MAP = text(
     "select count(*), coalesce(sum(id * cast(cast(xmin as text) as numeric)), 0) from observations "
     f"where state = :state and kind = '{SetObject.__name__}'"  # nosec B608 # names of ours
@@ -37,9 +37,9 @@ _NEWEST = text("select id, cast(xmin as text) from observations order by id desc
 
 
 class ObservationChanges(NamedTuple):
-    """What another number or text of which says that observations have changed.
+    """Values that change whenever observations change.
 
-    ``on_map`` is of all that are drawn, ``newest`` of each of the newest by its id.
+    ``on_map`` covers all that are drawn, ``newest`` each of the newest by its id.
     """
 
     on_map: tuple[int, int]
@@ -47,7 +47,7 @@ class ObservationChanges(NamedTuple):
 
 
 class NewObservation(NamedTuple):
-    """What a robot told; ``source`` tells it from everything else that the robot told."""
+    """A reported observation; ``source`` distinguishes it from others of the robot."""
 
     robot: str
     source: str
@@ -67,7 +67,7 @@ def add_observations(
 ) -> tuple[ObservationReport, bool]:
     """Store an observation, once; return its report and whether it is new.
 
-    :raises RefusedError: when ``most_pending`` of the robot's wait already.
+    :raises RefusedError: when ``most_pending`` of the robot's already wait.
     """
     known = find_reported(connection, observed.robot, observed.source)
     if known is None:
@@ -80,7 +80,7 @@ def add_observations(
 
 
 def find_reported(connection: Connection, robot: str, source: str) -> ObservationReport | None:
-    """Return what a robot told under ``source``, None where that is not stored."""
+    """Return a robot's observation ``source``, None if not stored."""
     conditions = table.c.robot == robot, table.c.source == source
     found = connection.execute(select(*_REPORTED).where(*conditions)).mappings().one_or_none()
     return None if found is None else _observation_report(found)
@@ -117,7 +117,7 @@ def on_map(connection: Connection) -> list[ObservationReport]:
 
 
 def changes(connection: Connection, newest: int) -> ObservationChanges:
-    """Return what changes with the observations on the map and with the ``newest`` ones; PostgreSQL alone."""
+    """Return values that change with the observations on the map and the ``newest`` ones; PostgreSQL only."""
     count, of_all = connection.execute(_ON_MAP, {"state": ObservationState.ACCEPTED.value}).one()
     rows = connection.execute(_NEWEST, {"newest": newest}).all()
     return ObservationChanges((int(count), int(of_all)), {int(id): str(version) for id, version in rows})
@@ -144,7 +144,7 @@ def review(
     at: float,
     review: Mapping[str, Any],
 ) -> ObservationReport:
-    """Write what an operator made of an observation."""
+    """Write an operator's review of an observation."""
     values = {
         "state": state.value,
         "reviewed_by": by,
@@ -156,13 +156,13 @@ def review(
 
 
 def forget_rejected(connection: Connection, before: float, limit: int) -> int:
-    """Delete at most ``limit`` objects that were told and rejected before a time; return how many."""
+    """Delete at most ``limit`` objects reported and rejected before a time; return how many."""
     rejected = beside_the_time(table.c.state).in_([ObservationState.REJECTED.value])
     return _forget(connection, before, limit, table.c.kind == SetObject.__name__, rejected)
 
 
 def forget_images(connection: Connection, before: float, limit: int) -> int:
-    """Delete at most ``limit`` images that were told and reviewed before a time; return how many."""
+    """Delete at most ``limit`` images reported and reviewed before a time; return how many."""
     ends = [ObservationState.ACCEPTED.value, ObservationState.REJECTED.value]
     reviewed = beside_the_time(table.c.state).in_(ends)
     return _forget(connection, before, limit, table.c.kind == SendImage.__name__, reviewed)
@@ -218,7 +218,7 @@ def _observation_report(row: Mapping[Any, Any]) -> ObservationReport:
     )
 
 
-# --- Cones that robots put down: planned and as placed, and when they were collected again ---
+# --- Placed cones: planned and actual places, and times of collection ---
 
 
 _NEWEST_CONES = text(
@@ -232,7 +232,7 @@ _NEWEST_CONES = text(
 
 
 class NewPlacement(NamedTuple):
-    """A cone that was put down; as :class:`~....core.messages.PlacementReport`, before it has an id."""
+    """A placed cone; as :class:`~....core.messages.PlacementReport`, before it has an id."""
 
     task: str
     robot: str
@@ -251,7 +251,7 @@ class NewPlacement(NamedTuple):
 
 
 class CollectedCone(NamedTuple):
-    """A cone that was picked up: which placement, or (None) the cone of that id in that layout."""
+    """A collected cone: its placement, or (None) the cone of that id in that layout."""
 
     robot: str
     at: float
@@ -261,14 +261,14 @@ class CollectedCone(NamedTuple):
 
 
 def add_placed_cones(connection: Connection, new: NewPlacement) -> PlacementReport:
-    """Write a cone that was put down; return it with its id."""
+    """Write a placed cone; return it with its id."""
     key = connection.execute(insert(placements), new._asdict()).inserted_primary_key
     assert key is not None
     return PlacementReport(placement=int(key[0]), **new._asdict())
 
 
 def collect(connection: Connection, collected: CollectedCone) -> PlacementReport | None:
-    """Note that a cone was picked up; None when it is not known to stand."""
+    """Record that a cone was collected; return None when it is not known to stand."""
     c = placements.c
     query = select(placements).where(c.collected_at.is_(None))
     if collected.placement is not None:
@@ -292,7 +292,7 @@ def newest_placed_cones(connection: Connection, request: GetPlacements) -> list[
 
 
 def placement_changes(connection: Connection, newest: int) -> dict[int, str]:
-    """Return of the newest placed and the newest collected cones what changes with each; PostgreSQL alone."""
+    """Return versions of the newest placed and the newest collected cones; PostgreSQL only."""
     rows = connection.execute(_NEWEST_CONES, {"newest": newest}).all()
     return {int(id): str(version) for id, version in rows}
 
@@ -304,7 +304,7 @@ def find_placements(connection: Connection, ids: Sequence[int]) -> list[Placemen
 
 
 def has_any(connection: Connection, kind: str, name: str) -> bool:
-    """Return whether a cone is stored of the layout, plan or robot ``name``; ``kind`` says which that is."""
+    """Return whether a cone is stored of the layout, plan or robot ``name``; ``kind`` says which."""
     c = placements.c
     return connection.scalar(select(c.id).where(c[kind] == name).limit(1)) is not None
 
@@ -316,7 +316,7 @@ def names(connection: Connection, kind: str) -> list[str]:
 
 
 def standing(connection: Connection, layout: str | None) -> list[PlacementReport]:
-    """Return the cones of a layout, or of all, that were not collected, in the order they were put down."""
+    """Return the cones of a layout, or of all, that were not collected, in the order of placement."""
     query = select(placements).where(placements.c.collected_at.is_(None))
     if layout is not None:
         query = query.where(placements.c.layout == layout)

@@ -1,4 +1,4 @@
-"""Rows of requests of robots and of the answers to them."""
+"""Rows of robots' requests and of the answers to them."""
 
 from __future__ import annotations
 
@@ -33,14 +33,14 @@ from ..schema import rr, sa
 
 AT_ONCE = 500
 LONGEST_ACK = SHORT.length
-"""characters; of what is longer no stop is to wait until it is decoded."""
+"""characters of an OpAck; a stop must not wait for the decoding of longer ones."""
 MOST_ACKS = 1000
-"""OpAcks of one robot that are looked at for a stop; a robot that works has a few."""
+"""OpAcks of one robot that are checked for a stop; a working robot has a few."""
 _LONGEST_NAME = 64
-"""characters of a robot's name and of an operation that are read; every right one is shorter."""
+"""characters read of a robot's name and of an operation; every valid one is shorter."""
 
 # SQLite keeps bytes in a text column as bytes, and one row of them must not hold up the others.
-# SQLite holds no column to its length: what is longer than may be is cut, or left out, before it is fetched.
+# SQLite does not enforce column lengths: longer values are cut, or left out, before they are fetched.
 _PARAMS = cast(rr.c.params, Text)
 _SIZE = func.length(_PARAMS)
 _ROW = (
@@ -62,14 +62,14 @@ _ANY = 2**63 - 1
 
 
 class RequestRow(NamedTuple):
-    """A row of RR as it was written, not yet understood."""
+    """A row of RR as written, not yet decoded."""
 
     id: int
     robot: str
     op: str
     params: str | None
     size: int | None = None
-    """characters of ``params``, which is None where they are too many."""
+    """characters of ``params``, which is None if they are too many."""
 
 
 def read_requests(connection: Connection) -> list[RequestRow]:
@@ -84,17 +84,17 @@ def backlog(connection: Connection, robots: Sequence[str]) -> tuple[int, dict[st
 
 
 def acknowledged(connection: Connection, robots: Sequence[str], newest: int = _ANY) -> dict[str, set[int]]:
-    """Return of each of ``robots`` the messages whose OpAcks wait to be read, up to request ``newest``.
+    """Return for each of ``robots`` the messages whose OpAcks wait to be read, up to request ``newest``.
 
-    Nothing is read of any other robot. An OpAck that cannot be understood, or is so long that it is none, is
-    left out, and so is what a robot has beyond :data:`MOST_ACKS`: emergency stops wait for this.
+    No other robot's rows are read. OpAcks that are invalid or too long are left out, and so are those of a
+    robot beyond :data:`MOST_ACKS`: emergency stops wait for this.
     """
     found: dict[str, set[int]] = {robot: set() for robot in robots}
     seen: Counter[str] = Counter()
     for begin in range(0, len(robots), AT_ONCE):
         some = {"robots": robots[begin : begin + AT_ONCE], "newest": newest}
         for robot, params in connection.execute(_ACKS, some):
-            # MariaDB takes names for the same that differ in capitals.
+            # MariaDB compares names without regard to case.
             if robot not in found or seen[robot] >= MOST_ACKS:
                 continue
             seen[robot] += 1
@@ -109,7 +109,7 @@ def _message_id(params: str | None) -> int | None:
     except DecodingError:
         return None
     id = acknowledgement.get("id") if isinstance(acknowledgement, dict) else None
-    # For Python true is a whole number as well, and would be message 1.
+    # In Python true is an integer as well, and would be message 1.
     return id if type(id) is int else None
 
 
@@ -119,14 +119,14 @@ def payload(connection: Connection, id: int, check_size: Callable[[int], None]) 
     if size is None:
         return None
     check_size(size)
-    # SQLite gives text that somebody wrote into it back as text.
+    # SQLite returns text written into the column as text.
     return bytes(
         connection.execute(select(cast(rr.c.payload, LargeBinary)).where(rr.c.id == id)).scalar_one()
     )
 
 
 def remove_requests(connection: Connection, ids: Sequence[int]) -> None:
-    """Delete requests that have been dealt with."""
+    """Delete processed requests."""
     delete_messages(connection, rr, ids)
 
 
@@ -138,7 +138,7 @@ def add_requests(connection: Connection, rows: Sequence[tuple[str, str, str, byt
 # --- Table SA: the gateway inserts; a robot reads and deletes its own rows. The outbox of every robot ---
 
 ORDERS = tuple(op for op in COMMANDS if op != Abort.__name__)
-"""What sets a robot in motion, or tells it where it is: it has to know the map before."""
+"""Messages that move a robot, or set its position: it must know the map before."""
 
 # Built once: SQLAlchemy takes longer to build a statement than the database to do it.
 _LATER = or_(
@@ -160,7 +160,7 @@ _ADD_NUMBERED = insert(sa).returning(sa.c.id, sort_by_parameter_order=True)
 _REMOVE_OWN = delete(sa).where(sa.c.robot == bindparam("of"), sa.c.id == bindparam("one"))
 _REMOVE_ONE = delete(sa).where(sa.c.id == bindparam("one"))
 _WAITING = select(sa.c.id).where(sa.c.id.in_(bindparam("ids", expanding=True)))
-# Found first, and then deleted by their ids: a deletion that looks for its rows waits at those of others.
+# Found first, and then deleted by id: a deletion that searches for its rows waits at those of others.
 _KINDS = select(sa.c.id).where(sa.c.op.in_(bindparam("ops", expanding=True)))
 _UNLOCKED_KINDS = _KINDS.where(_OF_THESE).with_for_update(skip_locked=True)
 _KINDS_OF_ROBOTS = _KINDS.add_columns(sa.c.robot, sa.c.op).where(_OF_THESE).order_by(sa.c.id.desc())
@@ -218,7 +218,7 @@ def read_answers(
 
 
 Outbox = tuple[str, int, int]
-"""A robot, and what it was sent last: the ids of a message and of an urgent one."""
+"""A robot, and the ids of the last sent message and of the last sent urgent one."""
 
 
 class _ReadOutbox(BatchedWork[list[AnswerRow]]):
@@ -228,7 +228,7 @@ class _ReadOutbox(BatchedWork[list[AnswerRow]]):
         """Return the answers that wait for each."""
         if len(asked) == 1:
             return [read_answers(connection, *asked[0])]
-        # The payload of what was sent already, which may be megabytes, must not be read again.
+        # Payloads of sent messages, which may be megabytes, must not be read again.
         oldest: dict[str, tuple[int, int]] = {}
         for robot, *last in asked:
             after, after_urgent = oldest.get(robot, last)
@@ -253,7 +253,7 @@ read_outbox = _ReadOutbox()
 
 
 def remove_answers(connection: Connection, ids: Sequence[int]) -> None:
-    """Delete answers that were delivered, or that are void."""
+    """Delete delivered or void answers."""
     delete_messages(connection, sa, ids)
 
 
@@ -271,10 +271,10 @@ def remove_own(connection: Connection, answers: Sequence[tuple[str, int]]) -> No
 
 
 def take_back(connection: Connection, ids: Sequence[int]) -> set[int]:
-    """Delete those of some answers that nobody has read and deleted before; return their ids.
+    """Delete those of some answers that were not read and deleted before; return their ids.
 
-    One by one: only of a single deletion does every server tell whether it found its row, after waiting for
-    a robot that is about to commit.
+    One by one: only for a single deletion does every server report whether it found its row, after waiting
+    for a robot that is about to commit.
     """
     return {id for id in ids if connection.execute(_REMOVE_ONE, {"one": id}).rowcount}
 
@@ -289,7 +289,7 @@ def remove_kinds(connection: Connection, robots: Sequence[str], ops: Sequence[st
 def remove_void(connection: Connection, void: Mapping[str, Collection[str]]) -> None:
     """Delete the answers of the kinds that are ``void`` for each robot.
 
-    Of maps those that nothing waits behind which needs one.
+    Maps are deleted only if no message that needs one waits behind them.
     """
     ops = sorted({op for kinds in void.values() for op in kinds} | set(ORDERS))
     for some in padded_pieces([robot for robot, kinds in void.items() if kinds]):
@@ -305,20 +305,20 @@ def remove_void(connection: Connection, void: Mapping[str, Collection[str]]) -> 
 
 
 def fill_maps(connection: Connection, robot: str, content: bytes) -> None:
-    """Write ``content`` into those of the robot's maps that only say that they are of the whole site."""
+    """Write ``content`` into those of the robot's maps that are placeholders for the whole site's map."""
     for id in list(connection.scalars(_UNFILLED_MAPS, {"of": robot})):
         connection.execute(_FILL, {"one": id, "content": content})
 
 
 def remove_unlocked(connection: Connection, robots: Sequence[str], ops: Sequence[str]) -> None:
-    """Delete the answers of the kinds ``ops`` for ``robots`` but for those that a robot is just reading."""
+    """Delete the answers of the kinds ``ops`` for ``robots`` except those that a robot is just reading."""
     for some in padded_pieces(robots):
         found = connection.scalars(_UNLOCKED_KINDS, {"robots": some, "ops": ops})
         remove_answers(connection, list(found))
 
 
 def remove_everywhere(connection: Connection, ops: Sequence[str]) -> None:
-    """Delete the answers of the kinds ``ops``, whoever they are for."""
+    """Delete the answers of the kinds ``ops``, for all robots."""
     remove_answers(connection, list(connection.scalars(_KINDS, {"ops": ops})))
 
 

@@ -1,4 +1,4 @@
-"""The robots as they were last known, and which gateway may write what concerns them."""
+"""The last known state of robots, and the fence of writes about them."""
 
 from __future__ import annotations
 
@@ -23,15 +23,16 @@ from . import requests
 _ENCODER = msgspec.json.Encoder()
 
 LONGEST_POSE = 16_000
-"""characters; a longer one has a status that its column does not hold everywhere, and is stored without."""
+"""characters; a longer one has a status too long for the column of some databases, and is stored without
+it."""
 _COUNT = select(func.count()).select_from(robots)
 _HEARD_SINCE = 2
-"""In place of 1 in ``ended_in_order``: the robot has said more since it said Stopped."""
+"""In place of 1 in ``ended_in_order``: the robot has sent more since its Stopped."""
 NAMES = ("name", "magic", "link", "received_at", "ended_in_order", "pose", "pose_at", "paths", "abilities")
 
 
 def row(robot: Robot) -> Row:
-    """Return what is stored of a robot as it is now."""
+    """Return the row of a robot's present state."""
     pose = None if robot.pose is None else _ENCODER.encode(robot.pose).decode()
     if robot.pose is not None and pose is not None and len(pose) > LONGEST_POSE:
         pose = _ENCODER.encode(dataclasses.replace(robot.pose, status=None)).decode()
@@ -41,14 +42,14 @@ def row(robot: Robot) -> Row:
 
 
 def save(connection: Connection, rows: Sequence[Row]) -> None:
-    """Write what is known of robots, in place of what was."""
+    """Write the states of robots, replacing the old ones."""
     put_rows(connection, robots, NAMES, rows)
 
 
 def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
-    """Write that a robot starts again as ``magic``; return false where it is stored with that number already.
+    """Record that a robot restarts as ``magic``; return false if it is stored with that number already.
 
-    Its pose stays as it is stored: positions that are earlier may wait to be stored still.
+    Its stored pose stays: earlier positions may still wait to be stored.
     """
     number = connection.scalar(select(robots.c.magic).where(robots.c.name == robot.name))
     if number == magic:
@@ -61,7 +62,7 @@ def note_run(connection: Connection, robot: Robot, magic: int) -> bool:
 
 
 def load(connection: Connection, names: Sequence[str] | None = None) -> list[Robot]:
-    """Return the robots that a gateway knew, or those of them that have one of ``names``."""
+    """Return the stored robots, or those of them with one of ``names``."""
     query = select(robots)
     if names is not None:
         query = query.where(is_one_of(connection, robots.c.name, names))
@@ -85,7 +86,7 @@ def _robot(row: Mapping[Any, Any]) -> Robot:
 
 
 def _paths(robot: str, text: str | None) -> PathDeclaration | None:
-    """Return what a robot declared of paths; None if that cannot be read, until it says Ready again."""
+    """Return a robot's path declaration; None if unreadable, until its next Ready."""
     if text is None:
         return None
     return next(readable([text], _read_paths, lambda _text: f"what robot {robot} declared of paths"), None)
@@ -97,7 +98,7 @@ def _read_paths(text: str) -> PathDeclaration:
 
 
 def _pose(robot: str, text: str | None) -> SendPos | None:
-    """Return where a robot was; None if that cannot be read: it is a robot of the fleet all the same."""
+    """Return a robot's stored pose; None if unreadable: it remains a robot of the fleet."""
     if not text:
         return None
     return next(readable([text], _read_pose, lambda _text: f"the place of robot {robot}"), None)
@@ -113,59 +114,59 @@ def names(connection: Connection) -> list[str]:
 
 
 def missing(connection: Connection, stored: Set[str]) -> set[str]:
-    """Return those of the robots ``stored`` that are not there any more."""
-    # Asked every second, and the answer nearly always: none.
+    """Return those of the robots ``stored`` that no longer exist."""
+    # Called every second, and nearly always empty.
     if connection.scalar(_COUNT) == len(stored):
         return set()
     return set(stored).difference(names(connection))
 
 
 def forget_all(connection: Connection, names: Sequence[str]) -> None:
-    """Know these robots no more; the next that each of them reads is that it has to abort."""
+    """Delete these robots; the next message that each of them reads is an Abort."""
     requests.add_answers(connection, [(name, Abort()) for name in names])
     for name in names:
         forget(connection, name)
 
 
 def forget(connection: Connection, name: str) -> bool:
-    """Know a robot no more; return whether it was known."""
+    """Delete a robot; return whether it was known."""
     return connection.execute(delete(robots).where(robots.c.name == name)).rowcount > 0
 
 
-# --- Fences: what concerns a robot is written by the gateway that has it, and by no other ---
+# --- Fences: data of a robot is written only by the gateway that owns it ---
 
 CHECK_VALID_S = 2.0
-"""seconds for which it counts that this gateway had a robot: what is sent to it later is checked again."""
+"""seconds for which a check of ownership is valid: later messages to the robot are checked again."""
 
 
 class FencedError(StoreError):
-    """Something of a robot was to be stored that another gateway has by now: nothing of it was."""
+    """Data of a robot now owned by another gateway was to be stored: nothing was written."""
 
 
 class OwnerFence(Protocol):
-    """Tells which robots this gateway has. Those methods that take a connection are called in its thread."""
+    """Checks which robots this gateway owns. Methods with a connection are called in its thread."""
 
     def owns(self, robot: str) -> bool:
-        """Return whether this gateway has the robot, for all that it knows."""
+        """Return whether this gateway owns the robot, as far as it knows."""
 
     def may_command(self, robot: str) -> bool:
-        """Return whether the robot may be set in motion now: this gateway has it, and may trust that."""
+        """Return whether the robot may be set in motion now: this gateway owns it, and may trust that."""
 
     def check(self, connection: Connection, robots: Collection[str]) -> None:
-        """Raise FencedError unless this gateway has all ``robots``, and does until the transaction ends."""
+        """Raise FencedError unless this gateway owns all ``robots``, and will until the transaction ends."""
 
     def lost(self, connection: Connection, robots: Collection[str]) -> AbstractSet[str]:
-        """Return those of ``robots`` that this gateway has not; the others stay its own until the commit."""
+        """Return those of ``robots`` not owned by this gateway; the others stay its own until the commit."""
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
-        """Return those of its robots ``stored`` that somebody has removed from the database."""
+        """Return those of its robots ``stored`` that were removed from the database."""
 
     def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:
-        """Have the gateway that has a robot do a request once this transaction is committed."""
+        """Have the owner of a robot do a request once this transaction is committed."""
 
 
 class SoleFence:
-    """The fence of a gateway that has its database alone: all robots are its own, and nothing is asked."""
+    """The fence of a sole gateway on its database: all robots are its own, without any check."""
 
     def owns(self, robot: str) -> bool:
         """Return true."""
@@ -183,7 +184,7 @@ class SoleFence:
         return frozenset()
 
     def missing(self, connection: Connection, stored: AbstractSet[str]) -> set[str]:
-        """Return those that are not stored any more."""
+        """Return those that are no longer stored."""
         return missing(connection, stored)
 
     def ask(self, connection: Connection, robot: str, request: DeskRequest[Any], operator: str) -> None:

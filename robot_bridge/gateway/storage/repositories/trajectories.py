@@ -1,7 +1,7 @@
-"""Where robots have been: written in batches, read in pages by robot, time and area, deleted in pieces.
+"""Trajectories: written in batches, read in pages by robot, time and area, deleted in pieces.
 
 On PostgreSQL each day is a partition, which is dropped whole. The functions that make and drop partitions are
-in migration 0011: they act for the owner of the tables, and give up a lock that others hold for long.
+in migration 0011: they run as the owner of the tables, and give up waiting for a lock held for long.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ class Fix(NamedTuple):
 
 
 PackedFix = tuple[str, bytes]
-"""A robot and what is stored of one of its fixes, in a third of the memory that the :class:`Fix` takes. It
-holds nothing that Python's search for garbage would have to look at: hundreds of thousands may wait."""
+"""A robot and one of its fixes for storage, in a third of the memory of a :class:`Fix`. It contains no
+objects tracked by Python's garbage collector: hundreds of thousands may wait."""
 
 _STORED = struct.Struct("<7d")
-"""received_at, x, y, theta, v, device_time and fix_time; not a number for a time that was not told."""
+"""received_at, x, y, theta, v, device_time and fix_time; NaN for a missing time."""
 
 
 _NAMES = ("robot", "received_at", "x", "y", "theta", "v", "device_time", "fix_time")
-# Of each column PostgreSQL's COPY has the length before the value, for null -1 and no value.
+# PostgreSQL's COPY has the length before each value, for null -1 and no value.
 _COPIED_HEAD = struct.Struct(">hi")
 _COPIED = struct.Struct(">" + "id" * 5)
 _COPIED_TIME = struct.Struct(">id")
@@ -46,8 +46,8 @@ _NULL = struct.pack(">i", -1)
 DAY = 86_400.0
 """seconds of a day, which begins at midnight UTC. The number of a day is a time divided by this."""
 MOST_MOVED = 50_000
-"""positions that came before the partition of their day and go over to it; with more of them the day has
-none, for others would wait for it too long."""
+"""positions stored before the partition of their day that are moved to it; with more of them no partition is
+made, since others would wait too long."""
 
 
 class StoredPosition(NamedTuple):
@@ -65,7 +65,7 @@ class StoredPosition(NamedTuple):
 
 
 class PageMark(NamedTuple):
-    """Where a page ended: the next begins behind it."""
+    """End of a page: the next one begins behind it."""
 
     received_at: float
     id: int
@@ -85,7 +85,7 @@ class TrajectoryQuery:
 
 
 def pack(fix: Fix) -> PackedFix:
-    """Return ``fix`` as it waits to be stored."""
+    """Return ``fix`` packed for storage."""
     robot, at, p = fix
     device_time = math.nan if p.t is None else p.t
     fix_time = math.nan if p.fix_t is None else p.fix_t
@@ -95,8 +95,8 @@ def pack(fix: Fix) -> PackedFix:
 def add(connection: Connection, fixes: Sequence[PackedFix]) -> None:
     """Store positions.
 
-    Those of a robot come together, in their order: where an index goes by robots, each of its pages is then
-    written once, which takes half as long with a thousand robots in a table of some hundred thousand rows.
+    They are grouped by robot, in order: each page of an index on robots is then written once, which takes
+    half as long with a thousand robots in a table of some hundred thousand rows.
     """
     fixes = sorted(fixes, key=itemgetter(0))
     if not fixes:
@@ -136,7 +136,7 @@ def read(
     at, id = trajectories.c.received_at, trajectories.c.id
     query = select(*(trajectories.c[name] for name in ("id", *_NAMES))).where(*_conditions(request))
     if after is not None:
-        # The first half alone lets the database begin at the right place of its index.
+        # The first condition alone lets the database start at the right place of its index.
         query = query.where(
             at >= after.received_at, or_(at > after.received_at, and_(at == after.received_at, id > after.id))
         )
@@ -144,14 +144,14 @@ def read(
 
 
 def next_time(connection: Connection, since: float) -> float | None:
-    """Return when the oldest position from a time on was received, seconds since 1970; None where none is."""
+    """Return when the oldest position from a time on was received, seconds since 1970; or None."""
     at = trajectories.c.received_at
     found: float | None = connection.scalar(select(func.min(at)).where(at >= since))
     return found
 
 
 def never_seen(connection: Connection, robots: Sequence[str]) -> list[str]:
-    """Return those of ``robots`` of which no position is stored."""
+    """Return those of ``robots`` without a stored position."""
     column = trajectories.c.robot
     return [
         robot
@@ -161,15 +161,15 @@ def never_seen(connection: Connection, robots: Sequence[str]) -> list[str]:
 
 
 def days_of(fixes: Iterable[PackedFix]) -> list[int]:
-    """Return the numbers of the days that positions are of."""
+    """Return the day numbers of positions."""
     return sorted({int(_STORED.unpack(stored)[0] // DAY) for _, stored in fixes})
 
 
 def make_days(connection: Connection, days: Collection[int], most: int = MOST_MOVED) -> int:
-    """Make the partitions of ``days`` that are not there; return how many are missing yet.
+    """Create missing partitions of ``days``; return how many are still missing.
 
-    What is stored already of such a day goes over to it. A day that is missing, with more than ``most``
-    positions or because somebody reads the table at length, keeps its positions in the default partition.
+    Stored positions of such a day are moved to it. A day still missing, with more than ``most`` positions or
+    because of a long read of the table, keeps its positions in the default partition.
     """
     return connection.scalar(select(func.public.make_trajectory_days(list(days), most))) or 0
 
@@ -177,7 +177,7 @@ def make_days(connection: Connection, days: Collection[int], most: int = MOST_MO
 def drop_day(connection: Connection, before: float, _limit: int) -> int:
     """Drop the oldest partition that ended before a time; return how many were dropped.
 
-    None is where there are no partitions, and while somebody reads the table at length.
+    None is dropped without partitions, and during a long read of the table.
     """
     if connection.dialect.name != "postgresql":
         return 0
@@ -187,7 +187,7 @@ def drop_day(connection: Connection, before: float, _limit: int) -> int:
 def forget(connection: Connection, before: float, limit: int) -> int:
     """Delete at most ``limit`` positions from before a time; return how many.
 
-    Positions in the partition of a day stay until that is dropped.
+    Positions in a day's partition stay until it is dropped.
     """
     if connection.dialect.name == "postgresql":
         return connection.scalar(select(func.public.delete_old_positions(before, limit))) or 0
@@ -203,7 +203,7 @@ def is_known_within(connection: Connection, robot: str, since: float, until: flo
 def forget_within(connection: Connection, robot: str, since: float, until: float, limit: int) -> int:
     """Delete at most ``limit`` positions of ``robot`` from ``since`` up to ``until``; return how many."""
     key = trajectories.c.id
-    # With the ids alone PostgreSQL would look for them in every partition.
+    # With the ids alone PostgreSQL would search every partition.
     within = list(_conditions(TrajectoryQuery((robot,), since, until)))
     found = list(connection.scalars(select(key).where(*within).limit(limit)))
     if found:

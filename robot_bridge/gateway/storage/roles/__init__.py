@@ -1,1 +1,1 @@
-"""Accounts in the database server: one for each robot, with no more rights than the paper gives it."""
+"""Accounts in the database server: one for each robot, with only the rights that the paper defines."""

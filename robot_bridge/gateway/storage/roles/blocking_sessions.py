@@ -1,4 +1,4 @@
-"""Robots' sessions that block others: noticed, ended, and their accounts suspended."""
+"""Robots' sessions that block others: detected, ended, and their accounts suspended."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from sqlalchemy.exc import DBAPIError
 from ....core.json_decoder import decode_json
 from ..schema import bridge
 
-# --- What robots' accounts do to everybody else, as the connections of this program notice it ---
+# --- Offences of robots' accounts against others, as detected by this program's connections ---
 
 T = TypeVar("T")
 
@@ -27,16 +27,16 @@ class Offences:
         self._flooding: SimpleQueue[int] = SimpleQueue()
 
     def add_blocking(self, robots: Iterable[str]) -> None:
-        """Note robots whose transactions were ended because this program waited for them."""
+        """Record robots whose transactions were ended because this program waited for them."""
         for robot in robots:
             self._blocking.put(robot)
 
     def add_flood(self, backend: int) -> None:
-        """Note the number of a connection that sent far more notifications than robots have reason to."""
+        """Record the backend number of a connection that sent far too many notifications."""
         self._flooding.put(backend)
 
     def drain(self) -> tuple[list[str], list[int]]:
-        """Return the robots and the backends noted since the last call, once for each offence."""
+        """Return the robots and the backends recorded since the last call, once for each offence."""
         return _drained(self._blocking), _drained(self._flooding)
 
 
@@ -49,13 +49,13 @@ def _drained(queue: SimpleQueue[T]) -> list[T]:
         return found
 
 
-# --- Ends robots' transactions that take too long: what they lock, the gateway may be waiting for ---
-# A robot may set its own time limits, so that they bind only the well-meaning; this binds all of them.
+# --- Ending robots' long transactions: the gateway may be waiting for their locks ---
+# A robot may change its own time limits, so they bind only well-behaved ones; this binds all of them.
 
 PATIENCE_S = 15
-"""How long any robot's transaction may take."""
+"""Seconds that any robot's transaction may take."""
 BLOCKING_S = 1
-"""How long one may take that keeps the gateway waiting."""
+"""Seconds that one may take while the gateway waits for it."""
 
 
 def end_blocking_sessions(connection: Connection, seconds: int = PATIENCE_S) -> bool:
@@ -97,8 +97,8 @@ def _roll_back_forsaken(connection: Connection, seconds: int) -> bool:
     return True
 
 
-# --- Robots' accounts that lose their connections for a while: who blocks the others, locked out, let in
-# again Until when stands in the database, so that the next gateway lets them in again if this one does not.
+# --- Temporary suspension of robots' accounts that block others; the end is stored in the database, so that
+# the next gateway ends it if this one does not.
 
 _FACT = "suspended"
 
@@ -119,7 +119,7 @@ def store_suspensions(connection: Connection, suspended: dict[str, tuple[float, 
 def blocking_robots(connection: Connection, seconds: int) -> list[str]:
     """Return the robots with a transaction older than ``seconds`` that holds locks.
 
-    Nothing where robots have no accounts, or the set-up is of a version before 0.3.
+    None without robots' accounts, or with a set-up of a version before 0.3.
     """
     if not _has_routine(connection, "blocking_robots"):
         return []
@@ -136,9 +136,9 @@ def robots_of_backends(connection: Connection, backends: Sequence[int]) -> list[
 
 
 def set_suspended(connection: Connection, robot: str, suspended: bool) -> bool:
-    """Lock a robot's account and end its connections, or unlock it; false where the set-up cannot do that.
+    """Lock a robot's account and end its connections, or unlock it; false if the set-up cannot do that.
 
-    MariaDB commits with it.
+    On MariaDB this commits.
     """
     if not _has_routine(connection, "suspend_robot"):
         return False

@@ -1,4 +1,4 @@
-"""Which kind of accounts a database has."""
+"""Choice of the role manager for a database."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ def has_accounts(backend: str) -> bool:
 
 
 def role_manager_on(connection: Connection) -> RoleManager:
-    """Return who makes the accounts of the database behind ``connection``; raises AccountError for SQLite."""
+    """Return the role manager of the database behind ``connection``; raises AccountError for SQLite."""
     kind = _KINDS.get(connection.dialect.name)
     if kind is None:
         raise AccountError("SQLite has no accounts: robots elsewhere come in over WebSocket, with a token")
@@ -29,7 +29,7 @@ def role_manager_on(connection: Connection) -> RoleManager:
 
 
 def map_readers_on(connection: Connection) -> PostgreSqlRoles:
-    """Return who makes the accounts that read the views of the fleet; raises AccountError elsewhere."""
+    """Return the manager of accounts that read the views of the fleet; raises AccountError elsewhere."""
     if connection.dialect.name != "postgresql":
         raise AccountError("only PostgreSQL has accounts for the views of the fleet; a file is read as it is")
     return PostgreSqlRoles(connection)

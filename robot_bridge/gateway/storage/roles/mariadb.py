@@ -1,15 +1,15 @@
-"""Accounts of MariaDB: robots see a database of their own with the views ``rr`` and ``sa`` alone.
+"""Accounts of MariaDB: robots see only a database of their own with the views ``rr`` and ``sa``.
 
-The views are those of a locked account, and keep rows apart by ``user()``, which is who connected;
+The views belong to a locked account, and separate rows by ``user()``, the connected account;
 ``current_user()`` would be the locked account. A trigger writes the robot's name into its requests.
 
 A robot's own condition may be tried on other robots' rows before the view's, and a warning such as *Truncated
-incorrect INTEGER value: ...* would show it what they hold. So the view of SA shows nothing but the number of
-a row that is another's. It is bound to the index on ``robot`` besides, which MariaDB 11 forgets in a DELETE.
+incorrect INTEGER value: ...* would reveal their contents. So the view of SA shows only the id of another
+robot's row. It is also forced to use the index on ``robot``, which MariaDB 11 ignores in a DELETE.
 
-What a trigger reads it locks, and it waits for what others have locked. So the one that counts a robot's
-requests is bound to that index, too, where it meets the robot's own rows alone: many deleted rows that are
-not cleared away yet make MariaDB read the whole table, and every robot wait for all others that are writing.
+A trigger locks the rows that it reads, and waits for those locked by others. So the one that counts a robot's
+requests is forced to use that index, too, which has only the robot's own rows: many deleted rows that are not
+purged yet make MariaDB read the whole table, and every robot wait for all others that are writing.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ _ROUTINES = (
     "procedure {}.blocking_robots",
     "procedure {}.suspend_robot",
 )
-"""What a gateway may call."""
+"""Routines that a gateway may call."""
 _NOT_GATEWAYS = {"rr": "select, delete", "sa": "select, insert, delete"}
 
 
 class MariaDbRoles(RoleManager):
-    """Robots come from any host; TLS and the firewall say from where they may."""
+    """Robots may connect from any host; TLS and the firewall restrict that."""
 
     def robots_database(self) -> str:
         return f"{self._database()}_robots"
@@ -54,7 +54,7 @@ class MariaDbRoles(RoleManager):
         )
 
     def gateways(self) -> list[str]:
-        # An account that owns the database and nothing else may ask this too, and sees no other account.
+        # An account that owns only the database may run this too, and sees no other account.
         keeper = f"'{self._keeper()}'@'localhost'"
         return self._names(
             "select substring_index(trim(leading '\\'' from grantee), '\\'@', 1) "  # nosec B608 # quoted
@@ -66,7 +66,7 @@ class MariaDbRoles(RoleManager):
         if self._prepared() == [_VERSION]:
             return
         self._check_database(self._database())
-        # What is defined is committed at once here: done again after a failure it must go through.
+        # Definitions are committed at once here: repeated after a failure they must succeed.
         self._all(
             _COMMON.format(
                 base=self._quoted(self._database()),
@@ -90,7 +90,7 @@ class MariaDbRoles(RoleManager):
                 self._all(self._routine_grants(self._account(name)))
 
     def _prepared(self) -> list[str]:
-        """Return of which version the robots' side is, nothing when there is none."""
+        """Return the version of the robots' database, empty without one."""
         side = self._text(self.robots_database())
         return self._names(
             f"select schema_comment from information_schema.schemata where schema_name = {side}"  # nosec B608 # names of ours
@@ -177,7 +177,7 @@ class MariaDbRoles(RoleManager):
 
 
 def _identified(password: str) -> str:
-    """Return the clause with the password as the server keeps it: itself it never gets into a log."""
+    """Return the clause with the server's hash of the password, which itself never gets into a log."""
     once = hashlib.sha1(password.encode()).digest()  # nosec B324 # the server's own form
     return f"identified via mysql_native_password using '*{hashlib.sha1(once).hexdigest().upper()}'"  # nosec B324 # as MariaDB has it
 

@@ -1,8 +1,8 @@
 """Accounts of PostgreSQL: row level security on RR and SA, and a view of SA for robots.
 
-Robots insert into ``public.rr`` itself. They reach SA by the view ``for_robots.sa``, which stands first on
-their search path: whoever may delete from a table may also lock it against everybody, the gateway included,
-and the view's owner may not.
+Robots insert into ``public.rr`` itself. They reach SA by the view ``for_robots.sa``, which comes first on
+their search path: an account that may delete from a table may also lock it against everybody, including the
+gateway, and the view's owner may not.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ _GATEWAYS_MAY = {
         "delete": _ALL,
     },
 }
-"""The rows that a gateway may read, write and remove. Of SA it locks rows for update, and changes none."""
+"""The tables whose rows a gateway may read, write and remove. In SA it locks rows for update, and changes
+none."""
 MOST_READERS, READING_SECONDS = 32, 60
-"""Connections of an account that reads the views, and how long one of its statements may take."""
+"""Connections of an account that reads the views, and seconds that one of its statements may take."""
 _VERSION = "robots' side of the fleet, version 2"
 _SERVER_OWN = ("postgres", "public", "none")
 
-# What anybody may call in any database, and what it would let a robot do to the others.
+# Functions open to everybody in any database, with the harm that a robot could do.
 _TO_NOBODY = (
     "lo_creat",  # fill the disk
     "lo_create",
@@ -38,12 +39,12 @@ _TO_NOBODY = (
     "pg_logical_emit_message",
 )
 _OF_POSITIONS = "(make_trajectory_days|drop_trajectory_day|delete_old_positions)$"
-"""What a gateway calls to make and drop the partitions of positions, whose owner it is not."""
+"""Functions by which a gateway makes and drops the partitions of positions, which it does not own."""
 _TO_GATEWAYS = "pg\\_(try\\_)?advisory\\_"  # hold a lock that a gateway wants
 
 
 class PostgreSqlRoles(RoleManager):
-    """The rights are the tables' own; rows are kept apart by ``current_user``."""
+    """Rights are granted on the tables; rows are separated by ``current_user``."""
 
     def robots_database(self) -> str:
         return self._scalar("select current_database()")
@@ -81,7 +82,7 @@ class PostgreSqlRoles(RoleManager):
             self._close_what_everybody_may()
 
     def add_map_reader(self, name: str, password: str) -> None:
-        """Make an account that reads the views of the fleet and may do nothing else.
+        """Create an account that may only read the views of the fleet.
 
         :raises AccountError: when the name is taken.
         :raises MapViewError: when there are no views.
@@ -188,11 +189,11 @@ class PostgreSqlRoles(RoleManager):
         self._all(
             [
                 f"grant select, insert, update, delete on all tables in schema public to {role}",
-                # pg_dump reads them, and whoever runs the gateway may back it up.
+                # pg_dump reads them, and the gateway's account may make backups.
                 f"grant select on all sequences in schema public to {role}",
                 f"revoke insert, update on public.rr from {role}",
                 f"revoke update on public.sa from {role}",
-                # No row can be changed all the same, by the policy; without the right none can be locked.
+                # The policy still prevents changes of rows; without the right none can be locked.
                 f"grant update (urgent) on public.sa to {role}",
             ]
         )
@@ -214,7 +215,7 @@ class PostgreSqlRoles(RoleManager):
         names = "|".join(_TO_NOBODY)
         for function in [*self._functions(f"({names})$"), *self._functions(_TO_GATEWAYS)]:
             self._do(f"revoke execute on function {function} from public")
-        # What robots' rows set off is done in the name of the tables' owner.
+        # Triggers on robots' rows run as the owner of the tables.
         for function in self._functions(_TO_GATEWAYS):
             self._do(f"grant execute on function {function} to {self._quoted(self._owner())}")
 
@@ -239,7 +240,7 @@ class PostgreSqlRoles(RoleManager):
         return self._connection.dialect.identifier_preparer.quote_identifier(name)
 
     def _scrambled(self, name: str, password: str) -> str:
-        """Return the password as the server keeps it: the password itself never gets into its log."""
+        """Return the server's hash of the password: the password itself never gets into its log."""
         driver: Any = self._connection.connection.driver_connection
         scrambled: bytes = driver.pgconn.encrypt_password(password.encode(), name.encode(), b"scram-sha-256")
         return scrambled.decode()

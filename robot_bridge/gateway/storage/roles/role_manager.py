@@ -1,4 +1,4 @@
-"""What every kind of database server does for accounts, and how much a robot may write at most."""
+"""Base of the role managers, and limits of robots' writes."""
 
 from __future__ import annotations
 
@@ -13,42 +13,42 @@ from ....core.messages.base import check_robot_name
 LARGEST_PARAMS = 64 << 10
 """Bytes of a request's parameters."""
 LARGEST_PAYLOAD = 15 << 20
-"""Bytes of a request's payload, less than the largest packet of a MariaDB as it is installed (16 MiB)."""
+"""Bytes of a request's payload, less than the default largest packet of MariaDB (16 MiB)."""
 MOST_WAITING = 2_000
-"""Requests of one robot that wait for the gateway; more are refused until it has dealt with some."""
+"""Requests of one robot that wait for the gateway; more are refused until some are processed."""
 MOST_PAYLOADS = 64
 """Of those, requests with a payload."""
 MOST_CONNECTIONS = 8
 """Connections of one robot."""
 STATEMENT_SECONDS = 10
-"""How long a robot's statement or idle transaction may take, unless it sets that otherwise."""
+"""Seconds that a robot's statement or idle transaction may take, unless the robot changes that."""
 LIMITS = {
     "params": LARGEST_PARAMS,
     "payload": LARGEST_PAYLOAD,
     "waiting": MOST_WAITING,
     "payloads": MOST_PAYLOADS,
 }
-"""The limits that the tables themselves and their triggers keep, as the statements name them."""
+"""The limits enforced by the tables and their triggers, by their names in the statements."""
 
 _LONGEST_DATABASE = 40
 
 
 class AccountError(BridgeError):
-    """An account that cannot be made, found or removed."""
+    """An account cannot be made, found or removed."""
 
 
 class RoleManager(abc.ABC):
     """Makes and removes accounts over the connection of an administrator of the server.
 
-    Every method needs the tables to be there and raises AccountError for what it refuses; what the server
-    refuses comes as SQLAlchemyError.
+    Every method needs existing tables and raises AccountError if it refuses; refusals of the server are
+    SQLAlchemyError.
     """
 
     def __init__(self, connection: Connection) -> None:
         self._connection = connection
 
     def add_robot(self, name: str, password: str) -> None:
-        """Make a robot's account: its own rows of RR to write, its own rows of SA to read and delete."""
+        """Create a robot's account, which may write its own rows of RR, and read and delete its own of SA."""
         self._check_name(name)
         self._refuse_taken(name)
         self.prepare()
@@ -66,7 +66,7 @@ class RoleManager(abc.ABC):
         self._end_connections(name)
 
     def add_gateway(self, name: str, password: str) -> None:
-        """Make the account that the gateway runs under: every table, but no right to change a table."""
+        """Create the account of the gateway: access to every table, but no right to alter one."""
         self._check_name(name)
         self._refuse_taken(name)
         self.prepare()
@@ -86,11 +86,11 @@ class RoleManager(abc.ABC):
 
     @abc.abstractmethod
     def prepare(self) -> None:
-        """Set up what all accounts have in common; done again it changes nothing."""
+        """Set up the common parts of all accounts; repeated it changes nothing."""
 
     @abc.abstractmethod
     def renew_rights(self) -> None:
-        """Let the gateways' accounts use the tables that an upgrade has made."""
+        """Grant the gateways' accounts the tables created by an upgrade."""
 
     @abc.abstractmethod
     def _exists(self, name: str) -> bool: ...
@@ -121,7 +121,7 @@ class RoleManager(abc.ABC):
             )
 
     def _delete_messages(self, robot: str, schema: str) -> None:
-        """Delete what waits in RR and SA, which are in ``schema`` (quoted)."""
+        """Delete a robot's rows in RR and SA, which are in ``schema`` (quoted)."""
         for table in ("rr", "sa"):
             delete = text(f"delete from {schema}.{table} where robot = :robot")  # nosec B608 # quoted
             self._connection.execute(delete, {"robot": robot})
@@ -151,7 +151,7 @@ class RoleManager(abc.ABC):
             self._do(statement)
 
     def _do(self, statement: str) -> None:
-        # Without parameters the drivers leave percent signs alone.
+        # Without parameters the drivers do not interpret percent signs.
         self._connection.exec_driver_sql(statement, execution_options={"no_parameters": True})
 
     def _names(self, query: str) -> list[str]:

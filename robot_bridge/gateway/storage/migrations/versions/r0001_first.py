@@ -9,12 +9,12 @@ from sqlalchemy.dialects import mysql
 revision = "0001"
 down_revision = None
 
-# On SQLite exactly what version 0.1.0 made; elsewhere the same, in columns that hold as much.
+# On SQLite exactly what version 0.1.0 made; elsewhere the same, in columns of the same capacity.
 Id = sa.BigInteger().with_variant(sa.Integer, "sqlite")
 Number: Any = sa.Double().with_variant(sa.Float, "sqlite")
 LongText = sa.Text().with_variant(mysql.MEDIUMTEXT, "mysql", "mariadb")
 LongBytes = sa.LargeBinary().with_variant(mysql.LONGBLOB, "mysql", "mariadb")
-# Names that differ in a letter's case are different names.
+# Names are case-sensitive.
 EXACT: dict[str, Any] = {
     "mariadb_charset": "utf8mb4",
     "mariadb_collate": "utf8mb4_bin",
@@ -23,7 +23,7 @@ EXACT: dict[str, Any] = {
 
 
 def upgrade() -> None:
-    """Make the tables of version 0.1.0."""
+    """Create the tables of version 0.1.0."""
     _messages("rr")
     _messages("sa")
     _robots()

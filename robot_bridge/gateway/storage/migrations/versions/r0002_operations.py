@@ -1,4 +1,4 @@
-"""Every operation, accounts, emergency stops, observations; the database has an id and says what is new."""
+"""Every operation, accounts, emergency stops, observations; an id of the database, notifications."""
 
 from typing import Any
 
@@ -21,7 +21,7 @@ EXACT: dict[str, Any] = {
 
 
 def upgrade() -> None:
-    """Add what is new, and keep what is there."""
+    """Add the new tables and columns, and keep the rows."""
     _bridge()
     _commands()
     _trajectories()
@@ -141,7 +141,7 @@ def _audit() -> None:
 
 
 def _notifications() -> None:
-    """Wake whoever waits. Anyone may listen, so a notification says nothing but that it is time to look.
+    """Notify waiting readers. Anyone may listen, so a notification has no content.
 
     The gateway listens to channel ``rr``, a robot to ``sa_`` and its name (63 characters at most).
     """
@@ -149,7 +149,7 @@ def _notifications() -> None:
         body = f"begin perform pg_notify({then}, ''); return null; end"
         how = "returns trigger language plpgsql set search_path = pg_catalog"
         op.execute(f"create function notify_{name}() {how} as $$ {body} $$")
-    # Commands only: that a robot has read the others changes nothing.
+    # Commands only: reading other answers changes nothing.
     command = "old.op not in ('OpAck', 'SetMap', 'Start')"
     for name, event, each, function in (
         ("rr_inserted", "insert on rr", "statement", "notify_rr"),

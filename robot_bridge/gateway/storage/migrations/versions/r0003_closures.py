@@ -1,4 +1,4 @@
-"""Roads that operators closed, and robots that wait for others to pass."""
+"""Closed roads, and robots that wait for others to pass."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Queues of tasks, placed cones, and where a robot stood when it had done a command."""
+"""Queues of tasks, placed cones, and a robot's pose at the end of a command."""
 
 from typing import Any
 

@@ -1,4 +1,4 @@
-"""Robots that wait for others on a path of their queue: the task that goes on afterwards."""
+"""Robots that wait for others on a path of their queue: the task that continues afterwards."""
 
 import sqlalchemy as sa
 from alembic import op

@@ -1,4 +1,4 @@
-"""Robots tell a gateway on PostgreSQL of new rows only while it dozes."""
+"""Notifications of new rows for a gateway on PostgreSQL only while it dozes."""
 
 from alembic import op
 
@@ -15,12 +15,12 @@ LOCKING = (
 
 
 def upgrade() -> None:
-    """Have whoever writes look whether the gateway dozes before it notifies.
+    """Have writers check whether the gateway dozes before they notify.
 
     Transactions that notify are committed one after the other, each waiting for the disk by itself: twenty
-    robots were answered as slowly as one disk can write twenty times. A gateway that is awake looks by
-    itself. It holds the lock while it dozes; whoever writes holds a share of it to the end of the
-    transaction, so that a gateway never begins to doze over a row that nobody tells it of.
+    robots were answered as slowly as one disk can write twenty times. A gateway that is awake polls. It holds
+    the lock while it dozes; writers hold it shared to the end of the transaction, so that a gateway never
+    begins to doze over a row without a notification.
     """
     if op.get_bind().dialect.name != "postgresql":
         return
@@ -32,7 +32,7 @@ def upgrade() -> None:
 
 
 def _let_the_owner_lock() -> None:
-    """Where robots have accounts nobody may lock unless it is granted: robots are not to."""
+    """With robots' accounts, locking needs a grant: robots must not have it."""
     connection = op.get_bind()
     owner = connection.exec_driver_sql(
         "select tableowner from pg_tables where schemaname = 'public' and tablename = 'rr'"

@@ -1,4 +1,4 @@
-"""Indexes for what is asked of a robot's commands and tasks, and for when cones were collected."""
+"""Indexes for queries on a robot's commands and tasks, and on the collection times of cones."""
 
 from alembic import op
 
@@ -11,7 +11,7 @@ def upgrade() -> None:
     op.create_index("ix_commands_robot_sa_id", "commands", ["robot", "sa_id"])
     op.create_index("ix_commands_robot_created_at", "commands", ["robot", "created_at"])
     op.create_index("ix_queue_tasks_robot_ended_at", "queue_tasks", ["robot", "ended_at"])
-    # The new ones begin with what these hold.
+    # The new ones begin with the same columns.
     op.drop_index("ix_commands_robot", table_name="commands")
     op.drop_index("ix_queue_tasks_robot", table_name="queue_tasks")
     op.create_index("ix_placements_collected_at", "placements", ["collected_at"])

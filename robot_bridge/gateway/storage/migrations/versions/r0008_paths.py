@@ -1,4 +1,4 @@
-"""What robots declared in Ready of how they come to targets."""
+"""Robots' declarations in Ready on how they reach targets."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,5 +8,5 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the column: without it a robot counts as declaring nothing from a restart to its next Ready."""
+    """Add the column: without it a robot has no declaration from a restart to its next Ready."""
     op.add_column("robots", sa.Column("paths", sa.String(16), nullable=True))

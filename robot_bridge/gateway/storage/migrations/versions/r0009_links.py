@@ -1,4 +1,4 @@
-"""Links that speak for many robots, and what robots declared in Ready that they can do."""
+"""Links that speak for many robots, and the abilities that robots declared in Ready."""
 
 from typing import Any
 

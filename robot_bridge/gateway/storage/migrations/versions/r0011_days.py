@@ -1,8 +1,8 @@
-"""Where robots have been, on PostgreSQL: a partition for each day, which is dropped in one piece.
+"""Trajectories on PostgreSQL: a partition for each day, which is dropped whole.
 
-What is stored already becomes one partition as it is, up to the end of the day of the upgrade. A default
-partition has what belongs to no other, so that no position is refused for want of one. The gateway's account
-changes no tables; it calls functions, which do it in the name of whoever owns them.
+The existing table becomes one partition, up to the end of the day of the upgrade. A default partition has the
+rows that belong to no other, so that no position is refused. The gateway's account alters no tables; it calls
+functions, which run as the owner of the tables.
 """
 
 from alembic import op
@@ -13,7 +13,7 @@ down_revision = "0010"
 # Times are seconds since 1970, and a day's number is a time divided by this.
 DAY = 86400
 AHEAD = 3
-"""Partitions made here: of the next days, and of today unless that belongs to what is stored already."""
+"""Partitions created here: for the next days, and for today unless the existing rows include it."""
 
 _SAME_RIGHTS = """
     for granted in
@@ -25,7 +25,7 @@ _SAME_RIGHTS = """
     end loop;
 """
 
-# The identity goes to the new table: its numbers go on where they were.
+# The identity moves to the new table: its ids continue.
 _PARTITIONED = f"""
 do $$
 declare
@@ -83,9 +83,9 @@ create function public.trajectory_partitions(
 $$
 """
 
-# What belongs to the day and is in the default partition goes over with it: no partition can be made for rows
-# that are in another. Others wait for the default partition meanwhile, and nobody for longer than it takes to
-# have the lock or to give it up. Whoever reads the table as a whole, for a backup, reads each partition.
+# Rows of the day in the default partition are moved: no partition can be made for rows that are in another.
+# Others wait for the default partition meanwhile, but not for longer than getting or giving up the lock
+# takes. A read of the whole table, for a backup, reads each partition.
 _MAKE_DAYS = f"""
 create function public.make_trajectory_days(days integer[], most bigint) returns integer
     language plpgsql security definer
@@ -140,7 +140,7 @@ end
 $$
 """  # nosec B608 # names of ours
 
-# What somebody has made of a partition, such as a view, keeps that one and none of the others.
+# Objects that depend on a partition, such as a view, keep that one and none of the others.
 _DROP_DAY = """
 create function public.drop_trajectory_day(before double precision) returns integer
     language plpgsql security definer
@@ -166,7 +166,7 @@ end
 $$
 """
 
-# In the partitions that are no day's: the default one, and what was stored before there were days.
+# In the partitions without a day: the default one, and the one from before the upgrade.
 _DELETE = """
 create function public.delete_old_positions(before double precision, most integer) returns integer
     language plpgsql security definer set search_path = pg_catalog, pg_temp as $$
@@ -229,7 +229,7 @@ $$
 
 
 def upgrade() -> None:
-    """Make the table anew, with what was stored as one partition of it, and the functions."""
+    """Recreate the table, with the existing rows as one partition, and the functions."""
     if op.get_bind().dialect.name != "postgresql":
         return
     op.execute(_PARTITIONED)
@@ -244,7 +244,7 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Copy all rows into one table again; the rights of accounts have to be renewed behind that."""
+    """Copy all rows into one table again; the rights of accounts must be renewed afterwards."""
     if op.get_bind().dialect.name != "postgresql":
         return
     for name in _FUNCTIONS:

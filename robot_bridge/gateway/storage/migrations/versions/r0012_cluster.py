@@ -1,4 +1,4 @@
-"""Several gateways on one database: who lives, who has which robot, what one asks another."""
+"""Several gateways on one database: leases, owners of robots, relayed requests."""
 
 from typing import Any
 
@@ -60,6 +60,6 @@ def upgrade() -> None:
 
 
 def downgrade() -> None:
-    """Take the tables away: one gateway alone needs none of them."""
+    """Drop the tables: a sole gateway needs none of them."""
     for name in ("relayed_requests", "robot_owners", "gateways"):
         op.drop_table(name)

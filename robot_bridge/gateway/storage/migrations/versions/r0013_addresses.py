@@ -1,4 +1,4 @@
-"""Where each of several gateways is reached, which robots are told."""
+"""Addresses of several gateways, as sent to robots."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,10 +8,10 @@ down_revision = "0012"
 
 
 def upgrade() -> None:
-    """Add the address, null for a gateway that does not say it: those of the version before do not."""
+    """Add the address, null for a gateway that does not give it, such as one of the previous version."""
     op.add_column("gateways", sa.Column("address", sa.String(256), nullable=True))
 
 
 def downgrade() -> None:
-    """Take it away."""
+    """Drop the column."""
     op.drop_column("gateways", "address")

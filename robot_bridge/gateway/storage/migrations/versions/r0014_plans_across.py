@@ -1,4 +1,4 @@
-"""What a plan of what is left was asked for, and what speaks against it: any gateway goes on with it."""
+"""The request and the objections of a plan for the rest: any gateway can continue it."""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,13 +8,13 @@ down_revision = "0013"
 
 
 def upgrade() -> None:
-    """Add the columns; of a proposal that is stored nobody knows what speaks against it."""
+    """Add the columns; the objections to a stored proposal are unknown."""
     op.add_column("plans", sa.Column("try_again", sa.SmallInteger, nullable=False, server_default="0"))
     op.add_column("plans", sa.Column("meetings", sa.Integer, nullable=True))
     op.add_column("plans", sa.Column("closed", sa.Integer, nullable=True))
 
 
 def downgrade() -> None:
-    """Take them away."""
+    """Drop the columns."""
     for name in ("closed", "meetings", "try_again"):
         op.drop_column("plans", name)
