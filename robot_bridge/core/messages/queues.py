@@ -172,7 +172,7 @@ class SetQueue(DeskRequest[QueueReport]):
 
 @dataclass(frozen=True)
 class AddTasks(DeskRequest[QueueReport]):
-    """Put tasks into a queue, in front of task ``before``, or at its end.
+    """Put tasks into a queue, in front of task ``before``, or at its end: sent twice, done once.
 
     ``override`` states the objections and the reason to proceed, as with ``send``.
     """

@@ -197,9 +197,14 @@ class QueueEditor:
 
     @handles(messages.AddTasks)
     async def add(self, request: messages.AddTasks, operator: str) -> messages.QueueReport:
-        """Insert tasks into a queue."""
+        """Insert tasks into a queue, once: a repetition changes nothing."""
         request = replace(request, tasks=await tasks_in_site_frame(self._site, request.tasks))
-        async with self._editing(request.robot, request.revision) as queue:
+        async with self._registry.holding([request.robot]):
+            self._robots.check_known(request.robot)
+            queue = self._registry.get(request.robot)
+            if queue.revision != request.revision and await self._are_given(request):
+                return self._registry.announce(request.robot)
+            self._check_revision(request.robot, request.revision)
             known = await self._checked(request, queue)
             now = self._clock.time()
             after = task_queue.add_tasks(queue, request.tasks, request.before, known, operator, now)
@@ -422,6 +427,12 @@ class QueueEditor:
             if task.id not in kept
         ]
         return await self._registry.save(before, after, gone)
+
+    async def _are_given(self, request: messages.AddTasks) -> bool:
+        """Tell whether all tasks were given to this robot before."""
+        ids = [task.task for task in request.tasks]
+        known = await self._database.read(queues.whereabouts, ids)
+        return bool(ids) and all(one in known and known[one].robot == request.robot for one in ids)
 
     def _check_revision(self, robot: str, revision: int) -> None:
         now = self._registry.get(robot).revision
